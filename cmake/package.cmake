@@ -1,14 +1,16 @@
-# `scripts/make_package` makes strata_VERSION_ARCH.deb of what `cmake --install` copies, and of the files that a package adds:
-# the service, its settings, the manual page and the completion. These are a component of their own, so that
-# `cmake --install --prefix` writes nothing outside of the prefix.
+# `scripts/make_package` makes strata_VERSION_ARCH.deb from the files that `cmake --install` copies,
+# and from the files that only a package has: the service, its settings, the manual page and the
+# completion. These are a separate component, so that `cmake --install --prefix` writes nothing
+# outside the prefix.
 set(debian ${PROJECT_SOURCE_DIR}/packaging/debian)
 set(made ${PROJECT_BINARY_DIR}/packaging)
 
-# What is run as a program or loaded at run time is named once, in scripts/setup.sh; what is linked, dpkg-shlibdeps finds.
+# scripts/setup.sh lists the programs and the libraries that are loaded at run time; dpkg-shlibdeps
+# finds the linked libraries.
 file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/setup.sh run_packages REGEX "^run_packages=")
 string(REGEX REPLACE "^run_packages=\\((.*)\\)$" "\\1" run_packages "${run_packages}")
 separate_arguments(run_packages)
-list(REMOVE_ITEM run_packages curl)  # of the image's health check
+list(REMOVE_ITEM run_packages curl)  # only the image's health check uses it
 list(APPEND run_packages adduser)
 list(JOIN run_packages ", " depends)
 
@@ -23,7 +25,7 @@ configure_file(${debian}/changelog.in ${made}/changelog @ONLY)
 configure_file(${debian}/copyright.in ${made}/copyright @ONLY)
 configure_file(${debian}/strata.1.in ${made}/strata.1 @ONLY)
 install(CODE "
-  # As lintian wants them: compressed as far as it goes, without a time.
+  # lintian requires the highest compression and no time stamp.
   execute_process(COMMAND gzip -9 --no-name --stdout ${made}/changelog OUTPUT_FILE ${made}/changelog.Debian.gz COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND gzip -9 --no-name --stdout ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${made}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND gzip -9 --no-name --stdout ${made}/strata.1 OUTPUT_FILE ${made}/strata.1.gz COMMAND_ERROR_IS_FATAL ANY)

@@ -1,21 +1,24 @@
-# strata_module(NAME SOURCES… [PUBLIC libs…] [PRIVATE libs…]): one module of the server, a static library `strata_NAME`.
-# What a module links is what it may include: the drawing in docs/developer/architecture/overview.md shows these links.
+# strata_module(NAME SOURCES… [PUBLIC libs…] [PRIVATE libs…]): one module of the server, a static
+# library `strata_NAME`. A module may include only the modules that it links: the drawing in
+# docs/developer/architecture/overview.md shows these links.
 function(strata_module name)
   cmake_parse_arguments(MODULE "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(strata_${name} STATIC ${MODULE_SOURCES})
   target_include_directories(strata_${name} PUBLIC ${PROJECT_BINARY_DIR}/modules/${name})
-  # A module sees its own headers and those of the modules it links, because each room exports only its own folder.
+  # A module finds its own headers and those of the modules that it links: each module exports only
+  # its own folder.
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/modules/${name})
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/modules/${name}/${name} SYMBOLIC)
   if(name MATCHES "^(net|cli)$")
     strata_shared_headers(strata_${name} net)
   elseif(name MATCHES "^(domain|mesh|render|query)$")
     strata_shared_headers(strata_${name} standard COMPUTES)
-  elseif(NOT name STREQUAL "figure")  # pango's flags are not those that the shared headers are compiled with
+  elseif(NOT name STREQUAL "figure")  # pango needs other compiler flags
     strata_shared_headers(strata_${name} standard)
   endif()
-  # These take more than half of a release build's time, and half as long in one unit for eight files. A file that gives something
-  # in its unnamed namespace a name that another file of the module uses, too, is compiled alone (SKIP_UNITY_BUILD_INCLUSION).
+  # These modules take more than half of a release build's time. Units of eight files halve it. A
+  # file is compiled alone (SKIP_UNITY_BUILD_INCLUSION) if a name in its unnamed namespace also
+  # exists in another file of the module.
   if(STRATA_UNITY AND name MATCHES "^(app|net|store)$")
     set_target_properties(strata_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
@@ -28,7 +31,7 @@ target_compile_options(strata_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-vi
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(strata_warnings INTERFACE -Wno-array-bounds -Wno-mismatched-new-delete -Wno-restrict -Wno-stringop-overflow)
 endif()
-# And of the standard library's own members, as soon as a sanitizer's checks stand between their statements.
+# Also for members of the standard library, if a sanitizer adds checks between their statements.
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(strata_warnings INTERFACE -Wno-maybe-uninitialized)
 endif()

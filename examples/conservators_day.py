@@ -18,7 +18,7 @@ def main() -> int:
         return 2
     site = Strata(sys.argv[1], os.environ["STRATA_OWNER_TOKEN"])
 
-    # Nine o'clock: the scan. A unit that the file does not say is asked for on the page.
+    # Nine o'clock: the scan. If the file has no unit, the page asks for it.
     model = site.import_model(sys.argv[2], name="Wall", unit="mm")
     path = f"/models/{model['slug']}"
     low, high = model["bounds"]["min"], model["bounds"]["max"]
@@ -41,7 +41,7 @@ def main() -> int:
         f"{path}/layers", {"name": "Moisture", "kind": "numeric", "type": "f32", "unit": "%"}
     )
 
-    # Until noon: values at measured places, each painted on the surface around it.
+    # Until noon: values at measured points, each painted on the surface around its point.
     places = site.post(
         f"{path}/positions",
         {
@@ -59,7 +59,7 @@ def main() -> int:
             "text/csv",
         )
 
-    # In the evening: how much there is of each, and where it is wet.
+    # In the evening: the area of each class, and the wet area.
     statistics = site.get(f"{path}/layers/{damage['slug']}/statistics")
     for key in statistics["keys"]:
         name = DAMAGES[key["key"] - 1][0]

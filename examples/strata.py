@@ -21,7 +21,7 @@ import uuid
 
 
 class Problem(Exception):
-    """What the server refused, and why (RFC 9457). `type` says which kind of problem it is."""
+    """A refusal of the server and its reason (RFC 9457). `type` is the kind of the problem."""
 
     def __init__(self, status: int, body: dict):
         super().__init__(f"{status} {body.get('title', '')}: {body.get('detail', '')}")
@@ -36,7 +36,7 @@ class Strata:
         self.token = token
 
     def request(self, method: str, path: str, body=None, content_type: str | None = None) -> bytes:
-        """Sends bytes as they are, text as UTF-8, anything else as JSON."""
+        """Sends bytes unchanged, text as UTF-8, other values as JSON."""
         return self._answer(method, path, body, content_type)[0]
 
     def _answer(self, method: str, path: str, body=None, content_type: str | None = None):
@@ -51,7 +51,7 @@ class Strata:
                 data, kind = json.dumps(body).encode(), "application/json"
             headers["Content-Type"] = content_type or kind
         if method in ("POST", "PATCH", "DELETE"):
-            # A repeat after a broken connection does nothing twice.
+            # With this key, a repeat after a broken connection has no second effect.
             headers["Idempotency-Key"] = str(uuid.uuid4())
         asked = urllib.request.Request(self.base + path, data=data, headers=headers, method=method)
         try:
@@ -72,9 +72,9 @@ class Strata:
         return json.loads(self.request("POST", path, body, content_type))
 
     def all(self, path: str, name: str, page: int = 500) -> list:
-        """A whole list, page by page: `name` is its member in the answers. Each page says in its
-        header `Link` where the next one begins, so that nothing is left out or comes twice while
-        others write."""
+        """Returns a whole list, page by page: `name` is its member in the answers. The header
+        `Link` of each page has the address of the next page, so that no entry is missing or doubled
+        while others write."""
         found: list = []
         following: str | None = f"{path}{'&' if '?' in path else '?'}limit={page}"
         while following:
@@ -85,7 +85,7 @@ class Strata:
         return found
 
     def wait_for(self, job: str, every_s: float = 0.2) -> dict:
-        """The job when it has ended. Raises what went wrong in it."""
+        """Waits for the job and returns it. Raises the problem of a job that failed."""
         while True:
             state = self.get(f"/jobs/{job}")
             if state["state"] == "done":

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""camera.py MODEL_URL [WIDTH HEIGHT]: prints a camera that sees the whole model from the front, as the API wants it.
+"""camera.py MODEL_URL [WIDTH HEIGHT]: prints a camera that shows the whole model from the front, in
+the format of the API.
 
 Reads STRATA_OWNER_TOKEN. Matrices are column-major, OpenGL clip space, world coordinates."""
 import json
@@ -74,7 +75,7 @@ def perspective(angle, aspect, near, far):
 
 
 def camera_from(model, direction, width, height, up):
-    """Sees the whole model from a direction."""
+    """Returns a camera that shows the whole model from a direction."""
     low, high = model["bounds"]["min"], model["bounds"]["max"]
     center = [(a + b) / 2 for a, b in zip(low, high)]
     radius = math.dist(low, high) / 2

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """count_results.py FOLDER: adds up the test reports in a folder and prints "passed failed skipped".
 
-GoogleTest and Vitest write JUnit-like XML with every case. CTest's own report (ctest.junit) counts only for tests that wrote none:
-programs that are not GoogleTest, and those that died before they could report."""
+GoogleTest and Vitest write JUnit-like XML with every case. CTest's own report (ctest.junit) counts
+only for tests without such a file: programs that do not use GoogleTest, and programs that ended
+before they could write it."""
 import pathlib
 import sys
 import xml.etree.ElementTree as ET
@@ -37,8 +38,8 @@ def main():
         for case in ET.parse(ctest).getroot().iter("testcase"):
             ran_wrong = case.find("failure") is not None or case.get("status") == "fail"
             if case.get("name") in reported:
-                # A binary that failed after its cases all passed (a leak report, say) is a failure
-                # too.
+                # A program whose cases all passed but that failed afterward (a leak report, say) is
+                # a failure, too.
                 if ran_wrong and total[1] == 0:
                     total[1] += 1
             elif ran_wrong:

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""test_times.py FOLDER: writes times.txt there, how long each test took, longest first, and prints the 20 longest.
+"""test_times.py FOLDER: writes the time of each test to times.txt in FOLDER, longest first, and
+prints the 20 longest.
 
-A test of CTest stands with its name, and so do the cases that its report in the folder has (`test: case`)."""
+The file lists the tests of CTest by name, and the cases of their reports in the folder
+(`test: case`)."""
 import pathlib
 import sys
 import xml.etree.ElementTree as ET
@@ -10,7 +12,7 @@ LONGEST = 20
 
 
 def times_of(report):
-    """Of one JUnit file: (seconds, name) of each case."""
+    """Yields (seconds, name) of each case of one JUnit file."""
     for case in ET.parse(report).getroot().iter("testcase"):
         name = case.get("name")
         if report.name != "ctest.junit":

@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""Writes the notices of the libraries that a built program holds: those that it links and those whose headers are compiled into it.
+"""Writes the notices of the libraries that a built program contains: linked libraries, and
+libraries whose headers are compiled into it.
 
   scripts/third_party_notices.py BUILD_FOLDER OUTPUT
 
-What is compiled in is what Ninja saw the compiler read; Debian's packages say whose it is and under which licence. Headers unpacked into build/deps belong to
-no installed package and are looked up there. Needs dpkg, and the build folder of a finished build."""
+Ninja lists the headers that the compiler read; Debian's packages name their owners and licenses.
+Headers unpacked into build/deps belong to no installed package; their notices are in that folder.
+Needs dpkg, and the build folder of a finished build."""
 import os
 import re
 import subprocess
 import sys
 
-# The C and C++ libraries of the system and of the compiler are no parts of a program (GCC's runtime
-# library exception, section 5 of the LGPL).
+# The C and C++ libraries of the system and of the compiler are not parts of a program (GCC's
+# runtime library exception, section 5 of the LGPL).
 OF_THE_SYSTEM = re.compile(
     r"^(libc6|libc6-dev|linux-libc-dev|libstdc\+\+.*|libgcc.*|gcc-\d+-base|cpp.*)$"
 )
@@ -25,7 +27,7 @@ def run(*command):
 
 
 def headers_of(build):
-    """Headers outside of the project that the program's own units read."""
+    """Returns the headers outside the project that the program's own units read."""
     units = {
         line.split(":")[0]
         for line in run("ninja", "-C", build, "-t", "inputs", "strata").splitlines()
@@ -45,7 +47,8 @@ def headers_of(build):
 
 
 def libraries_of(program):
-    """Those that the program itself asks for; what these need comes with Debian's packages and their own notices."""
+    """Returns the directly linked libraries; Debian's packages of these have their own notices and
+    dependencies."""
     needed = set(re.findall(r"NEEDED\s+(\S+)", run("objdump", "-p", program)))
     return {
         os.path.realpath(path)
@@ -55,7 +58,8 @@ def libraries_of(program):
 
 
 def packages_of(files):
-    """Debian's packages that own the files; /lib is a link to /usr/lib, and dpkg may know a file by either."""
+    """Returns the Debian packages that own the files; /lib is a link to /usr/lib, and dpkg may list
+    a file under either."""
     names = set()
     files = sorted(files)
     for begin in range(0, len(files), 500):

@@ -1,9 +1,9 @@
 #version 450 core
 #include "shared/cluster.h"
 #include "shared/depth_probe.h"
-// Takes the draw from clusters whose box lies behind the depth that was drawn so far, in every cell of the coarse grid that
-// it reaches into. One level of the grid serves: boxes of many cells are few, and the loop ends at the first cell that lets
-// them be seen.
+// Disables the draws of clusters whose box is behind the depth drawn so far in every cell of the
+// coarse grid that it overlaps. One level of the grid is enough: boxes of many cells are rare, and
+// the loop ends at the first cell in which they are visible.
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Cells { float cells[]; };
 layout(std430, binding = 1) readonly buffer Boxes { float boxes[]; };  // a cluster: min x y z, max x y z
@@ -22,7 +22,7 @@ void main() {
     vec3 position = vec3(boxes[box + ((corner & 1u) != 0u ? 3u : 0u)], boxes[box + ((corner & 2u) != 0u ? 4u : 1u)],
                          boxes[box + ((corner & 4u) != 0u ? 5u : 2u)]);
     vec4 clip = clip_from_model * vec4(position, 1.0);
-    if (clip.w <= 0.0 || clip.z < -clip.w) return;  // reaches before the near plane
+    if (clip.w <= 0.0 || clip.z < -clip.w) return;  // extends in front of the near plane
     vec3 ndc = clip.xyz / clip.w;
     low = min(low, ndc);
     high = max(high, ndc);
@@ -31,7 +31,7 @@ void main() {
   vec2 size = vec2(window);
   vec2 cell = vec2(float(kDepthCell));
   ivec2 last = (window + int(kDepthCell) - 1) / int(kDepthCell) - 1;
-  // Clamped before the cast: a box near the eye reaches farther than an int.
+  // Clamped before the cast: a box near the eye may extend beyond the range of an int.
   vec2 limit = vec2(last);
   ivec2 from = ivec2(clamp(floor(((low.xy * 0.5 + 0.5) * size - kClusterMarginPx) / cell), vec2(0.0), limit));
   ivec2 to = ivec2(clamp(floor(((high.xy * 0.5 + 0.5) * size + kClusterMarginPx) / cell), vec2(0.0), limit));

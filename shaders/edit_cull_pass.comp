@@ -1,12 +1,13 @@
 #version 450 core
 #include "shared/depth_probe.h"
 #include "shared/edit.h"
-// Lists the parts of the block tree that a stroke may touch, and their tiles: spheres are projected to the window and tested
-// against the tool's segments and the coarse grid of largest depths. Conservative: never leaves out a texel that the edit
-// would write. A group takes a node of the tree with its 64 parts, and most groups end with the node.
+// Lists the parts of the block tree that a stroke may touch, and their tiles: projects spheres to
+// the window and tests them against the tool's segments and the coarse grid of largest depths.
+// Conservative: never rejects a texel that the edit would write. A group tests a node of the tree
+// and its 64 parts; most groups end after the node.
 layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform EditUniformBlock { EditUniforms edit; };
-layout(std430, binding = 0) readonly buffer Nodes { vec4 nodes[]; };      // centre, radius; one for each 64 parts
+layout(std430, binding = 0) readonly buffer Nodes { vec4 nodes[]; };      // center, radius; one for each 64 parts
 layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; };  // a part
 layout(std430, binding = 2) readonly buffer Parts { EditPart parts[]; };
 layout(std430, binding = 3) readonly buffer Segments { EditSegment segments[]; };
@@ -17,7 +18,7 @@ layout(std430, binding = 6) writeonly buffer TouchedParts { TouchedPart touched[
 shared uint node_segments, group_count, group_first;
 
 struct WindowBox {
-  vec4 box;  // x0, y0, x1, y1; the whole window when the eye's plane cuts the sphere
+  vec4 box;  // x0, y0, x1, y1; the whole window if the eye's plane intersects the sphere
   float z0;  // nearest window depth
   float w0;  // smallest w
 };
@@ -27,8 +28,8 @@ vec4 row(int i) {
               edit.clip_from_model[3][i]);
 }
 
-// Bounds of (a_row · p) / (w_row · p) over a sphere: the planes a_row - k w_row that touch it. The root is written so that
-// it does not cancel in float.
+// Bounds of (a_row · p) / (w_row · p) over a sphere: the planes a_row - k w_row that touch it. This
+// form of the root avoids cancellation in float.
 vec2 ratio_bounds(vec3 a_row, float a, vec3 w_row, float w, float radius) {
   float reach = radius * length(w_row);
   vec3 across = w * a_row - a * w_row, both = cross(a_row, w_row);
@@ -68,16 +69,18 @@ float distance_to_axis(EditSegment s, vec2 point) {
   return distance(point, s.ends.xy + along * t);
 }
 
-// The circle around the box against the segment's axis: long slanted segments have boxes much larger than they are.
+// Tests the circle around the box against the segment's axis: the boxes of long slanted segments
+// are much larger than the segments.
 bool lies_under(vec4 box, EditSegment s) {
   float radius = max(s.tool.x, s.tool.y) * (1.0 + kCullMarginRadius);
   vec4 of_segment = vec4(min(s.ends.xy, s.ends.zw) - radius, max(s.ends.xy, s.ends.zw) + radius);
   vec2 center = 0.5 * (box.xy + box.zw);
   return overlap(box, of_segment) &&
-         distance_to_axis(s, center) <= radius * sqrt(2.0) + distance(center, box.zw);  // √2: squares reach that far
+         // √2: the corners of squares
+         distance_to_axis(s, center) <= radius * sqrt(2.0) + distance(center, box.zw);
 }
 
-// Then no other segment matters.
+// Whether the segment covers the whole box; then the other segments have no effect.
 bool covers(EditSegment s, vec4 box) {
   vec2 center = 0.5 * (box.xy + box.zw);
   return distance_to_axis(s, center) + distance(center, box.zw) + kCullMarginPx < edit.inner_radius * min(s.tool.x, s.tool.y);
@@ -90,7 +93,7 @@ bool is_hidden(WindowBox window) {
   float nearest = window.z0 - bias - kCullMarginDepth;
   float cell = float(kDepthCell);
   ivec2 count = ivec2(ceil(edit.window.xy / cell));
-  // Clamped before the cast: a box near the eye reaches farther than an int.
+  // Clamped before the cast: a box near the eye may extend beyond the range of an int.
   ivec2 from = ivec2(clamp(floor(max(window.box.xy, edit.tool_box.xy) / cell), vec2(0.0), vec2(count - 1)));
   ivec2 to = ivec2(clamp(floor(min(window.box.zw, edit.tool_box.zw) / cell), vec2(0.0), vec2(count - 1)));
   for (int y = from.y; y <= to.y; ++y)
@@ -99,7 +102,7 @@ bool is_hidden(WindowBox window) {
   return true;
 }
 
-// The bits of the segments that the box may lie under, of those in `runs`.
+// The bits of the segments in `runs` that may cover the box.
 uint segments_over(vec4 box, uint runs) {
   uint found = 0u;
   for (; runs != 0u; runs &= runs - 1u) {

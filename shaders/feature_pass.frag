@@ -1,13 +1,14 @@
 #version 450 core
 #include "shared/features.h"
-// Lines with round ends and points. Light casings part them from what lies below, also in greys; all of them are drawn before what is in
-// them, so that segments of a line do not cut each other. A pixel belongs to the nearest place of the segment, and shows it where that
-// place is shown.
+// Lines with round ends and points. Light casings separate them from the surface, also in
+// grayscale. All casings are drawn before the inner parts, so that segments of a line do not cut
+// each other. A pixel belongs to the nearest place of the segment and is drawn if that place is
+// shown.
 layout(location = 0) in vec2 place;
 layout(location = 1) flat in vec4 ends;
 layout(location = 2) flat in float mark_half_width;
 layout(location = 3) flat in vec4 mark_color;
-layout(location = 4) flat in uvec2 places;  // how many, and the bits of those that are shown
+layout(location = 4) flat in uvec2 places;  // how many, and the bits of the shown ones
 layout(location = 0) out vec4 picture;
 
 void main() {

@@ -1,6 +1,6 @@
 #version 450 core
 #include "shared/features.h"
-// A rectangle around each segment, two triangles; nothing around one that is hidden.
+// A rectangle of two triangles around each segment; nothing for a hidden one.
 layout(std140, binding = 0) uniform FeatureBlock { FeatureUniforms marks; };
 layout(std430, binding = 0) readonly buffer SegmentBlock { FeatureSegment segments[]; };
 layout(location = 0) out vec2 place;  // pixels

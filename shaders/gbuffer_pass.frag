@@ -1,9 +1,10 @@
 #version 450 core
 #include "shared/mesh.h"
 #include "shared/museum_light.h"
-// Texture coordinate (16 bits each, floor of uv * 65536, so that a power of two of texels finds its texel exactly) and lit
-// base colour with the light itself in alpha, by which layers are lit later. HEADLIGHT,
-// RAKING_LIGHT or UNLIT take the place of the museum light; LOOKS is how many pictures lie over the colours of the vertices.
+// Texture coordinate (16 bits each, floor of uv * 65536, which maps exactly to texels of a
+// power-of-two resolution) and lit base color. The alpha is the light, by which layers are lit
+// later. HEADLIGHT, RAKING_LIGHT or UNLIT replace the museum light; LOOKS is the number of pictures
+// over the colors of the vertices.
 layout(location = 0) in vec2 surface_uv;
 #ifdef LIT_VERTICES
 layout(location = 1) in float surface_light;
@@ -17,7 +18,7 @@ const vec3 kInsideColor = vec3(0.47, 0.36, 0.31);
 layout(std140, binding = 0) uniform MeshBlock { MeshUniforms mesh; };
 
 #if LOOKS > 0
-layout(binding = 0) uniform sampler2D looks[LOOKS];  // sRGB codes, as all colours here are
+layout(binding = 0) uniform sampler2D looks[LOOKS];  // sRGB codes, as all colors here
 #endif
 
 layout(location = 0) out uint packed_uv;

@@ -1,8 +1,9 @@
 #version 450 core
 #include "shared/mesh.h"
 #include "shared/museum_light.h"
-// The one vertex stage of the mesh, for g-buffers and for depth alone, so that their depths are the same bits. LIT_VERTICES: the
-// museum light of triangles so small that it is the same between their vertices as in each pixel.
+// The common vertex stage of the mesh, for g-buffers and for depth only, so that their depths are
+// bitwise equal. LIT_VERTICES: the museum light of small triangles, computed at their vertices
+// instead of in each pixel.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in vec2 uv;

@@ -2,11 +2,12 @@
 #include "shared/mesh.h"
 #include "shared/pages.h"
 #include "shared/shade.h"
-// Colours the surface of a picture: its lit base colour and the layers bottom to top, sampled by texture coordinate.
-// CHUNK_COUNT (0…6) pairs of value and valid textures are bound; a texel whose chunk is not bound is left to another draw.
-// LAYERS, where defined, says what the layers are, as SHADE_LAYER(index, mode, type, bits of the units that may hold it, whether it
-// has patterns) each:
-// CPUs run every side of a branch, so each layer gets code of its own kind alone. Else there is a loop over layer_count.
+// Colors the surface of a picture: its lit base color and the layers bottom to top, sampled by
+// texture coordinate. CHUNK_COUNT (0…6) pairs of value and valid textures are bound; another draw
+// handles texels whose chunk is not bound. LAYERS, if defined, lists the layers, each as
+// SHADE_LAYER(index, mode, type, bits of the units that may contain it, whether it has patterns).
+// Software renderers run both sides of every branch, so each layer gets specialized code. Otherwise
+// there is a loop over layer_count.
 layout(std140, binding = 0) uniform ShadeUniformBlock { ShadeUniforms shade; };
 layout(std430, binding = 0) readonly buffer Tables { uint page_tables[]; };
 layout(std430, binding = 1) readonly buffer Points { PalettePoint points[]; };
@@ -18,7 +19,8 @@ layout(binding = 2) uniform sampler2D palettes;
 layout(binding = 3) uniform usampler2DArray chunk_values[CHUNK_COUNT];
 layout(binding = 9) uniform usampler2DArray chunk_valid[CHUNK_COUNT];
 #endif
-// The first draw replaces what is there; later ones lie over it: alpha is how much of it stays to be seen.
+// The first draw replaces the content; later ones blend over it: alpha is the share of it that
+// stays visible.
 layout(location = 0) out vec4 picture;
 
 const uint kTypeU8 = 0u, kTypeU16 = 1u, kTypeU32 = 2u, kTypeI8 = 3u, kTypeI16 = 4u, kTypeI32 = 5u, kTypeF16 = 6u, kTypeF32 = 7u;
@@ -32,7 +34,7 @@ float number_of(uint bits, uint type) {
   return uintBitsToFloat(bits);
 }
 
-// Key that the generated colour of an unlisted value is made from: the whole number it holds, as 32 bits.
+// Key for the generated color of an unlisted value: its integer value, as 32 bits.
 uint key_of(uint bits, uint type) {
   if (type <= kTypeU32) return bits;
   if (type == kTypeI8) return uint(int(bits << 24) >> 24);
@@ -50,7 +52,7 @@ vec4 generated_color(uint key) {
   return vec4(0.85 - 0.85 * saturation * clamp(min(k, 4.0 - k), 0.0, 1.0), 1.0);
 }
 
-// What a value is drawn with.
+// The color and pattern of a value.
 struct Ink {
   vec4 color;
   uint pattern;
@@ -59,7 +61,7 @@ struct Ink {
 Ink ink_of(PalettePoint point) { return Ink(unpackUnorm4x8(point.color), point.pattern); }
 
 Ink step_ink(ShadeLayer layer, float value) {
-  uint low = 0u, high = layer.point_count;  // first point above the value lies in [low, high]
+  uint low = 0u, high = layer.point_count;  // first point above the value is in [low, high]
   while (low < high) {
     uint middle = (low + high) / 2u;
     if (uintBitsToFloat(points[layer.points + middle].key) <= value) low = middle + 1u;
@@ -92,7 +94,7 @@ Ink ink_of(ShadeLayer layer, uint mode, uint type, uint bits) {
 }
 
 #if CHUNK_COUNT > 0
-// x: bits, y: 1 when the texel holds a value.
+// x: bits, y: 1 if the texel has a value.
 uvec2 texel_of(ShadeLayer layer, uint units, uint q) {
   uint shift = 16u - layer.resolution_bits;
   uvec2 texel = uvec2(q & 0xffffu, q >> 16) >> shift;
@@ -112,7 +114,7 @@ uvec2 texel_of(ShadeLayer layer, uint units, uint q) {
   return found;
 }
 
-// How much of a pixel hatch or dots cover, 0…1.
+// The share of a pixel that hatch or dots cover, 0…1.
 float pattern_cover(uint pattern) {
   float spacing = unpackHalf2x16(pattern >> 16).x / shade.patterns.z;
   if (spacing <= 0.0) spacing = kPatternPixels * shade.patterns.w;
@@ -121,7 +123,7 @@ float pattern_cover(uint pattern) {
   vec2 along = vec2(cos(angle), sin(angle));
   vec2 from = gl_FragCoord.xy - shade.patterns.xy;
   vec2 place = vec2(dot(from, along), dot(from, vec2(-along.y, along.x))) / spacing;
-  vec2 middle = (place - floor(place) - 0.5) * spacing;  // in pixels from the middle of the cell
+  vec2 middle = (place - floor(place) - 0.5) * spacing;  // in pixels from the center of the cell
   float inside = (pattern & 3u) == kPatternDots ? kDotRadius * spacing - length(middle) : kHatchShare * 0.5 * spacing - abs(middle.y);
   return clamp(inside + 0.5, 0.0, 1.0);
 }
@@ -139,7 +141,7 @@ float outline_cover(ShadeLayer layer, uint units, uint bits) {
   return inside ? 0.0 : 1.0;
 }
 
-// `below` with the layer over it.
+// Blends the layer over `below`.
 vec4 add_layer(vec4 below, ShadeLayer layer, uint mode, uint type, uint units, uint patterned, uint q, float light) {
   uvec2 texel = texel_of(layer, units, q);
   if (texel.y == 0u) return below;
@@ -160,7 +162,7 @@ void main() {
   vec4 color = vec4(shade.first_pass != 0u ? surface.rgb : vec3(0.0), 1.0);
 #if CHUNK_COUNT > 0
   uint q = texelFetch(surface_uv, pixel, 0).r;
-  if (q != kBackground) {  // not the inside of a solid that is cut open
+  if (q != kBackground) {  // not the inside of a cut solid
 #ifdef LAYERS
 #define SHADE_LAYER(index, mode, type, units, patterned) \
   color = add_layer(color, layers[index], mode, type, units, patterned, q, surface.a);

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Run once by PostgreSQL's image when its folder is empty: Strata's role, which is no superuser, and the database that is its own.
+# PostgreSQL's image runs this once, if its folder is empty: creates Strata's role, which is no
+# superuser, and the database that it owns.
 set -euo pipefail
 psql --username "${POSTGRES_USER:-postgres}" --dbname postgres --no-psqlrc --quiet --set ON_ERROR_STOP=1 <<'SQL'
 \getenv password STRATA_DATABASE_PASSWORD

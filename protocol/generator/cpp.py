@@ -33,7 +33,7 @@ def with_note(line: str, note: str | None) -> str:
 class Writer:
     def __init__(self, protocol: Protocol):
         self.protocol = protocol
-        self.enums: dict[str, list[str]] = {}  # those inside structs, by C++ name, in order
+        self.enums: dict[str, list[str]] = {}  # enums inside structs, by C++ name, in order
         self.order = protocol.in_order()
 
     # --- types
@@ -124,7 +124,7 @@ class Writer:
             type_ = self.protocol.definitions[type_.name].type
         return type_
 
-    # --- which structs hold cameras, whose matrices are checked after reading
+    # --- structs with cameras, whose matrices are checked after reading
 
     def has_camera(self, name: str) -> bool:
         definition = self.protocol.definitions[name]

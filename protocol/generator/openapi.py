@@ -21,8 +21,8 @@ def point_to_components(node):
     return [point_to_components(value) for value in node] if isinstance(node, list) else node
 
 
-# What any call may be answered with, whatever it asks: the description of openapi.yaml says why.
-# Beside these 415 where JSON is taken, and 406 where something is read.
+# Answers that every call may have: the description of openapi.yaml gives the reasons.
+# In addition, calls with a JSON body may have 415, and reads 406.
 OF_ANY_CALL = {
     "421": "UnknownHost",
     "429": "TooFast",
@@ -48,8 +48,8 @@ def add_common_answers(document) -> None:
             operation["responses"] = dict(sorted(operation["responses"].items()))
 
 
-# Reads whose answers have no ETag: what is told once or as it happens, what must not be kept, and
-# what has the version of a record for If-Match but tells more.
+# Reads whose answers have no ETag: answers that are given once or as events happen, answers that
+# must not be stored, and answers with the version of a record for If-Match but with more content.
 WITHOUT_ANSWER_ETAG = (
     "/login",
     "/live",

@@ -5,7 +5,7 @@ import json
 import pathlib
 from dataclasses import dataclass, field
 
-# Order matters only for the reader of the generated files: common parts come first.
+# The order affects only the generated files: common parts come first.
 FILES = ["common", "client", "server", "http"]
 MAX_INT32 = 2**31 - 1
 
@@ -70,7 +70,7 @@ class Protocol:
             for name, schema in source["definitions"].items():
                 if name in self.schemas:
                     raise SchemaError(f"{file}: {name} is defined twice")
-                self.schemas[name] = localise(schema)
+                self.schemas[name] = localize(schema)
         for file, source in sources.items():
             for name in source["definitions"]:
                 schema = self.schemas[name]
@@ -148,7 +148,7 @@ class Protocol:
             return Type("union", values=names)
         if [choice.get("type") for choice in choices] == ["integer", "string"]:
             return Type("scalar_union")
-        # for definitions with `x-cpp-type`: values as they are
+        # for definitions with `x-cpp-type`: unchanged values
         if all("type" in choice for choice in choices):
             return Type(
                 "any",
@@ -212,13 +212,13 @@ class Protocol:
         return list(done.values())
 
 
-def localise(schema):
+def localize(schema):
     """References to other files become references inside the bundle."""
     if isinstance(schema, dict):
         return {
-            k: ("#" + v.split("#")[1] if k == "$ref" else localise(v)) for k, v in schema.items()
+            k: ("#" + v.split("#")[1] if k == "$ref" else localize(v)) for k, v in schema.items()
         }
-    return [localise(v) for v in schema] if isinstance(schema, list) else schema
+    return [localize(v) for v in schema] if isinstance(schema, list) else schema
 
 
 def camel(name: str) -> str:

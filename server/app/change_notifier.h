@@ -6,11 +6,11 @@
 
 namespace strata::app {
 
-// Tells connected users what a use case has changed. Thread-safe.
+// Notifies connected users of the changes of a use case. Thread-safe.
 class ChangeNotifier {
  public:
   virtual ~ChangeNotifier() = default;
-  // `user`: who changed the records.
+  // `user`: the author of the change.
   virtual void records_changed(const store::TableChange& change, const std::string& user) const = 0;
 };
 

@@ -12,7 +12,7 @@ namespace strata::app {
 class ChangeNotifier;
 struct EditCounters;
 
-// What use cases work with. All of it outlives them. Who uses a part includes its header.
+// The parts that use cases need; all outlive them. A file that uses a part includes its header.
 struct Services {
   store::Store& store;
   room::Rooms& rooms;

@@ -22,7 +22,7 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-// The label of a language, or of the one that it is a kind of; null: there is none.
+// Returns the label in a language or its base language; null if there is no label.
 const std::string* label_of(const std::optional<protocol::Labels>& labels,
                             const std::optional<std::string>& language) {
   if (!labels || !language) return nullptr;
@@ -39,27 +39,27 @@ Result<TermList> terms_of(const std::vector<protocol::TemplateTerm>& terms,
   list.rows = terms.size();
   list.columns = {"code", "parent", "label", "definition", "color", "pattern"};
   std::set<std::string> codes;
-  for (const protocol::TemplateTerm& told : terms) {
+  for (const protocol::TemplateTerm& template_term : terms) {
     Term term;
-    term.code = told.code;
-    term.parent = told.parent.value_or("");
-    term.label = name_in(told.label, told.labels, language);
-    for (const auto& [tag, label] : labels_with(told.label, told.labels)) {
+    term.code = template_term.code;
+    term.parent = template_term.parent.value_or("");
+    term.label = name_in(template_term.label, template_term.labels, language);
+    for (const auto& [tag, label] : labels_with(template_term.label, template_term.labels)) {
       const std::string known = in_lower_case(tag);
       list.columns.insert(label_slug(known));
       term.labels[known] = label;
     }
-    term.definition = told.definition;
-    term.color = told.color.value_or("");
-    if (told.pattern) term.pattern = protocol::name(*told.pattern);
+    term.definition = template_term.definition;
+    term.color = template_term.color.value_or("");
+    if (template_term.pattern) term.pattern = protocol::name(*template_term.pattern);
     STRATA_TRY(check_term(term));
     if (!codes.insert(term.code).second)
-      return fail(ErrorCode::invalid, "Code twice",
-                  "The code " + term.code + " stands there twice.");
-    // Those below come later, so that there can be no circle.
+      return fail(ErrorCode::invalid, "Duplicate code",
+                  "The code " + term.code + " appears twice.");
+    // A term follows its parent, so cycles are impossible.
     if (!term.parent.empty() && !codes.contains(term.parent))
-      return fail(ErrorCode::invalid, "No such parent",
-                  term.code + " is below " + term.parent + ", which does not stand before it.");
+      return fail(ErrorCode::invalid, "Parent not found",
+                  term.code + " is below " + term.parent + ", which must come before it.");
     list.terms.push_back(std::move(term));
   }
   return list;
@@ -69,22 +69,22 @@ std::string slug_of_column(const protocol::ColumnCreate& column) {
   return column.slug.value_or(make_slug(column.name));
 }
 
-Result<Column> column_of(const protocol::ColumnCreate& told,
+Result<Column> column_of(const protocol::ColumnCreate& definition,
                          const std::optional<std::string>& language) {
   Column column;
-  column.name = name_in(told.name, told.labels, language);
-  column.slug = slug_of_column(told);
-  column.labels = labels_with(told.name, told.labels);
-  column.kind = *parse_column_kind(protocol::name(told.kind));
-  column.unit = told.unit;
-  column.required = told.required;
-  column.unique = told.unique;
-  if (told.default_value) column.default_value = *told.default_value;
-  column.comment = told.comment;
-  if (told.choices) column.choices = *told.choices;
-  column.minimum = told.minimum;
-  column.maximum = told.maximum;
-  if (told.target) column.target = kOwnTable;  // until it is known which
+  column.name = name_in(definition.name, definition.labels, language);
+  column.slug = slug_of_column(definition);
+  column.labels = labels_with(definition.name, definition.labels);
+  column.kind = *parse_column_kind(protocol::name(definition.kind));
+  column.unit = definition.unit;
+  column.required = definition.required;
+  column.unique = definition.unique;
+  if (definition.default_value) column.default_value = *definition.default_value;
+  column.comment = definition.comment;
+  if (definition.choices) column.choices = *definition.choices;
+  column.minimum = definition.minimum;
+  column.maximum = definition.maximum;
+  if (definition.target) column.target = kOwnTable;  // placeholder until the table is resolved
   STRATA_TRY(check_column(column));
   return column;
 }
@@ -95,14 +95,14 @@ Result<protocol::Template> read_template(const std::filesystem::path& file) {
   auto read = STRATA_TRY(protocol::parse<protocol::Template>(text));
   read.slug = file.stem().string();
   if (make_slug(*read.slug) != *read.slug)
-    return fail(ErrorCode::invalid, "Bad name",
-                "Its name must be of lower-case letters, digits and hyphens.");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "Its name must consist of lower-case letters, digits and hyphens.");
   STRATA_TRY(new_tables(read, 1, {}));
   for (const protocol::TemplateLayer& layer : read.layers)
     if (std::none_of(read.tables.begin(), read.tables.end(),
                      [&](const auto& table) { return table.slug == layer.table; }))
-      return fail(ErrorCode::invalid, "No such table",
-                  "The layer " + layer.name + " is of a table that is not there.");
+      return fail(ErrorCode::invalid, "Table not found",
+                  "The layer " + layer.name + " needs a table that the template does not contain.");
   return read;
 }
 
@@ -152,21 +152,22 @@ Labels labels_with(const std::string& name, const std::optional<protocol::Labels
 Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, ProjectId project_id,
                                                 const std::optional<std::string>& language) {
   std::vector<store::NewTable> tables;
-  for (const protocol::TemplateTable& told : of.tables) {
+  for (const protocol::TemplateTable& template_table : of.tables) {
     const auto refuse = [&](const Error& problem) {
-      return fail(problem.code, problem.title, told.slug + ": " + problem.detail, problem.field);
+      return fail(problem.code, problem.title, template_table.slug + ": " + problem.detail,
+                  problem.field);
     };
-    if (told.terms.has_value() == told.columns.has_value())
+    if (template_table.terms.has_value() == template_table.columns.has_value())
       return refuse({ErrorCode::invalid, "Terms or columns",
-                     "A table has either `terms` or `columns`.", "tables"});
+                     "A table must have either `terms` or `columns`, but not both.", "tables"});
     store::NewTable made;
     made.table.project_id = project_id;
-    made.table.name = name_in(told.name, told.labels, language);
-    made.table.slug = told.slug;
-    made.table.labels = labels_with(told.name, told.labels);
-    made.table.description = told.description;
-    if (told.terms) {
-      auto terms = terms_of(*told.terms, language);
+    made.table.name = name_in(template_table.name, template_table.labels, language);
+    made.table.slug = template_table.slug;
+    made.table.labels = labels_with(template_table.name, template_table.labels);
+    made.table.description = template_table.description;
+    if (template_table.terms) {
+      auto terms = terms_of(*template_table.terms, language);
       if (!terms) return refuse(terms.error());
       std::vector<std::string> languages;
       for (const std::string& slug : terms->columns)
@@ -175,20 +176,22 @@ Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, Pr
       made.terms = std::move(*terms);
     } else {
       std::set<std::string> slugs;
-      for (const protocol::ColumnCreate& column : *told.columns) {
+      for (const protocol::ColumnCreate& column : *template_table.columns) {
         auto fits = column_of(column, language);
         if (!fits) return refuse(fits.error());
         if (!slugs.insert(fits->slug).second)
-          return refuse(
-              {ErrorCode::invalid, "Slug twice", "Two columns are " + fits->slug + ".", {}});
-        if (column.target && protocol::to_ref(*column.target) != told.slug) {
+          return refuse({ErrorCode::invalid,
+                         "Duplicate slug",
+                         "Two columns have the slug " + fits->slug + ".",
+                         {}});
+        if (column.target && protocol::to_ref(*column.target) != template_table.slug) {
           const auto place = std::find_if(
               of.tables.begin(), of.tables.begin() + static_cast<std::ptrdiff_t>(tables.size()),
               [&](const auto& other) { return other.slug == protocol::to_ref(*column.target); });
           if (place == of.tables.begin() + static_cast<std::ptrdiff_t>(tables.size()))
             return refuse({ErrorCode::invalid,
-                           "No such table",
-                           column.name + " names records of a table that does not stand before it.",
+                           "Table not found",
+                           column.name + " refers to a table that must come before it.",
                            {}});
           made.targets[made.table.columns.size()] =
               static_cast<std::size_t>(place - of.tables.begin());

@@ -11,32 +11,30 @@
 
 namespace strata::app {
 
-// The templates that come with the server: `<slug>.json` in a folder, as the protocol's Template.
-// Read once, at start.
+// The templates that are installed with the server: `<slug>.json` in a folder, as the protocol's
+// Template. Read once at start.
 class TemplateRegistry {
  public:
-  // Refused (500), with the file's name: what is no Template, terms that cannot be in a list,
-  // columns and layers of tables that it does not have. Without a folder (empty path) there are
-  // none.
+  // Refuses (500), with the file's name: an invalid Template, invalid lists of terms, and columns
+  // and layers of missing tables. An empty path gives no templates.
   static Result<TemplateRegistry> load(const std::filesystem::path& folder);
 
   const std::vector<protocol::Template>& all() const { return templates_; }  // by name
-  const protocol::Template* find(const std::string& slug) const;             // null: there is none
+  const protocol::Template* find(const std::string& slug) const;             // null: not found
 
  private:
   std::vector<protocol::Template> templates_;
 };
 
-// What a thing of a template is called in a language ("es", "es-MX"), otherwise by its English
-// name.
+// Returns an element's label in a language ("es", "es-MX"), otherwise its English name.
 std::string name_in(const std::string& name, const std::optional<protocol::Labels>& labels,
                     const std::optional<std::string>& language);
 
-// All that a thing of a template is called, the English name among them.
+// Returns all labels of an element, including the English name.
 Labels labels_with(const std::string& name, const std::optional<protocol::Labels>& labels);
 
-// The template's tables as the store makes them, in a language. Slugs stay what they are in
-// English, so that scripts work in any. Refused: what load() refuses.
+// Returns the template's tables for the store, in a language. Slugs are always English, so that
+// scripts work in every language. Refuses as load() does.
 Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, ProjectId project_id,
                                                 const std::optional<std::string>& language);
 

@@ -6,7 +6,7 @@ namespace strata::app {
 namespace {
 
 constexpr std::chrono::hours kBetweenLooks{1};
-constexpr std::chrono::minutes kAfterFailure{1};  // the database may be back by then
+constexpr std::chrono::minutes kAfterFailure{1};  // the database may be reachable again by then
 
 }  // namespace
 
@@ -47,7 +47,8 @@ void TrashPurger::run() {
     while (some && *some && !is_stopping()) some = trash_.erase_some();
     pause = some ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
     if (!some && !is_stopping())
-      log::warning("the Bin could not be emptied, trying again: " + some.error().detail);
+      log::warning("the server could not empty the Trash and will try again: " +
+                   some.error().detail);
   }
 }
 

@@ -9,15 +9,14 @@
 
 namespace strata::app {
 
-// Erases what has been in the Trash for long enough, at start and every hour, and at once what
-// people erase, in small steps that nobody waits for. What is left when the server ends goes on at
-// its next start.
+// Erases the entries of the trash that have expired, at start and every hour, and at once those
+// that people erase, in small steps. When the server stops, the rest waits for its next start.
 class TrashPurger {
  public:
   TrashPurger(store::Trash& trash, std::chrono::days keep);  // the Trash must outlive it
   ~TrashPurger() { stop(); }
-  void check_now();  // something is there to be erased; does not wait
-  void stop();       // waits for the step that is under way
+  void check_now();  // call when entries are to be erased; does not wait
+  void stop();       // waits for the current step
 
  private:
   void run();

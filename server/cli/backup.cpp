@@ -1,4 +1,4 @@
-// `strata backup` and `strata restore`: a whole site into a folder and back.
+// `strata backup` and `strata restore`: copy a whole site into a folder and back.
 #include <iostream>
 
 #include "cli/commands.h"
@@ -20,7 +20,7 @@ struct BackupOptions {
 };
 
 std::string summary(const store::BackupFacts& facts) {
-  // `before`: what the table was called in older backups.
+  // `before`: the table's name in older backups.
   const auto count = [&](const char* table, const char* what, const char* before = "") {
     const auto rows = facts.rows_of(table) + facts.rows_of(before);
     return std::to_string(rows) + " " + what + (rows == 1 ? "" : "s");
@@ -32,8 +32,7 @@ std::string summary(const store::BackupFacts& facts) {
          std::to_string(facts.schema_version) + ", of " + facts.made;
 }
 
-// Where the data are, without changing them: a server may be using them, of this version or
-// another.
+// Finds the database without changing it: a server of this or another version may be using it.
 struct Source {
   std::unique_ptr<store::Cluster> cluster;
   std::string dsn;
@@ -65,19 +64,19 @@ int backup(const BackupOptions& options) {
   return 0;
 }
 
-// Beside its place first, so that a restore which is cut short leaves no half database where a
-// server would start on it.
+// Restores into a temporary folder first, so that an interrupted restore leaves no partial database
+// in the place where a server would start.
 Result<void> restore_into_folder(const BackupOptions& options, const store::BackupFacts& facts,
                                  Progress& progress) {
   const fs::path data = fs::absolute(options.data.data), place = data / "postgres",
                  beside = data / "restoring";
   std::error_code error;
   if (fs::exists(place, error))
-    return fail(ErrorCode::conflict, "Data are there",
+    return fail(ErrorCode::conflict, "Data folder not empty",
                 data.string() +
                     " holds a site already, which stays as it is. Name a new folder with --data.",
                 "--data");
-  fs::remove_all(beside, error);  // of one that was killed
+  fs::remove_all(beside, error);  // left by a killed restore
   const auto restored = [&]() -> Result<void> {
     auto cluster = STRATA_TRY(store::Cluster::start(beside));
     return store::restore_backup(options.folder, facts, cluster->dsn(), progress);
@@ -128,22 +127,25 @@ int restore(const BackupOptions& options) {
 
 Command add_backup(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "backup", "Write the whole site into a folder, also while its server runs");
+      "backup", "Back up the whole site into a folder; the server can keep running");
   auto options = std::make_shared<BackupOptions>();
   add_data_options(*command, options->data);
-  command->add_option("folder", options->folder, "Folder to make, e.g. /backups/2026-11-21")
+  command
+      ->add_option("folder", options->folder,
+                   "New folder for the backup, for example /backups/2026-11-21")
       ->required();
   return [options] { return backup(*options); };
 }
 
 Command add_restore(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "restore", "Bring a backup back into a new data folder or an empty database");
+  auto* command =
+      app.add_subcommand("restore", "Restore a backup into a new data folder or an empty database");
   auto options = std::make_shared<BackupOptions>();
   add_data_options(*command, options->data);
-  command->add_option("folder", options->folder, "Folder that `strata backup` has written")
+  command->add_option("folder", options->folder, "Folder of a backup made by `strata backup`")
       ->required();
-  command->add_flag("--check", options->check_only, "Only tell whether the backup is whole");
+  command->add_flag("--check", options->check_only,
+                    "Check that the backup is complete; restore nothing");
   return [options] { return restore(*options); };
 }
 

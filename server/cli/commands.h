@@ -5,8 +5,8 @@
 
 namespace strata::cli {
 
-// Each adds its subcommand; the returned function runs it after parsing and gives the exit code:
-// 0 done, 1 failed (reason on stderr). Wrong usage is CLI11's affair (exit 2 by main).
+// Each function adds its subcommand; the returned function runs it after parsing and returns the
+// exit code: 0 done, 1 failed (reason on stderr). CLI11 reports wrong usage (exit 2 by main).
 using Command = std::function<int()>;
 Command add_serve(CLI::App& app);
 Command add_import(CLI::App& app);

@@ -10,12 +10,12 @@
 namespace strata::cli {
 
 Command add_demo(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("demo", "Make the demo project: a generated pot with two painted layers");
+  auto* command = app.add_subcommand(
+      "demo", "Create the demo project: a generated pot with two painted layers");
   auto options = std::make_shared<DataOptions>();
   add_data_options(*command, *options);
   auto if_empty = std::make_shared<bool>(false);
-  command->add_flag("--if-empty", *if_empty, "Only where there is no model yet");
+  command->add_flag("--if-empty", *if_empty, "Only if the site has no model yet");
   return [options, if_empty] {
     auto database = open_database(*options);
     if (!database) return report(database.error());

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kGiB = 1024.0 * 1024 * 1024;
 
-// One line a finding; advice is set off by an arrow.
+// Prints one line per finding, with advice after an arrow.
 class Report {
  public:
   void good(const std::string& what, const std::string& value) { line("ok  ", what, value); }
@@ -57,7 +57,7 @@ void check_gpu(Report& report) {
   if (info.software)
     report.warn(
         "Renderer", info.renderer + " (software)",
-        "Works, with the processor doing the drawing. A GPU with an EGL driver makes large models fluent.");
+        "Strata works, but the processor draws the pictures. Large models need a GPU with an EGL driver.");
   else
     report.good("Renderer", info.renderer + " (hardware)");
   report.good("Largest texture", std::to_string(info.max_texture_size) + ", array layers " +
@@ -91,7 +91,7 @@ void check_connection(Report& report, const std::string& dsn, const std::string&
   report.good("Database size", gib(double(state->bytes)));
 }
 
-// Only looks: nothing is made, started or migrated, and a server that runs is not disturbed.
+// Reads only: makes, starts and migrates nothing, and does not disturb a running server.
 void check_database(Report& report, const DataOptions& options) {
   if (!options.database.empty()) return check_connection(report, options.database, "external");
   const auto state = store::Cluster::inspect(options.data);
@@ -108,8 +108,9 @@ void check_machine(Report& report, const std::filesystem::path& data) {
   if (statvfs(std::filesystem::exists(data) ? data.c_str() : ".", &disk) == 0) {
     const double free = double(disk.f_bavail) * double(disk.f_frsize);
     if (free < 2 * kGiB)
-      report.warn("Disk", gib(free) + " free",
-                  "Every edit is kept: make room, or name a larger disk with --data.");
+      report.warn(
+          "Disk", gib(free) + " free",
+          "Strata stores every edit: free some space, or choose a larger disk with --data.");
     else
       report.good("Disk", gib(free) + " free");
   }
@@ -121,7 +122,7 @@ void check_machine(Report& report, const std::filesystem::path& data) {
     report.good("Memory", gib(memory));
   const unsigned cores = std::thread::hardware_concurrency();
   if (cores < 2)
-    report.warn("Processor", "1 core", "Drawing and encoding want a core each: use two or more.");
+    report.warn("Processor", "1 core", "Drawing and encoding need a core each: use two or more.");
   else
     report.good("Processor", std::to_string(cores) + " cores");
   const auto page = install_dirs().web_client / "index.html";
@@ -136,7 +137,7 @@ void check_machine(Report& report, const std::filesystem::path& data) {
 
 Command add_doctor(CLI::App& app) {
   auto* command =
-      app.add_subcommand("doctor", "What graphics, PostgreSQL and the machine can do, with advice");
+      app.add_subcommand("doctor", "Check graphics, PostgreSQL and the machine, and give advice");
   auto options = std::make_shared<DataOptions>();
   add_data_options(*command, *options);
   return [options] {

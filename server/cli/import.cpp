@@ -28,8 +28,8 @@ Result<std::string> import_locally(store::Store& store, const jobs::ImportReques
   return to_json(model, project.slug).dump(2);
 }
 
-// One list of files a model. The files that a mesh names come with it by themselves; others that
-// are given belong to the one mesh (or archive) that is given with them.
+// Returns one list of files per model, with the files that each mesh names. Other given files
+// belong to the only mesh (or archive) of the command.
 Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
     const std::vector<std::string>& paths) {
   std::vector<std::vector<jobs::ImportFile>> scans;
@@ -53,9 +53,9 @@ Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
     if (std::ranges::any_of(scans, has)) continue;
     if (scans.size() != 1)
       return fail(
-          ErrorCode::malformed, "Whose file is this?",
+          ErrorCode::malformed, "File without a scan",
           path.string() +
-              " is named by none of the scans. Import the scan that it belongs to on its own.");
+              " belongs to none of the scans. Import the scan that uses it in a separate command.");
     scans[0].push_back({path.filename().string(), path});
   }
   return scans;
@@ -93,21 +93,21 @@ int run(const ImportOptions& options) {
 }  // namespace
 
 Command add_import(CLI::App& app) {
-  auto* command = app.add_subcommand("import", "Bring scans in; the models as JSON on stdout");
+  auto* command = app.add_subcommand("import", "Import scans, and print the models as JSON");
   auto options = std::make_shared<ImportOptions>();
   add_data_options(*command, options->data);
   command
       ->add_option(
           "files", options->files,
-          "Scans: PLY, OBJ, STL, glTF, GLB or a zip; material and picture files that they name come with them")
+          "Scans: PLY, OBJ, STL, glTF, GLB or zip, and the material and picture files that they use")
       ->required();
   command->add_option("--name", options->request.name,
                       "Name of the model (default: the file's name)");
-  command->add_option("--project", options->request.project, "Project it belongs to")
+  command->add_option("--project", options->request.project, "Project of the model")
       ->capture_default_str();
   command->add_option("--unit", options->unit, "Unit of the coordinates")
       ->check(CLI::IsMember({"mm", "cm", "m"}));
-  command->add_option("--up", options->request.up, "Axis that points up, or its opposite: --up=-y")
+  command->add_option("--up", options->request.up, "Axis that points up, for example --up=-y")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
   command->add_option("--crs", options->request.crs, "Coordinate system, EPSG:n");
   command
@@ -116,12 +116,13 @@ Command add_import(CLI::App& app) {
   command
       ->add_option(
           "--weld", options->request.weld_distance,
-          "Join vertices that lie nearer than this, in the file's units (equal ones always are)")
+          "Join vertices closer than this distance, in the file's units; equal vertices are always joined")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--strict", options->request.strict, "Refuse a file that needs repair");
-  command->add_option("--server", options->server, "A running server: http://host:port")
+  command
+      ->add_option("--server", options->server, "Import into this running server: http://host:port")
       ->envname("STRATA_SERVER");
-  command->add_option("--token", options->token, "Token for --server")
+  command->add_option("--token", options->token, "Token for the server of --server")
       ->envname("STRATA_OWNER_TOKEN");
   return [options] { return run(*options); };
 }

@@ -4,8 +4,8 @@
 
 namespace strata::cli {
 
-// Where the files that come with the program lie: beside the binary in an installed tree
-// (`share/strata`), in the source tree otherwise; STRATA_SHARE names another place.
+// The folders of the files that are installed with the program: next to the binary in an installed
+// tree (`share/strata`), in the source tree otherwise; STRATA_SHARE overrides both.
 struct InstallDirs {
   std::filesystem::path shaders, migrations, web_client, protocol, templates;
 };

@@ -1,5 +1,5 @@
-// `strata kiosk`: links for screens that show a tour, from the server's own machine, also while a
-// server runs there.
+// `strata kiosk`: manages the links of screens that show a tour, on the server's machine, also
+// while the server runs.
 #include <iomanip>
 #include <iostream>
 
@@ -15,14 +15,14 @@ struct KioskOptions {
   DataOptions data;
   std::string tour, name, url = "http://127.0.0.1:8080";
   std::int64_t kiosk = 0;
-  int days = 0;  // 0: for ever
+  int days = 0;  // 0: no expiry
 };
 
 Result<void> create(store::Store& store, const KioskOptions& options) {
   const auto slash = options.tour.find('/');
   if (slash == std::string::npos)
     return fail(ErrorCode::malformed, "No tour",
-                "A tour is named with its model: MODEL/TOUR, as in its address.", "tour");
+                "Enter the tour with its model: MODEL/TOUR, as in its address.", "tour");
   const auto model = STRATA_TRY(store.models().find(options.tour.substr(0, slash)));
   const auto tour = STRATA_TRY(store.tours().find(model.id, options.tour.substr(slash + 1)));
   std::optional<std::chrono::seconds> lifetime;
@@ -58,22 +58,24 @@ Result<void> reload(store::Store& store, const KioskOptions& options) {
 }  // namespace
 
 Command add_kiosk(CLI::App& app) {
-  auto* parent = app.add_subcommand("kiosk", "Links for screens that show a tour");
+  auto* parent = app.add_subcommand("kiosk", "Manage the links of kiosks");
   auto options = std::make_shared<KioskOptions>();
-  auto* made = add_subcommand(*parent, options, "create", "A new link, printed this once");
+  auto* made = add_subcommand(*parent, options, "create", "Create a link; it is printed only once");
   made->add_option("tour", options->tour, "MODEL/TOUR, by slug or id")->required();
-  made->add_option("--name", options->name, "Where the screen stands")->required();
-  made->add_option("--days", options->days, "Until it expires (never)")->check(CLI::Range(1, 3650));
+  made->add_option("--name", options->name, "Name of the place of the screen")->required();
+  made->add_option("--days", options->days, "Days until it expires (default: never)")
+      ->check(CLI::Range(1, 3650));
   made->add_option("--url", options->url, "Address of the server, for the link")
       ->capture_default_str();
-  add_subcommand(*parent, options, "list", "All links, and when their screens were seen last");
+  add_subcommand(*parent, options, "list",
+                 "List all links, with the last contact of their screens");
   const auto add_of_one = [&](const char* name, const char* what) {
     add_subcommand(*parent, options, name, what)
-        ->add_option("id", options->kiosk, "As `list` tells it")
+        ->add_option("id", options->kiosk, "Id from `list`")
         ->required();
   };
-  add_of_one("revoke", "Makes a link worthless");
-  add_of_one("reload", "Asks a screen to load its page anew");
+  add_of_one("revoke", "Revoke a link");
+  add_of_one("reload", "Reload the page of a screen");
   return choosing<KioskOptions>(
       parent, options,
       {{"create", create}, {"list", list}, {"revoke", revoke}, {"reload", reload}});

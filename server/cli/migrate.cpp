@@ -6,7 +6,7 @@
 namespace strata::cli {
 
 Command add_migrate(CLI::App& app) {
-  auto* command = app.add_subcommand("migrate", "Bring the database to this version's schema");
+  auto* command = app.add_subcommand("migrate", "Update the database schema to this version");
   auto options = std::make_shared<DataOptions>();
   add_data_options(*command, *options);
   return [options] {

@@ -10,7 +10,7 @@ namespace strata::cli {
 
 void add_data_options(CLI::App& command, DataOptions& options) {
   command
-      .add_option("--data", options.data, "Folder of the private database and of uploads under way")
+      .add_option("--data", options.data, "Folder of the private database and of running uploads")
       ->envname("STRATA_DATA")
       ->capture_default_str();
   command
@@ -52,7 +52,7 @@ Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& op
                 "There is no database in " + std::filesystem::absolute(options.data).string() +
                     ". Name the server's folder with --data, or start the server once.");
   if (!state.running) return open_database(options);
-  // The server's database is brought to another version by its own start, not under its feet.
+  // Only the server's own start migrates its database, never another program while it runs.
   const auto schema = STRATA_TRY(store::inspect_database(state.dsn, install_dirs().migrations));
   if (schema.schema_version != schema.known_version)
     return fail(ErrorCode::conflict, "Another version",

@@ -11,7 +11,7 @@
 
 namespace strata::cli {
 
-// The options that name where data lives, and the database they lead to.
+// The options that name the data, and the database that they select.
 struct DataOptions {
   std::filesystem::path data = "data";
   std::string database;
@@ -21,11 +21,11 @@ void add_data_options(CLI::App& command, DataOptions& options);
 
 struct OpenDatabase {
   std::unique_ptr<store::Cluster> cluster;  // null with --database
-  std::unique_ptr<store::Store> store;      // goes before its cluster
+  std::unique_ptr<store::Store> store;      // destroyed before its cluster
   ~OpenDatabase() { store.reset(); }
 };
 Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options);
-// The same, also while a server runs on that data: beside it, on its database.
+// The same, but if a server runs on that data, connects to its database.
 Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& options);
 
 // "title: detail" on stderr; returns 1.

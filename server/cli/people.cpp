@@ -1,5 +1,5 @@
-// `strata user` and `strata token`: accounts from the server's own machine, also while a server
-// runs there.
+// `strata user` and `strata token`: manage accounts on the server's machine, also while the server
+// runs.
 #include <iomanip>
 #include <iostream>
 #include <iterator>
@@ -39,7 +39,7 @@ void add_password(CLI::App& command, const Options& options) {
       ->capture_default_str();
 }
 
-// From standard input; nothing where a link is wanted.
+// Reads the password from standard input; nothing if the user gets a link.
 Result<std::optional<std::string>> given_password(const PeopleOptions& options,
                                                   const std::string& name) {
   if (!options.password_stdin) return std::nullopt;
@@ -50,7 +50,7 @@ Result<std::optional<std::string>> given_password(const PeopleOptions& options,
   return password;
 }
 
-// By the password that is given, or by a link under which the person chooses one.
+// Sets the given password, or prints a link with which the person chooses one.
 Result<void> let_in(store::Store& store, const PeopleOptions& options, const store::Person& person,
                     const std::optional<std::string>& password) {
   if (password) {
@@ -67,7 +67,7 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
 }
 
 Result<void> add_person(store::Store& store, const PeopleOptions& options) {
-  // before there is anybody who would be left without
+  // read first, so that a failure leaves no account without a password
   const auto password = STRATA_TRY(given_password(options, options.name));
   const auto person = STRATA_TRY(store.accounts().create(
       options.name, options.full_name, parse_role(options.role).value_or(Role::annotator)));
@@ -105,7 +105,7 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
   return {};
 }
 
-// Changes of one who is there.
+// Returns work that changes an existing account.
 Work<PeopleOptions> changing(
     std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
   return [change = std::move(change)](store::Store& store,
@@ -119,7 +119,7 @@ Result<void> change(store::Store& store, const store::Person& person,
                     const store::PersonChange& change) {
   if (person.role == Role::owner)
     return fail(ErrorCode::conflict, "The owner",
-                "The owner stays the owner, and may always come in.");
+                "The owner keeps the role owner and cannot be disabled or deleted.");
   STRATA_TRY(store.accounts().update(person.id, change));
   return {};
 }
@@ -138,8 +138,10 @@ Result<void> set_role(store::Store& store, const PeopleOptions& options,
                       const store::Person& person) {
   if (!options.project.empty()) return set_role_in_project(store, options, person);
   if (options.role == "none")
-    return fail(ErrorCode::malformed, "No role", "Whoever is to see no project is a guest.",
-                "role");
+    return fail(
+        ErrorCode::malformed, "No role",
+        "`none` needs --project. For an account that sees no project, choose the role guest.",
+        "role");
   return change(store, person, {.full_name = {}, .role = parse_role(options.role), .disabled = {}});
 }
 
@@ -155,7 +157,7 @@ Result<void> remove_person(store::Store& store, const PeopleOptions&, const stor
   return store.accounts().remove(person.name);
 }
 
-// What somebody may do in a project: by their own role, by one there, and by those of their groups.
+// Returns a user's role in a project: the highest of the general, the project and the group roles.
 Result<Role> role_there(store::Store& store, const store::Person& person, ProjectId project) {
   Role role = person.role;
   const auto members = STRATA_TRY(store.members().of_project(project));
@@ -211,63 +213,63 @@ Result<void> revoke_token(store::Store& store, const PeopleOptions& options) {
 }  // namespace
 
 Command add_user(CLI::App& app) {
-  auto* parent = app.add_subcommand("user", "Accounts of this server");
+  auto* parent = app.add_subcommand("user", "Manage the accounts of this server");
   auto options = std::make_shared<PeopleOptions>();
   std::map<std::string, Work<PeopleOptions>> works;
   const auto add_named = [&](const char* name, const char* what, Work<PeopleOptions> work) {
     auto* command = add_subcommand(*parent, options, name, what);
-    command->add_option("name", options->name, "What the person signs in with")->required();
+    command->add_option("name", options->name, "User name")->required();
     works[name] = std::move(work);
     return command;
   };
-  auto* made = add_named("add", "A new account, and a link by which its person chooses a password",
-                         add_person);
-  add_role(*made, options, "What they may do (annotator)");
-  made->add_option("--full-name", options->full_name, "How the page calls them");
+  auto* made =
+      add_named("add", "Create an account, and print a link to choose its password", add_person);
+  add_role(*made, options, "Role (default: annotator)");
+  made->add_option("--full-name", options->full_name, "Full name, shown on the page");
   add_password(*made, options);
-  add_subcommand(*parent, options, "list", "Everybody with an account")
+  add_subcommand(*parent, options, "list", "List all accounts")
       ->add_option("--project", options->project,
-                   "Only those with a role in this project, and that role");
+                   "Only accounts with a role in this project, with that role");
   works["list"] = list_people;
-  auto* role = add_named("role", "What somebody may do", changing(set_role));
+  auto* role = add_named("role", "Change the role of an account", changing(set_role));
   role->add_option("role", options->role,
                    "guest, viewer, annotator, curator or administrator; in a project also none")
       ->required()
       ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator", "none"}));
   role->add_option("--project", options->project,
-                   "What they may do there, where that is more than everywhere");
-  add_password(
-      *add_named("password", "A new link to choose a password, or a new password", changing(renew)),
-      options);
-  add_named("disable", "Signs somebody out everywhere, and lets them in no more", disabling(true));
-  add_named("enable", "Lets somebody in again", disabling(false));
+                   "Role in this project, if it is higher than the role in all projects");
+  add_password(*add_named("password", "Print a link to choose a new password, or set a password",
+                          changing(renew)),
+               options);
+  add_named("disable", "Disable an account and end its sessions", disabling(true));
+  add_named("enable", "Enable a disabled account", disabling(false));
   add_named(
       "remove",
-      "Deletes somebody; what they did stays, under a name that tells nothing. Beside a running server: disable them a minute before, "
-      "or delete them on the page",
+      "Delete an account. Its edits stay, under a name without meaning. If a server runs, disable the account a minute "
+      "before, or delete it on the page",
       changing(remove_person));
   return choosing<PeopleOptions>(parent, options, std::move(works));
 }
 
 Command add_token(CLI::App& app) {
-  auto* parent = app.add_subcommand("token", "Tokens for scripts");
+  auto* parent = app.add_subcommand("token", "Manage tokens for scripts");
   auto options = std::make_shared<PeopleOptions>();
   options->user = "owner";
   const auto add_of = [&](const char* name, const char* what) {
     auto* command = add_subcommand(*parent, options, name, what);
-    command->add_option("--user", options->user, "Whose token")->capture_default_str();
+    command->add_option("--user", options->user, "User of the token")->capture_default_str();
     return command;
   };
-  auto* made = add_of("add", "A new token, printed this once");
-  made->add_option("name", options->name, "What it is for")->required();
-  add_role(*made, options, "At most what it may do (as its person)");
-  made->add_option("--project", options->project, "The only project that it is good in");
-  made->add_option("--days", options->days, "Until it expires")
+  auto* made = add_of("add", "Create a token; it is printed only once");
+  made->add_option("name", options->name, "Purpose of the token")->required();
+  add_role(*made, options, "Highest role of the token (default: the user's role)");
+  made->add_option("--project", options->project, "Limit the token to this project");
+  made->add_option("--days", options->days, "Days until it expires")
       ->check(CLI::Range(1, 3650))
       ->capture_default_str();
-  add_of("list", "Tokens of a person");
-  add_of("revoke", "Makes a token worthless")
-      ->add_option("id", options->token, "As `list` tells it")
+  add_of("list", "List the tokens of a user");
+  add_of("revoke", "Revoke a token")
+      ->add_option("id", options->token, "Id from `list`")
       ->required();
   return choosing<PeopleOptions>(
       parent, options, {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});

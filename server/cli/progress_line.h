@@ -13,8 +13,8 @@
 
 namespace strata::cli {
 
-// Shows a Progress on stderr while it lives: one line rewritten on a terminal, a line a step
-// elsewhere.
+// Shows a Progress on stderr as long as it exists: one rewritten line on a terminal, otherwise one
+// line per step.
 class ProgressLine {
  public:
   explicit ProgressLine(const Progress& progress)

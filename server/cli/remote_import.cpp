@@ -27,7 +27,7 @@ tl::unexpected<Error> not_strata(const std::string& what) {
           " is not what a Strata server answers. Is the address right, and is nothing in between?");
 }
 
-// The JSON object in a reply, with these members.
+// Returns the JSON object in a reply; checks that it has these members.
 Result<nlohmann::json> object_in(const Reply& reply, std::initializer_list<const char*> members) {
   auto json = nlohmann::json::parse(reply.body, nullptr, false);
   if (!json.is_object()) return not_strata("The answer");
@@ -43,7 +43,7 @@ std::string text_of(const nlohmann::json& object, const char* member) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-// As the server tells it; of what it does not tell, the status and what is known here.
+// Returns the server's problem; where members are missing, the HTTP status and the given texts.
 Error problem_of(const nlohmann::json& json, int status, const std::string& title,
                  const std::string& detail) {
   const auto code = protocol::code_of_problem_type(text_of(json, "type"));
@@ -59,8 +59,7 @@ size_t collect(char* data, size_t size, size_t count, void* body) {
   return size * count;
 }
 
-// The certificate of a server on this machine names it as others reach it, and nobody stands in
-// between.
+// A local server's certificate has its public name, and no network lies in between.
 bool is_this_machine(const std::string& base) {
   for (const char* host : {"https://127.0.0.1", "https://localhost", "https://[::1]"})
     if (base.starts_with(host)) {
@@ -78,7 +77,7 @@ class Client {
     headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
     curl_slist_append(headers_.get(), "Content-Type: application/octet-stream");
     curl_slist_append(headers_.get(), "Expect:");
-    // curl names the type
+    // curl sets the Content-Type
     form_headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
     curl_slist_append(form_headers_.get(), "Expect:");
   }
@@ -88,7 +87,7 @@ class Client {
     return perform(path, headers_.get());
   }
 
-  // Streams the files, one as the body, several as a form; progress is the share uploaded.
+  // Streams the files, one as the body, several as a form; reports the uploaded share.
   Result<Reply> post_files(const std::string& path, const std::vector<jobs::ImportFile>& files,
                            Progress& progress) {
     curl_easy_reset(curl_.get());

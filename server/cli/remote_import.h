@@ -7,8 +7,8 @@
 
 namespace strata::cli {
 
-// Uploads a file to a running server and follows its import job. Gives the model as the server's
-// JSON text.
+// Uploads a file to a running server and waits for its import job. Returns the model as the
+// server's JSON text.
 Result<std::string> import_remotely(const std::string& server_url, const std::string& token,
                                     const jobs::ImportRequest& request, Progress& progress);
 

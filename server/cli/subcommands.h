@@ -10,8 +10,8 @@
 #include "cli/commands.h"
 #include "cli/open_database.h"
 
-// Commands that have subcommands, each of which works on the database, also while a server runs
-// there. `Options` has the DataOptions `data`.
+// Commands with subcommands that work on the database, also while a server runs on it. `Options`
+// has the DataOptions `data`.
 namespace strata::cli {
 
 template <class Options>
@@ -25,7 +25,7 @@ CLI::App* add_subcommand(CLI::App& parent, const std::shared_ptr<Options>& optio
   return command;
 }
 
-// Runs the subcommand that was chosen.
+// Runs the chosen subcommand.
 template <class Options>
 Command choosing(CLI::App* parent, std::shared_ptr<Options> options,
                  std::map<std::string, Work<Options>> works) {

@@ -1,3 +1,3 @@
-// The compiled half of Boost.Asio (BOOST_ASIO_SEPARATE_COMPILATION), once for all rooms. Beast's
-// half is in net.
+// The compiled part of Boost.Asio (BOOST_ASIO_SEPARATE_COMPILATION), once for all modules. `net`
+// compiles the part of Beast.
 #include <boost/asio/impl/src.hpp>

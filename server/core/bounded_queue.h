@@ -8,8 +8,8 @@
 
 namespace strata {
 
-// A queue between threads with a bound. `push` refuses when full or closed: the caller names what
-// happens then.
+// A queue between threads with a limited size. `push` returns false if the queue is full or closed;
+// the caller handles that case.
 template <class T>
 class BoundedQueue {
  public:
@@ -22,7 +22,7 @@ class BoundedQueue {
     changed_.notify_one();
     return true;
   }
-  // Waits for an item; empty when the queue is closed and drained.
+  // Waits for an item; empty if the queue is closed and drained.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || !items_.empty(); });

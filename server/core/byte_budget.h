@@ -8,13 +8,13 @@
 
 namespace strata {
 
-// Bounds the memory that large answers and bodies hold together. One larger than the budget may
-// have it all. Thread-safe.
+// Limits the total memory of large answers and bodies. One that is larger than the budget can have
+// all of it. Thread-safe.
 class ByteBudget {
  public:
   explicit ByteBudget(std::uint64_t total) : total_(total) {}
 
-  // Held until the last copy goes; 503 where too much is held by others.
+  // Holds the bytes until the last copy is destroyed; 503 if others hold too much.
   Result<std::shared_ptr<const void>> take(std::uint64_t bytes) {
     std::uint64_t held = held_->load();
     do {

@@ -2,9 +2,9 @@
 
 namespace strata {
 
-// A sum of doubles that keeps what rounding takes from it (Neumaier 1974, with the branch-free step
-// of Knuth, TAOCP 2, 4.2.2): as good as one in twice the digits, whatever the sizes and the order
-// of what is added. Only of finite numbers.
+// A sum of doubles that compensates rounding errors (Neumaier 1974, with the branch-free step of
+// Knuth, TAOCP 2, 4.2.2): as precise as with twice the digits, for any sizes and order of the
+// numbers. Finite numbers only.
 class CompensatedSum {
  public:
   CompensatedSum(double value = 0) : sum_(value) {}

@@ -29,7 +29,7 @@ Sha256 sha256(std::span<const std::uint8_t> bytes);
 Sha256 sha256(std::string_view text);
 std::string sha256_hex(std::string_view text);
 
-// A UUID (version 8: hashed by SHA-256) that is the same for the same text: a caller's
+// Returns a UUID (version 8: hashed by SHA-256) that is the same for the same text: an
 // Idempotency-Key becomes the id of its edit.
 Uuid uuid_of_text(std::string_view text);
 

@@ -4,9 +4,9 @@
 
 namespace strata {
 
-// Long work and leaving viewers leave a gigabyte of small freed pieces in the allocator's lists,
-// which keeps them for the process; the system can use them. Takes tens of milliseconds a gigabyte,
-// in which other threads may wait for memory.
+// Returns freed memory to the system: after long work and after viewers leave, the allocator keeps
+// up to a gigabyte in small pieces. Takes tens of milliseconds per gigabyte, in which other threads
+// may wait for memory.
 inline void give_back_memory() { ::malloc_trim(0); }
 
 }  // namespace strata

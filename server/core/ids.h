@@ -8,17 +8,17 @@
 #include <string>
 #include <vector>
 
-// What rows are named by: one type for each kind of thing, so that a layer is never looked for
-// among the tables. Numbers become ids where they come in (a reference in an address, a message, a
-// row of the database) and are numbers again where they leave.
+// The ids of rows: one type per kind, so that an id of a layer is never used for a table. Numbers
+// are converted to ids at the input (a reference in an address, a message, a row of the database)
+// and back at the output.
 namespace strata {
 
 template <class Kind>
 class Id {
  public:
-  constexpr Id() = default;  // of nothing: no row has it
+  constexpr Id() = default;  // no row has this id
   constexpr explicit Id(std::int64_t number) : number_(number) {}
-  // a number that stands in the code
+  // a literal number in the code
   // NOLINTNEXTLINE(google-explicit-constructor, hicpp-explicit-conversions)
   consteval Id(int number) : number_(number) {}
 
@@ -40,7 +40,7 @@ class Id {
   std::int64_t number_ = 0;
 };
 
-// Of numbers from outside.
+// Converts numbers from outside.
 template <class Id>
 std::vector<Id> ids_of(std::span<const std::int64_t> numbers) {
   std::vector<Id> ids;
@@ -61,7 +61,7 @@ using PersonId = Id<struct PersonTag>;
 using GroupId = Id<struct GroupTag>;
 using KioskId = Id<struct KioskTag>;
 using NamedPartId = Id<struct NamedPartTag>;  // views and tours of a model
-using TokenId = Id<struct TokenTag>;          // sessions and the rest that signs somebody in
+using TokenId = Id<struct TokenTag>;          // sessions and other secrets for signing in
 using ToolId = Id<struct ToolTag>;
 using JobId = Id<struct JobTag>;
 

@@ -6,7 +6,7 @@ namespace strata::log {
 
 enum class Level { debug, info, warning, error };
 
-// One line on stderr with time and level. Log or propagate an error, never both.
+// Write one line to stderr with time and level. Log or propagate an error, never both.
 void set_level(Level level);
 void debug(std::string_view message);
 void info(std::string_view message);

@@ -43,7 +43,7 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path& file) {
   }
   const int error = errno;
   ::close(descriptor);
-  if (!regular) return unreadable("This is not a regular file.");
+  if (!regular) return unreadable("The path does not name a regular file.");
   if (status.st_size > 0 && !mapped.data_)
     return unreadable("The file cannot be read: " + std::string(std::strerror(error)) + ".");
   return mapped;

@@ -9,11 +9,11 @@
 
 namespace strata {
 
-// A file as read-only memory. The file must not shrink meanwhile: uploads and imports are finished
-// before they are read.
+// A file as read-only memory. The file must not shrink while it is mapped: uploads and imports are
+// complete before they are read.
 class MappedFile {
  public:
-  // An Error `invalid` that says why a file cannot be read. An empty file has no bytes.
+  // Error `invalid`: the reason why the file cannot be read. An empty file has no bytes.
   static Result<MappedFile> open(const std::filesystem::path& file);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;
@@ -22,8 +22,8 @@ class MappedFile {
   std::span<const std::uint8_t> bytes() const {
     return {static_cast<const std::uint8_t*>(data_), size_};
   }
-  // Lets go of the memory that holds this part of it, which is read from the file again when it is
-  // wanted: who goes through gigabytes once needs no memory for them.
+  // Releases the memory that holds this part; a later access reads it from the file again. A single
+  // pass through gigabytes thus needs little memory.
   void release(std::string_view part) const;
   std::string_view view() const { return {static_cast<const char*>(data_), size_}; }
 

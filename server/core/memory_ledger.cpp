@@ -24,7 +24,7 @@ MemoryLedger::Share& MemoryLedger::Share::operator=(Share&& other) noexcept {
 }
 
 void MemoryLedger::Share::recount(std::uint64_t bytes) {
-  ledger_->used_bytes_ += bytes - bytes_;  // modulo 2^64: also down
+  ledger_->used_bytes_ += bytes - bytes_;  // modulo 2^64: also decreases
   bytes_ = bytes;
 }
 
@@ -45,8 +45,8 @@ Result<MemoryLedger::Share> MemoryLedger::reserve(std::uint64_t bytes, std::stri
 
 Error MemoryLedger::used_up(std::uint64_t bytes, std::string_view what) const {
   return {ErrorCode::out_of_memory,
-          kind_ + " used up",
-          "The budget of " + mib(budget_bytes_) + " of " + kind_ + " is used up: " + mib(bytes) +
+          kind_ + " exhausted",
+          "The budget of " + mib(budget_bytes_) + " of " + kind_ + " is exhausted: " + mib(bytes) +
               " more are needed for " + std::string(what) + ", and " + mib(used_bytes_) +
               " are in use. Close models or layers, or start the " + "server with a larger " +
               option_ + ".",

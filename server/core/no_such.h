@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// The one wording for what does not exist, or is not shown to this person: "There is no layer
-// `cracks`." `ref` is the id or slug as it was given.
+// The standard message for an entity that does not exist or is not visible to the caller: "There is
+// no layer `cracks`." `ref` is the id or slug of the request.
 inline tl::unexpected<Error> no_such(std::string_view kind, const std::string& ref,
                                      std::string field = {}) {
   return fail(ErrorCode::not_found, "Not found",

@@ -2,7 +2,7 @@
 
 namespace strata {
 
-// One visitor of std::visit made of several lambdas, as cppreference has it.
+// Combines several lambdas to one visitor of std::visit, as on cppreference.
 template <class... Visitors>
 struct Overloaded : Visitors... {
   using Visitors::operator()...;

@@ -6,15 +6,15 @@
 namespace strata {
 
 // The inside of closed rings in a plane by the even-odd rule: a ring within a ring is a hole, and
-// what a ring goes round twice is outside. A point on an edge belongs to one of its sides. Asks
-// only the edges at a point's height.
+// an area that a ring encloses twice is outside. A point on an edge belongs to one of its sides.
+// Tests only the edges at the point's height.
 class PolygonArea {
  public:
-  // Rings are closed by joining their last point with the first. Coordinates are finite.
+  // Each ring is closed by an edge from its last point to the first. Coordinates are finite.
   explicit PolygonArea(const std::vector<std::vector<glm::dvec2>>& rings);
 
   bool contains(const glm::dvec2& point) const;
-  // of the box around all rings; above high() where there are none
+  // of the bounding box of all rings; above high() without rings
   glm::dvec2 low() const { return low_; }
   glm::dvec2 high() const { return high_; }
 
@@ -25,8 +25,8 @@ class PolygonArea {
   int row_of(double y) const;
 
   glm::dvec2 low_, high_;
-  std::vector<Edge> edges_;        // by rows: an edge stands in each row that it reaches into
-  std::vector<std::size_t> rows_;  // first edge of each, and the end
+  std::vector<Edge> edges_;        // by rows; each row has the edges that cross it
+  std::vector<std::size_t> rows_;  // index of each row's first edge, and the end
 };
 
 }  // namespace strata

@@ -10,12 +10,12 @@
 
 namespace strata {
 
-// Shared between a long piece of work and those who watch it. The worker calls `report` and stops
-// soon after `cancelled()` turns true by returning `cancelled_problem()`. Thread-safe.
+// Shared between a long task and its observers. The worker calls `report`, and when `cancelled()`
+// becomes true it soon stops by returning `cancelled_problem()`. Thread-safe.
 class Progress {
  public:
-  // What is reported from now on is a share of [from, to] of the whole: steps need not know where
-  // they stand in it.
+  // Maps later reports to the share [from, to] of the whole, so that a step does not depend on its
+  // place in the task.
   void begin_stage(double from, double to) {
     std::lock_guard lock(mutex_);
     from_ = from;
@@ -34,7 +34,7 @@ class Progress {
     std::lock_guard lock(mutex_);
     return message_;
   }
-  // Of the job that reports here, for what is kept of it; 0: no job.
+  // The reporting job, for the stored result; 0: no job.
   JobId job() const { return job_; }
   void set_job(JobId job) { job_ = job; }  // before the work begins
 

@@ -5,7 +5,7 @@
 
 namespace strata {
 
-// 32 random bytes in base64url without padding: 43 characters.
+// Returns 32 random bytes in base64url without padding: 43 characters.
 std::string random_token();
 
 // Takes the same time wherever the texts differ.

@@ -8,10 +8,10 @@
 
 namespace strata {
 
-// A file that was made for one user. It is removed with this object.
+// A file that was made for one user. The destructor deletes it.
 struct TemporaryFile {
   std::filesystem::path path;
-  std::string name, media_type;  // for the user who saves it
+  std::string name, media_type;  // for the user's download
   std::uint64_t bytes = 0;
   TemporaryFile() = default;
   explicit TemporaryFile(std::filesystem::path file) : path(std::move(file)) {}

@@ -10,14 +10,14 @@
 namespace strata {
 
 Uuid random_uuid() {
-  thread_local boost::uuids::random_generator generate;  // asks the system for each
+  thread_local boost::uuids::random_generator generate;  // reads system entropy on each call
   Uuid uuid;
   std::ranges::copy(generate(), uuid.bytes.begin());
   return uuid;
 }
 
 std::optional<Uuid> parse_uuid(std::string_view text) {
-  // Boost's reader takes other forms as well, and throws.
+  // Boost's parser accepts other forms, too, and throws.
   if (text.size() != 36) return std::nullopt;
   Uuid uuid;
   for (std::size_t i = 0, at = 0; i < uuid.bytes.size(); ++i, at += 2) {

@@ -9,7 +9,7 @@
 
 namespace strata {
 
-// RFC 4122 identifier of a changing message or a session.
+// The RFC 4122 identifier of a changing message or a session.
 struct Uuid {
   std::array<std::uint8_t, 16> bytes{};
   auto operator<=>(const Uuid&) const = default;

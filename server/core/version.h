@@ -4,7 +4,7 @@
 
 namespace strata {
 
-// Semantic version of this release, such as "0.1.0". CMakeLists.txt has it.
+// Returns the semantic version of this release, such as "0.1.0", from CMakeLists.txt.
 std::string_view version();
 
 }  // namespace strata

@@ -15,7 +15,7 @@ void collect(const Expression& expression, std::vector<std::string>& layers) {
 }  // namespace
 
 Error expression_problem(const std::string& what, std::size_t at, const std::string& field) {
-  Error problem{ErrorCode::invalid, "Expression not understood",
+  Error problem{ErrorCode::invalid, "Invalid expression",
                 what + " (at character " + std::to_string(at + 1) + ").", field};
   problem.offset = at;
   return problem;

@@ -8,14 +8,13 @@
 
 namespace strata {
 
-// A formula: what a fill, a selection, a filter of records or a computed layer is given by, once
-// its text was read (expression/expression_parser). A condition, a number, a text or a time at each
-// texel or record.
+// A parsed formula (expression/expression_parser) of a fill, a selection, a filter of records or a
+// computed layer: a condition, a number, a text or a time at each texel or record.
 //
-// Where a layer or a column has no value it is unknown, and so is what is computed from it: also
-// what has no finite value (1/0). Conditions are of three values as in SQL: a comparison with an
-// unknown number is unknown, `false and unknown` is false, `true or unknown` is true. Only
-// `valid(layer)` and `known` are always known. Nothing is done where a condition is unknown.
+// A missing value of a layer or column is unknown, and so is a result computed from it, or a result
+// that is not finite (1/0). Conditions are three-valued as in SQL: a comparison with an unknown
+// number is unknown, `false and unknown` is false, `true or unknown` is true. Only `valid(layer)`
+// and `known` are always known. Where a condition is unknown, it has no effect.
 struct Expression {
   enum class Op {
     // numbers
@@ -29,7 +28,7 @@ struct Expression {
     absolute,        // of one part
     least,           // of two or more parts
     greatest,        // of two or more parts
-    choose,          // parts: a condition, the number where it holds, the number where it does not
+    choose,          // parts: a condition, the number if it is true, the number if it is false
     power,           // of two parts, as the next ones
     remainder,       // of a division towards zero
     whole_division,  // the quotient without its fraction
@@ -48,17 +47,16 @@ struct Expression {
     arc_tangent,     //
     radians,         // of degrees
     degrees,         // of radians
-    x,               // of the texel's place in the world, model units, as the next ones
+    x,               // of the texel's position in the world, model units, as the next ones
     y,               //
     z,               //
     area,            // of the texel, m²
-    // the number at place `index` of what was read from records (expression/record_parts), by the
-    // key
-    // that `name` holds
+    // number `index` of the values read from records (expression/record_parts), for the key that
+    // the layer `name` holds
     record_number,
     // of any kind
-    // `path` of a record: that whose key the layer `name` holds, or, without a name, the one that
-    // is filtered
+    // `path` of a record: the one whose key the layer `name` holds, or, without a name, the
+    // filtered record
     column,
     // texts, which also write times: ISO 8601, EDTF
     text,          // `text`
@@ -75,27 +73,27 @@ struct Expression {
     greater_equal,  //
     equal,          //
     not_equal,      //
-    // of a text and a pattern: % for any characters, _ for one, \ before one that is meant itself
+    // of a text and a pattern: % for any characters, _ for one, \ before a literal character
     like,
     all,           // of two or more conditions
     any,           // of two or more conditions
     negation,      // of one condition
-    holds,         // of a column of truths
+    holds,         // of a column of booleans
     before,        // of two times, as the next ones: all of the first is before all of the second
     after,         //
-    during,        // the first lies within the second
-    contains,      // the second lies within the first
+    during,        // the first is within the second
+    contains,      // the second is within the first
     intersects,    // they have a moment in common
-    disjoint,      // they have none
+    disjoint,      // they have no moment in common
     coincides,     // they begin and end together
-    has_all,       // of a relation and keys: all of them are in it
-    has_any,       // one of them is
-    has_only,      // nothing else is
-    has_exactly,   // they are the same
+    has_all,       // of a relation and keys: it contains all of them
+    has_any,       // it contains one of them
+    has_only,      // it contains only them
+    has_exactly,   // it contains exactly them
     record_truth,  // as record_number
   };
 
-  // Of the text that it was read from: no part of what it means.
+  // Position in the source text; not compared.
   struct Position {
     std::size_t at = 0;  // characters (Unicode code points) before it
     bool operator==(const Position&) const { return true; }
@@ -104,7 +102,7 @@ struct Expression {
   Op op = Op::number;
   double number = 0;
   std::string name;  // slug of a layer
-  // slugs of columns: of the record, then of the record whose key the column before holds
+  // slugs of columns: of the record, then of the record whose key the previous column holds
   std::vector<std::string> path;
   std::string text;
   std::size_t index = 0;
@@ -117,11 +115,10 @@ struct Expression {
   bool operator==(const Expression&) const = default;
 };
 
-// What is wrong at a character (from 0) of the text of an expression: an Error (invalid) that says
-// where.
+// Returns an Error (invalid) for a mistake at a character (from 0) of an expression's text.
 Error expression_problem(const std::string& what, std::size_t at, const std::string& field);
 
-// Slugs of the layers that it reads, each once, in order of their first use.
+// Returns the slugs of the layers that it reads, each once, in order of their first use.
 std::vector<std::string> layers_of(const Expression& expression);
 
 // Whether it reads a column of a record.

@@ -34,8 +34,8 @@ struct Token {
 constexpr std::array kKeywords{"and",  "or",  "not", "true",    "false", "case", "when", "then",
                                "else", "end", "is",  "between", "in",    "null", "like", "div"};
 
-// Recursive descent. The first refusal is kept and ends the text, so that every level returns,
-// whatever it holds by then.
+// A recursive descent parser. The first error is kept and ends the text, so that every level
+// returns, with any intermediate result.
 class Parser {
  public:
   Parser(std::string_view text, const std::string& field, Names names)
@@ -48,10 +48,10 @@ class Parser {
     if (token_.kind != Token::Kind::end) refuse("'" + token_.text + "' was not expected here");
     if (wants_condition) {
       if (!expression.is_condition() && !expression.is_column())
-        refuse("A condition is wanted, not a number: compare it with something", 0);
+        refuse("Expected a condition, not a number: compare the number with something", 0);
       expression = condition(std::move(expression), 0);
     } else if (expression.is_condition()) {
-      refuse("A number is wanted, not a condition: if(condition, 1, 0) makes one of it", 0);
+      refuse("Expected a number, not a condition: write if(condition, 1, 0) to get a number", 0);
     } else {
       expression = numeric(std::move(expression), 0);
     }
@@ -104,8 +104,10 @@ class Parser {
     token_.text = std::string(begin, end);
     at_ += static_cast<std::size_t>(end - begin);
     if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
-      refuse("A number ends here; a layer whose name begins with a digit stands in double quotes",
-             at_);
+      refuse(
+          "A number ends here; write the name of a layer in double quotes if it begins "
+          "with a digit",
+          at_);
   }
 
   void take_word() {
@@ -124,20 +126,20 @@ class Parser {
     const auto end = text_.find('"', at_ + 1);
     if (end == std::string_view::npos || end == at_ + 1) {
       refuse(end == at_ + 1 ? "A name is missing between the quotes"
-                            : "The double quote is never closed");
+                            : "The closing double quote is missing");
       return;
     }
     token_.text = std::string(text_.substr(at_ + 1, end - at_ - 1));
     at_ = end + 1;
   }
 
-  // A quote within is written twice.
+  // A quote inside the text is doubled.
   void take_text() {
     token_.kind = Token::Kind::text;
     std::size_t at = at_ + 1;
     for (;; ++at) {
       if (at == text_.size()) {
-        refuse("The quote is never closed");
+        refuse("The closing quote is missing");
         return;
       }
       if (text_[at] == '\'') {
@@ -147,7 +149,7 @@ class Parser {
       token_.text += text_[at];
     }
     if (!is_utf8(token_.text) || token_.text.find('\0') != std::string::npos) {
-      refuse("This text is not UTF-8");
+      refuse("This text is not encoded as UTF-8");
       return;
     }
     at_ = at + 1;
@@ -182,7 +184,7 @@ class Parser {
     while (next < text_.size() && is_space(text_[next])) ++next;
     return next < text_.size() && text_[next] == '(';
   }
-  // The operator of this form that stands here.
+  // Returns the operator of this form at the current token.
   const Operator* operator_here(Form form) const {
     const auto row = std::ranges::find_if(operators(), [&](const Operator& each) {
       return each.form == form && (is(each.name) || (!each.alias.empty() && is(each.alias)));
@@ -194,7 +196,7 @@ class Parser {
       refuse("Expected '" + std::string(text) + "' instead of '" + token_.text + "'");
   }
 
-  // --- grammar; each level reads what binds more tightly
+  // --- grammar; each level parses operators of higher precedence first
 
   Expression disjunction() {
     const Nesting nesting(*this);
@@ -226,7 +228,7 @@ class Parser {
       const auto right_at = token_.at;
       Expression right = sum();
       if (operator_here(Form::comparison))
-        refuse("Only two values are compared at a time; join comparisons with 'and'");
+        refuse("A comparison has two sides only; join comparisons with 'and'");
       return compare(row->op, std::move(left), at, std::move(right), right_at);
     }
     if (is("is")) return null_test(value(std::move(left), at), at);
@@ -243,7 +245,7 @@ class Parser {
     return negated ? make(Op::negation, at, std::move(test)) : test;
   }
 
-  // Of two numbers, two texts, two times; of a column of truths and a truth.
+  // Compares two numbers, texts or times, or a boolean column with a boolean.
   Expression compare(Op op, Expression left, std::size_t at, Expression right,
                      std::size_t right_at) {
     if (left.is_column() && right.op == Op::truth && (op == Op::equal || op == Op::not_equal)) {
@@ -255,22 +257,22 @@ class Parser {
     right = value(std::move(right), right_at);
     const auto takes_text = [](const Expression& e) { return e.is_text() || e.is_column(); };
     if ((left.is_text() && !takes_text(right)) || (right.is_text() && !takes_text(left)))
-      refuse("A text is compared with a column of texts, not with a number",
+      refuse("A text can be compared with a column of texts only, not with a number",
              left.is_text() ? at : right_at);
     return make(op, at, std::move(left), std::move(right));
   }
 
-  // `pattern` is what the text is like.
+  // The pattern follows.
   Expression likeness(Expression text, std::size_t at) {
-    if (!text.is_text() && !text.is_column()) refuse("Only texts are like something", at);
+    if (!text.is_text() && !text.is_column()) refuse("'like' works for texts only", at);
     advance();
     const auto pattern_at = token_.at;
     Expression pattern = primary();
     if (!pattern.is_text())
-      return refuse("A pattern stands in single quotes, as in like 'crack%'", pattern_at);
+      return refuse("Write the pattern in single quotes, as in like 'crack%'", pattern_at);
     const auto end = pattern.text.find_last_not_of('\\');
     if ((pattern.text.size() - (end == std::string::npos ? 0 : end + 1)) % 2 == 1)
-      return refuse("The \\ at the end of this pattern has nothing behind it", pattern_at);
+      return refuse("A character must follow the \\ at the end of this pattern", pattern_at);
     return make(Op::like, at, std::move(text), std::move(pattern));
   }
 
@@ -282,7 +284,7 @@ class Parser {
     return negated ? known : make(Op::negation, at, std::move(known));
   }
 
-  // Both ends belong to it.
+  // Both ends are included.
   Expression between(Expression middle, std::size_t at) {
     advance();
     const auto low_at = token_.at;
@@ -324,7 +326,7 @@ class Parser {
     const Operator* row = operator_here(Form::power);
     if (!row) return left;
     left = arithmetic(row->op, std::move(left), at, &Parser::sign);
-    if (operator_here(Form::power)) refuse("Powers of powers need parentheses");
+    if (operator_here(Form::power)) refuse("Write parentheses around one of these powers");
     return left;
   }
 
@@ -401,7 +403,7 @@ class Parser {
         default: break;
       }
     }
-    return refuse("There is no function '" + token_.text + "'; there are valid, if, reclass, " +
+    return refuse("There is no function '" + token_.text + "'. Available are valid, if, reclass, " +
                   names_of(Form::number_function) + ", " + names_of(Form::text_function) +
                   ", date, timestamp, interval, " + names_of(Form::time_function) + ", " +
                   names_of(Form::key_function));
@@ -415,13 +417,13 @@ class Parser {
     return std::ranges::any_of(kKeywords, [&](const char* word) { return is(word); });
   }
 
-  // A layer, a column, or a column of the record that a layer or another column names.
+  // Parses a layer, a column, or a column of the record that a layer or another column refers to.
   Expression named() {
     const auto at = token_.at;
     const std::string what = "the name of " + std::string(what_names_are());
     if (is_keyword())
-      return refuse("'" + token_.text + "' is a word of the language; as " + what +
-                    " it stands in double quotes");
+      return refuse("'" + token_.text + "' is a keyword; to use it as " + what +
+                    ", write it in double quotes");
     if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
       return refuse("Expected " + what + " instead of '" + token_.text + "'");
     Expression expression;
@@ -446,12 +448,12 @@ class Parser {
 
   Expression validity() {
     if (names_ == Names::columns)
-      return refuse("valid() is for layers; of a column write 'is not null'");
+      return refuse("valid() works for layers only; for a column, write 'is not null'");
     advance();
     expect("(");
     Expression expression = named();
     if (expression.is_column())
-      refuse("Expected the name of a layer; of a column write 'is not null'");
+      refuse("Expected the name of a layer; for a column, write 'is not null'");
     expression.op = Op::valid;
     expect(")");
     return expression;
@@ -470,11 +472,11 @@ class Parser {
 
   Expression quoted_time(bool may_be_open) {
     if (token_.kind != Token::Kind::text)
-      return refuse("A time stands in single quotes, as in date('2024-05-02')");
+      return refuse("Write the time in single quotes, as in date('2024-05-02')");
     if (!(may_be_open && token_.text == "..") && !parse_edtf(token_.text) &&
         !utc_timestamp(token_.text))
       return refuse("'" + token_.text.substr(0, 100) +
-                    "' is no date; dates are written 2024-05-02");
+                    "' is not a date; write dates as 2024-05-02");
     return literal();
   }
 
@@ -486,7 +488,7 @@ class Parser {
     return expression;
   }
 
-  // As EDTF writes it.
+  // In the form of EDTF.
   Expression interval() {
     advance();
     expect("(");
@@ -495,7 +497,7 @@ class Parser {
     expression.text += "/" + quoted_time(true).text;
     expect(")");
     if (!problem_ && !parse_edtf(expression.text))
-      refuse("'" + expression.text.substr(0, 200) + "' is no interval of days");
+      refuse("'" + expression.text.substr(0, 200) + "' is not an interval of days");
     return expression;
   }
 
@@ -527,7 +529,7 @@ class Parser {
     advance();
     expect("(");
     Expression relation = named();
-    if (!relation.is_column()) refuse("A column of keys is wanted here", at);
+    if (!relation.is_column()) refuse("Expected a column of keys here", at);
     expect(",");
     Expression keys = make(Op::keys, token_.at);
     expect("(");
@@ -560,7 +562,7 @@ class Parser {
     return number;
   }
 
-  // case when … then … else … end: choices in a chain.
+  // case when … then … else … end: a chain of choices.
   Expression cases() {
     const auto at = token_.at;
     advance();
@@ -580,7 +582,7 @@ class Parser {
     return chain;
   }
 
-  // A table of limits: from each limit on its value, below the first one the value before it.
+  // A table of limits: from each limit on its value, below the first limit the value before it.
   Expression reclass() {
     const auto at = token_.at;
     advance();
@@ -588,7 +590,7 @@ class Parser {
     const Expression number = argument();
     expect(",");
     Expression chain = argument();
-    if (!is(",")) refuse("A limit and the value from there on are missing");
+    if (!is(",")) refuse("Expected a limit and the value that applies from there on");
     while (take(",")) {
       Expression above = make(Op::greater_equal, at, again(number), argument());
       expect(",");
@@ -605,7 +607,7 @@ class Parser {
     Expression expression = make(called.op, at, argument());
     while (expression.parts.size() < called.max_operands && take(","))
       expression.parts.push_back(argument());
-    if (expression.parts.size() < called.min_operands) refuse("At least two numbers are compared");
+    if (expression.parts.size() < called.min_operands) refuse("Expected at least two numbers");
     expect(")");
     return expression;
   }
@@ -615,25 +617,25 @@ class Parser {
     return numeric(disjunction(), at);
   }
 
-  // --- kinds; what a column holds is not known here
+  // --- kinds; the types of columns are unknown here
 
   Expression condition(Expression expression, std::size_t at) {
     if (expression.is_column()) return make(Op::holds, at, std::move(expression));
     if (!expression.is_condition())
-      refuse("A condition is wanted here, not a number: compare it with something", at);
+      refuse("Expected a condition, not a number: compare the number with something", at);
     return expression;
   }
   Expression value(Expression expression, std::size_t at) {
-    if (expression.is_condition()) refuse("A number is wanted here, not a condition", at);
+    if (expression.is_condition()) refuse("Expected a number here, not a condition", at);
     return expression;
   }
   Expression numeric(Expression expression, std::size_t at) {
-    if (expression.is_text()) refuse("A number is wanted here, not a text", at);
+    if (expression.is_text()) refuse("Expected a number here, not a text", at);
     return value(std::move(expression), at);
   }
   Expression textual(Expression expression, std::size_t at) {
     if (!expression.is_text() && !expression.is_column())
-      refuse("A text or a column is wanted here", at);
+      refuse("Expected a text or a column here", at);
     return expression;
   }
 
@@ -649,10 +651,10 @@ class Parser {
     return left;
   }
 
-  // What is written once and used twice: a short text may not become an endless expression.
+  // Copies an expression for a second use, within a limit: results must not grow exponentially.
   Expression again(const Expression& expression) {
     repeated_ += size_of(expression);
-    if (repeated_ > kMaxExpressionLength) return refuse("This is too much at once");
+    if (repeated_ > kMaxExpressionLength) return refuse("This expression has too many parts");
     return expression;
   }
 
@@ -668,8 +670,9 @@ class Parser {
     expression.op = op;
     expression.position.at = characters_before(at);
     (expression.parts.push_back(std::move(parts)), ...);
-    // Also a + b + c + … nests, to the left; and it is evaluated and destroyed by recursion.
-    if (depth_of(expression) > kMaxExpressionDepth) refuse("This is nested too deeply", at);
+    // a + b + c + … nests to the left; evaluation and destruction are recursive.
+    if (depth_of(expression) > kMaxExpressionDepth)
+      refuse("This expression is nested too deeply", at);
     return expression;
   }
 
@@ -679,10 +682,11 @@ class Parser {
     return deepest + 1;
   }
 
-  // Levels that can call themselves without end.
+  // Counts the levels that can recurse without limit.
   struct Nesting {
     explicit Nesting(Parser& owner) : parser(owner) {
-      if (++parser.depth_ > 3 * kMaxExpressionDepth) parser.refuse("This is nested too deeply");
+      if (++parser.depth_ > 3 * kMaxExpressionDepth)
+        parser.refuse("This expression is nested too deeply");
     }
     ~Nesting() { --parser.depth_; }
     Nesting(const Nesting&) = delete;
@@ -705,7 +709,7 @@ Result<Expression> parse(std::string_view text, const std::string& field, Names 
   if (text.size() > kMaxExpressionLength)
     return fail(
         ErrorCode::invalid, "Expression too long",
-        "An expression has at most " + std::to_string(kMaxExpressionLength) + " characters.",
+        "An expression can have at most " + std::to_string(kMaxExpressionLength) + " characters.",
         field);
   return Parser(text, field, names).whole(wants_condition);
 }

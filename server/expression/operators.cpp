@@ -12,7 +12,7 @@ namespace {
 using Op = Expression::Op;
 using Form = Operator::Form;
 
-// Functions come as types: each is compiled into a loop of its own.
+// `Function` is a type, so that each function is compiled into a separate loop.
 template <class Function>
 void each_of_one(std::span<double> a, std::span<const double>) {
   for (double& value : a) value = Function{}(value);
@@ -92,8 +92,8 @@ constexpr Operator of_keys(Op op, std::string_view name, const char* sql) {
 constexpr double kRadiansOfDegree = std::numbers::pi / 180;
 constexpr double kDegreesOfRadian = 180 / std::numbers::pi;
 
-// In SQL roots, logarithms and powers are guarded where they have no value: there PostgreSQL would
-// end the whole question.
+// In SQL, roots, logarithms and powers are guarded where they have no value: otherwise PostgreSQL
+// would abort the whole query.
 constexpr std::array kOperators{
     infix(Op::add, Form::sum, "+", "({a} + {b})", std::plus<>{}),
     infix(Op::subtract, Form::sum, "-", "({a} - {b})", std::minus<>{}),
@@ -110,7 +110,7 @@ constexpr std::array kOperators{
         [](double x, double y) { return std::pow(x, y); }),
     prefix(Op::negate, "-", "(- {a})", std::negate<>{}),
 
-    // What lies before has ended, what lies after has not begun; up to and from it include it.
+    // "Before" means that it has ended, "after" that it has not begun; up to and from include it.
     comparison(Op::equal, "=", "==", "({a} = {b})", "({a} = {b} AND {a_end} = {b_end})",
                std::equal_to<>{}),
     comparison(Op::not_equal, "<>", "!=", "({a} <> {b})", "({a} <> {b} OR {a_end} <> {b_end})",
@@ -167,7 +167,7 @@ constexpr std::array kOperators{
 
 constexpr auto kLastOp = Op::record_truth;
 
-// The evaluator asks for each block of texels.
+// The evaluator looks up the row for each block of texels.
 constexpr auto kRowOfOp = [] {
   std::array<const Operator*, static_cast<std::size_t>(kLastOp) + 1> rows{};
   for (const Operator& row : kOperators) rows[static_cast<std::size_t>(row.op)] = &row;

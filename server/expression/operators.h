@@ -11,13 +11,13 @@
 
 namespace strata {
 
-// One row of the table of operators and functions: how it is written, what it takes, and how it is
-// worked out, at texels and in the database. What is not here has a grammar of its own: names,
-// literals, choices, `like`, `and`, `or`, `not`, tests for what is known.
+// A row of the table of operators and functions: the syntax, the operands, and the evaluation at
+// texels and in the database. Elements with a separate grammar are not in it: names, literals,
+// choices, `like`, `and`, `or`, `not`, tests for known values.
 struct Operator {
-  // Where it stands in the grammar and what its operands are.
+  // The place in the grammar and the kind of the operands.
   enum class Form {
-    sum,  // infix, of numbers, as the next three; each binds more tightly than the one before
+    sum,  // infix, of numbers, as the next three; in order of increasing precedence
     product,
     power,
     sign,        // prefix, of a number
@@ -31,20 +31,20 @@ struct Operator {
 
   Expression::Op op;
   Form form;
-  std::string_view name;     // as it is written
-  std::string_view alias{};  // as it may be written, too
+  std::string_view name;     // the syntax
+  std::string_view alias{};  // an alternative syntax
   std::size_t min_operands = 2, max_operands = 2;
 
-  // Of numbers: a becomes the result; of one operand b is empty. What is not finite is unknown.
+  // For numbers: replaces a by the result; b is empty for one operand. Non-finite means unknown.
   void (*apply)(std::span<double> a, std::span<const double> b) = nullptr;
-  // Of a comparison of numbers, 64 at most: a bit for each that holds; with one number on the
-  // right.
+  // For comparisons of numbers, at most 64: sets a bit for each that is true; the second function
+  // has one number on the right.
   std::uint64_t (*compare)(std::span<const double> a, std::span<const double> b) = nullptr;
   std::uint64_t (*compare_with)(std::span<const double> a, double b) = nullptr;
 
-  // PostgreSQL of it over {a} and {b}; NULL where it has no value.
+  // The PostgreSQL expression over {a} and {b}; NULL without a value.
   const char* sql = nullptr;
-  // Of times, which have a first and a last moment: over {a}, {a_end}, {b} and {b_end}.
+  // For times, which have a first and a last moment: over {a}, {a_end}, {b} and {b_end}.
   const char* times_sql = nullptr;
 
   bool is_called(std::string_view text) const {
@@ -52,10 +52,10 @@ struct Operator {
   }
 };
 
-// All of them; those of one form in the order in which messages list them.
+// All operators; those of one form are in the order in which messages list them.
 std::span<const Operator> operators();
 
-// The row of an operation; nothing for those with a grammar of their own.
+// Returns the row of an operation; null for one with a separate grammar.
 const Operator* find_operator(Expression::Op op);
 
 // "min, max, …": the names of the functions of a form.

@@ -7,10 +7,10 @@ namespace {
 
 using Op = Expression::Op;
 
-constexpr std::uint32_t kMaxDense = 1u << 16;  // keys are mostly counted up: half a MiB at most
+constexpr std::uint32_t kMaxDense = 1u << 16;  // most keys are consecutive: at most half a MiB
 
-// The one layer whose record the expression reads; nothing where it reads a layer itself, or
-// several.
+// Returns the only layer whose records the expression reads; null if it reads a layer's values or
+// the records of several layers.
 const std::string* only_record(const Expression& e) {
   const std::string* found = nullptr;
   if (e.op == Op::layer || e.op == Op::valid) return nullptr;
@@ -24,7 +24,7 @@ const std::string* only_record(const Expression& e) {
   return found;
 }
 
-// As the record itself sees it.
+// Rewrites the expression as one over the record's columns.
 Expression over_columns(Expression e) {
   e.name.clear();
   for (Expression& part : e.parts) part = over_columns(std::move(part));
@@ -50,7 +50,8 @@ class Splitter {
         std::ranges::any_of(e.parts, [](const Expression& part) { return part.is_text(); })) {
       if (!problem_)
         problem_ = expression_problem(
-            "Texts and times are compared within one record: a column of it with a text",
+            "Texts and times can be compared within one record only: compare one of its "
+            "columns with a text",
             e.position.at, field_);
       return {};
     }
@@ -62,14 +63,14 @@ class Splitter {
   static bool is_logic(Op op) { return op == Op::all || op == Op::any || op == Op::negation; }
 
   Expression part(const Expression& e, const std::string& layer) {
-    RecordPart asked{layer, over_columns(e)};
-    const auto found = std::find(parts_.begin(), parts_.end(), asked);
+    RecordPart requested{layer, over_columns(e)};
+    const auto found = std::find(parts_.begin(), parts_.end(), requested);
     Expression rest;
     rest.op = e.is_condition() ? Op::record_truth : Op::record_number;
     rest.name = layer;
     rest.index = static_cast<std::size_t>(found - parts_.begin());
     rest.position = e.position;
-    if (found == parts_.end()) parts_.push_back(std::move(asked));
+    if (found == parts_.end()) parts_.push_back(std::move(requested));
     return rest;
   }
 

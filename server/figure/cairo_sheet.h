@@ -6,8 +6,8 @@
 
 namespace strata::figure {
 
-// Draws all but the drawing. A unit of the context is a millimetre, its origin the sheet's top
-// left.
+// Draws everything except the drawing. A unit of the context is a millimeter, its origin the
+// sheet's top left.
 void draw_groups(cairo_t* context, const Sheet& sheet);
 
 }  // namespace strata::figure

@@ -13,22 +13,22 @@ namespace strata::figure {
 namespace {
 
 constexpr int kSymbolReach_px =
-    8;  // of the camera's window: at least as far as lines and points reach from their places
+    8;  // of the camera's window: at least the reach of lines and points from their positions
 
-// The axes of the front view, as the page has them.
+// Returns the axes of the front view, as in the web client.
 Plane front_of(std::string_view up) {
   const UpFrame frame = up_frame(up);
   return {frame.right, frame.up, frame.into};
 }
 
-// A window in millimetres from the drawing's top left, for a camera of so many pixels.
+// Returns a camera of this many pixels over a window in millimeters from the drawing's top left.
 Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm,
                    int width, int height) {
   const Plane& plane = drawing.plane;
   const double unit = drawing.units_per_mm();
   const glm::dvec2 drawing_mm =
       glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi);
-  // Of the middle of the drawing.
+  // relative to the drawing's center
   const double left = (corner_mm.x - drawing_mm.x / 2) * unit,
                top = (drawing_mm.y / 2 - corner_mm.y) * unit;
   const glm::dvec3 eye = plane.in_world({drawing.center, drawing.near});
@@ -64,12 +64,12 @@ Plane plane_square_to(const glm::dvec3& normal, std::string_view up) {
   const Plane front = front_of(up);
   const glm::dvec3 into = -glm::normalize(normal);
   const double along = glm::dot(into, front.up);
-  // Surface that lies has no up of its own.
+  // A horizontal surface has no up direction.
   constexpr double kLying = 0.999;
-  const glm::dvec3 wish = std::abs(along) < kLying ? front.up
-                          : along < 0              ? front.into
-                                                   : -front.into;
-  const glm::dvec3 right = glm::normalize(glm::cross(into, wish));
+  const glm::dvec3 preferred_up = std::abs(along) < kLying ? front.up
+                                  : along < 0              ? front.into
+                                                           : -front.into;
+  const glm::dvec3 right = glm::normalize(glm::cross(into, preferred_up));
   return {right, glm::cross(right, into), into};
 }
 
@@ -108,7 +108,7 @@ double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double 
 
 std::vector<Part> parts_of(const Drawing& drawing, int side) {
   const int inches = std::max(1, side / drawing.dpi), step = inches * drawing.dpi;
-  // Whole pixels of the drawing and of the camera, so that all parts have the same ones.
+  // Whole pixels of both the drawing and the camera, so that all parts have the same ones.
   const int common = std::gcd(drawing.dpi, kCameraDpi);
   const int unit_px = drawing.dpi / common * 2, unit_camera = kCameraDpi / common * 2;
   const int units = (kSymbolReach_px + unit_camera - 1) / unit_camera;

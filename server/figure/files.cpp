@@ -7,8 +7,8 @@
 namespace strata::figure {
 namespace {
 
-// Without what XML has no way to write, and cairo refuses: control characters, and the last two
-// places of the first plane.
+// Removes characters that XML does not allow and cairo refuses: control characters, and the last
+// two code points of the first plane.
 std::string printable(std::string text) {
   std::erase_if(
       text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; });
@@ -53,13 +53,14 @@ std::vector<std::uint8_t> drawing_jpeg(const Picture& drawing) {
 
 tl::unexpected<Error> unwritable() {
   return fail(ErrorCode::storage_full, "Figure not written",
-              "The server's disk does not take the file. Free some of it, or ask for fewer dpi.");
+              "The server could not write the file to its disk. Free disk space, or choose a "
+              "lower resolution (dpi).");
 }
 
-Result<void> write_figure(const Sheet& asked, const Picture& drawing, int dpi, Format format,
+Result<void> write_figure(const Sheet& requested, const Picture& drawing, int dpi, Format format,
                           const Document& about, const std::filesystem::path& file,
                           Progress& progress) {
-  const Sheet sheet = printable(asked);
+  const Sheet sheet = printable(requested);
   const Document document{printable(about.title), printable(about.author)};
   switch (format) {
     case Format::png: return write_png(sheet, drawing, dpi, document, file, progress);

@@ -14,12 +14,12 @@ enum class Format { png, tiff, svg, pdf };
 std::string_view media_type(Format format);
 std::string_view extension(Format format);  // ".pdf"
 
-// Writes a sheet with its drawing, whose pixels are `dpi` an inch, as a new file. In SVG and PDF
-// the drawing is a JPEG of high quality, and all else is shapes and words; in PNG and TIFF
-// (deflate) everything is pixels, of which the file says how many an inch has. cancelled:
-// cancelled; storage_full: it cannot be written. `title` and `author` go along as the file's own.
-// Of all words, characters that files do not have (control characters, U+FFFE, U+FFFF) are left
-// out.
+// Writes a sheet with its drawing, whose pixels are `dpi` per inch, as a new file. In SVG and PDF
+// the drawing is a JPEG of high quality, and everything else is shapes and text; in PNG and TIFF
+// (deflate) everything is pixels, with their number per inch in the file. cancelled: cancelled;
+// storage_full: the file cannot be written. The file's metadata contain `title` and `author`.
+// Characters that files cannot hold (control characters, U+FFFE, U+FFFF) are removed from all
+// texts.
 struct Document {
   std::string title, author;
 };

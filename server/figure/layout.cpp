@@ -11,9 +11,9 @@ namespace strata::figure {
 namespace {
 
 constexpr double kMargin = 10, kGap = 4;
-constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // letters
-constexpr double kLine = 1.45;                             // of their size
-constexpr double kFrame = 0.2, kThin = 0.12;               // strokes
+constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // heights of letters
+constexpr double kLine = 1.45;                             // relative to the letters
+constexpr double kFrame = 0.2, kThin = 0.12;               // widths of strokes
 constexpr int kMaxTitleLines = 2, kMaxCaptionLines = 8, kMaxCreditLines = 3;
 constexpr double kScaleWidth = 80, kScaleHeight = 16;
 constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2,
@@ -28,7 +28,7 @@ Path rectangle(const glm::dvec2& corner, const glm::dvec2& size) {
   return {{corner, corner + glm::dvec2(size.x, 0), corner + size, corner + glm::dvec2(0, size.y)}};
 }
 
-// The part of a line within a box; nothing where it passes by.
+// Returns the part of a line within a box; nothing if the line misses it.
 std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& through,
                                                          const glm::dvec2& along, const Box& box) {
   double from = -1e9, to = 1e9;
@@ -45,8 +45,7 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& throu
   return std::pair(through + from * along, through + to * along);
 }
 
-// How patterns are drawn, as shaders/shared/shade.h has it: pixels there are hundredths of an inch
-// here.
+// Patterns as in shaders/shared/shade.h; their pixels are hundredths of an inch here.
 constexpr double kPatternPixel = kInch_mm / 100;
 constexpr double kSpacing = 7 * kPatternPixel, kHatchStroke = 0.4 * kSpacing,
                  kDotRadius = 0.32 * kSpacing;
@@ -67,7 +66,7 @@ void add_filled(std::vector<Item>& items, const glm::dvec2& corner, const glm::d
   items.push_back(std::move(path));
 }
 
-// As the page's legend and the drawing have them: opaque, so that the paper below does not count.
+// Opaque, as in the page's legend and the drawing, so that the paper does not show through.
 void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& entry) {
   const Rgba ink{entry.color[0], entry.color[1], entry.color[2], 255};
   Path frame = rectangle(box.corner, box.size);
@@ -77,7 +76,7 @@ void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& ent
   if (has_lines && !entry.bare) add_filled(items, box.corner, box.size, on_paper(ink, kGround));
   const glm::dvec2 middle = box.corner + box.size / 2.0;
   const glm::dvec2 along = direction(entry.angle), across(-along.y, along.x);
-  // so that their corners are in the box
+  // so that the corners of the lines are in the box
   const Box within{box.corner + kHatchStroke / 2, box.size - kHatchStroke};
   if (entry.pattern == Pattern::hatch)
     for (int i = -8; i <= 8; ++i)
@@ -108,7 +107,7 @@ void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& ent
   add_filled(items, box.corner + glm::dvec2(box.size.x - kBorder, 0), standing, ink);
 }
 
-// What of a legend stands on one line.
+// The content of one line of a legend.
 struct Row {
   enum class Kind { title, entry, ramp, more } kind;
   std::string text;
@@ -124,7 +123,7 @@ std::string first_line(const std::string& text, bool bold, double width) {
   return lines.empty() ? std::string() : lines[0];
 }
 
-using List = std::vector<Row>;  // of a layer, its title first
+using List = std::vector<Row>;  // of one layer, its title first
 
 std::vector<List> lists_of(const std::vector<Legend>& legends, double width) {
   std::vector<List> lists;
@@ -145,8 +144,8 @@ struct PlacedRow {
   double y;
 };
 
-// Column by column. A list that has no room below others begins a column; one that is broken
-// (`may_break`) has its title on each of its parts. Nothing: not all has room.
+// Places lists column by column. A list that does not fit below others begins a new column; each
+// part of a broken list (`may_break`) has its title. Nothing: the lists do not fit.
 std::optional<std::vector<PlacedRow>> place_lists(const std::vector<List>& lists, int columns,
                                                   double height, bool may_break,
                                                   const std::string& continued) {
@@ -184,26 +183,26 @@ std::optional<std::vector<PlacedRow>> place_lists(const std::vector<List>& lists
   return placed;
 }
 
-// The same of as many rows as have room; the others are counted.
+// Places as many rows as fit, and a count of the others.
 std::vector<PlacedRow> place_most(const std::vector<List>& lists, int columns, double height,
                                   const std::string& continued) {
   std::size_t all = 0;
   for (const List& list : lists) all += list.size();
   const auto place = [&](std::size_t count) {
-    std::vector<List> kept;
+    std::vector<List> shortened;
     std::size_t left = count;
     for (const List& list : lists) {
       if (left == 0) break;
-      kept.emplace_back(list.begin(),
-                        list.begin() + static_cast<std::ptrdiff_t>(std::min(left, list.size())));
-      left -= kept.back().size();
+      shortened.emplace_back(
+          list.begin(), list.begin() + static_cast<std::ptrdiff_t>(std::min(left, list.size())));
+      left -= shortened.back().size();
     }
     if (count < all) {
       const Row more{Row::Kind::more, "… + " + std::to_string(all - count)};
-      if (kept.empty()) kept.emplace_back();
-      kept.back().push_back(more);
+      if (shortened.empty()) shortened.emplace_back();
+      shortened.back().push_back(more);
     }
-    return place_lists(kept, columns, height, true, continued);
+    return place_lists(shortened, columns, height, true, continued);
   };
   std::size_t fits = 0, too_many = all + 1;
   while (fits + 1 < too_many) {
@@ -218,8 +217,8 @@ struct PlacedLegend {
   std::vector<PlacedRow> rows;
 };
 
-// In as little height as keeps its lists whole; where that is more than `whole`, they are broken so
-// that the columns are about the same.
+// Places the legend in the least height that keeps its lists whole; if that exceeds `whole`, breaks
+// them so that the columns have similar heights.
 PlacedLegend place_legend(const std::vector<List>& lists, int columns, double whole, double most,
                           const std::string& continued) {
   for (const bool may_break : {false, true})
@@ -246,7 +245,7 @@ void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, dou
                    step = length / static_cast<double>(row.legend->ramp.size());
       for (std::size_t i = 0; i < row.legend->ramp.size(); ++i) {
         const Rgba& color = row.legend->ramp[i];
-        // Each a little wider, so that no gap shows between them.
+        // slightly wider, so that no gap is visible between them
         const double wide = i + 1 < row.legend->ramp.size() ? step * 1.2 : step;
         Path bar =
             rectangle({at.x + static_cast<double>(i) * step, at.y + 0.5}, {wide, kSwatchHeight});
@@ -324,7 +323,7 @@ glm::dvec2 paper_mm(Paper paper, bool landscape) {
 }
 
 std::string scale_text(double scale) {
-  // Whole ones in groups of three digits: short_number has six.
+  // Groups the digits of whole numbers by three: short_number has only six digits.
   const auto number = [](double value) {
     if (value < 10'000 || value != std::floor(value)) return short_number(value);
     std::string digits = std::to_string(static_cast<std::int64_t>(value));
@@ -336,7 +335,7 @@ std::string scale_text(double scale) {
 }
 
 ScaleBar scale_bar(double scale, double widest_mm) {
-  // Millimetres in the world; the longest of 1, 2 and 5 times a power of ten that has room.
+  // Millimeters in the world; the longest of 1, 2 and 5 times a power of ten that fits.
   const double most = widest_mm * scale;
   const double decade = std::pow(10, std::floor(std::log10(most)));
   const int digit = most >= 5 * decade ? 5 : most >= 2 * decade ? 2 : 1;
@@ -364,7 +363,7 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
   const double strip_top = paper.y - kMargin - strip;
 
   Box area{{kMargin, kMargin}, {width, strip_top - kGap - kMargin}};
-  const bool aside = paper.x > paper.y;  // the legend's place
+  const bool aside = paper.x > paper.y;  // the place of the legend
   const int columns = aside ? 1 : std::max(1, static_cast<int>(width / kLegendColumn));
   const auto lists = lists_of(legends, aside ? kLegendColumn - 2 : width / columns - 4);
   Group legend{"legend", {}};
@@ -422,14 +421,14 @@ Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,
   return sheet;
 }
 
-std::vector<Label> place_labels(const std::vector<LabelWish>& wishes,
+std::vector<Label> place_labels(const std::vector<LabelRequest>& requests,
                                 const glm::dvec2& drawing_mm) {
   std::vector<Label> placed;
   std::vector<Box> taken;
-  for (const LabelWish& wish : wishes) {
-    if (wish.text.empty()) continue;
-    const glm::dvec2 size(width_mm(wish.text, kLabel_mm, false) + 1, kLabel_mm * 1.4);
-    for (const glm::dvec2& place : wish.places) {
+  for (const LabelRequest& request : requests) {
+    if (request.text.empty()) continue;
+    const glm::dvec2 size(width_mm(request.text, kLabel_mm, false) + 1, kLabel_mm * 1.4);
+    for (const glm::dvec2& place : request.places) {
       const Box box{place - size / 2.0, size};
       const glm::dvec2 end = box.corner + box.size;
       if (box.corner.x < 0 || box.corner.y < 0 || end.x > drawing_mm.x || end.y > drawing_mm.y)
@@ -440,7 +439,7 @@ std::vector<Label> place_labels(const std::vector<LabelWish>& wishes,
                other.corner.y < end.y;
       });
       if (!is_free) continue;
-      placed.push_back({place, wish.text});
+      placed.push_back({place, request.text});
       taken.push_back(box);
       break;
     }

@@ -9,35 +9,35 @@
 
 namespace strata::figure {
 
-// Where everything goes on a sheet: the drawing takes what legend and words leave.
+// Places everything on a sheet: the drawing gets the area that legend and text leave.
 
 enum class Paper { a5, a4, a3 };
 glm::dvec2 paper_mm(Paper paper, bool landscape);
 
 struct Captions {
   std::string title, caption, credit;
-  // behind the title of a list that goes on in another column of the legend
+  // after the title of a list that continues in another column of the legend
   std::string continued = "(continued)";
 };
 
 struct Label {
-  glm::dvec2 at{0};  // middle of the words, mm from the drawing's top left
+  glm::dvec2 at{0};  // center of the text, mm from the drawing's top left
   std::string text;
 };
 
-// A sheet with all but what depends on the drawing's scale: how large the drawing may be.
+// A sheet without the parts that depend on the drawing's scale; gives the room for the drawing.
 class SheetLayout {
  public:
   SheetLayout(glm::dvec2 paper_mm, const Captions& captions, const std::vector<Legend>& legends,
               int dpi);
 
-  // Whole pixels of `dpi` that the drawing has room for.
+  // Whole pixels of `dpi` that are available for the drawing.
   int drawing_width() const { return width_; }
   int drawing_height() const { return height_; }
   glm::dvec2 drawing_mm() const { return sheet_.drawing.size; }
 
-  // `north`: where it is on the paper (y down), unless it is too far from its plane; labels as
-  // `place_labels` leaves them.
+  // `north`: its direction on the paper (y down), unless it is too steep to the paper; labels as
+  // `place_labels` returns them.
   Sheet finish(double scale, const std::optional<glm::dvec2>& north,
                const std::vector<Label>& labels) const;
 
@@ -59,14 +59,15 @@ struct ScaleBar {
 };
 ScaleBar scale_bar(double scale, double widest_mm);
 
-// Words that records have at places where they are seen, by size of their areas.
-struct LabelWish {
+// The label of a record and its visible positions, sorted by the size of the areas.
+struct LabelRequest {
   std::string text;
   std::vector<glm::dvec2> places;  // mm from the drawing's top left, the best first
 };
 inline constexpr double kLabel_mm = 2.4;  // height of letters
-// Each at its first place where it lies over no other and within the drawing; those without one are
-// left out.
-std::vector<Label> place_labels(const std::vector<LabelWish>& wishes, const glm::dvec2& drawing_mm);
+// Places each label at its first position that is within the drawing and overlaps no other label;
+// leaves out labels without such a position.
+std::vector<Label> place_labels(const std::vector<LabelRequest>& requests,
+                                const glm::dvec2& drawing_mm);
 
 }  // namespace strata::figure

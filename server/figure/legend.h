@@ -14,10 +14,10 @@ struct LegendEntry {
   Rgba color{};
   Pattern pattern = Pattern::solid;
   double angle = 45;  // degrees, of lines
-  bool bare = false;  // lines or dots without tint and border: what waits for review
+  bool bare = false;  // lines or dots without tint and border: unreviewed edits
 };
 
-// A layer's: classes, or for numbers a ramp from `low` to `high`.
+// The legend of a layer: classes, or for numbers a ramp from `low` to `high`.
 struct Legend {
   std::string title;
   std::vector<LegendEntry> entries;
@@ -25,9 +25,8 @@ struct Legend {
   std::string low, high;
 };
 
-// Its title is the layer's name in `language`, where it has one in it. A layer of keys whose
-// colours are made up has none but its title. `there`: of a categorical palette of values the
-// classes that are told; null: all.
+// The title is the layer's name in `language`, if it has one. A layer of keys with generated colors
+// has only a title. `there`: the listed classes of a categorical palette of values; null: all.
 Legend legend_of(const Layer& layer, const Palette& palette,
                  const std::set<double>* there = nullptr, const std::string& language = {});
 

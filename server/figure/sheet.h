@@ -10,30 +10,30 @@
 
 namespace strata::figure {
 
-// What is on a sheet of paper besides the drawing, as shapes and words; each kind of file draws the
-// same. Millimetres from the sheet's top left, y down.
+// Everything on a sheet of paper except the drawing, as shapes and text; each kind of file draws
+// the same. Millimeters from the sheet's top left, y down.
 
 struct Path {
   std::vector<glm::dvec2> points;
   bool closed = true;
   std::optional<Rgba> fill{};
-  double stroke_mm = 0;  // 0: none; black
+  double stroke_mm = 0;  // 0: no stroke; black
 };
 
 enum class Anchor { start, middle, end };
 
 struct Words {
-  glm::dvec2 at{0};  // on the base line
+  glm::dvec2 at{0};  // on the baseline
   std::string text;  // one line
   double size_mm = 3;
   bool bold = false;
   Anchor anchor = Anchor::start;
-  bool halo = false;  // white around it, over a drawing
+  bool halo = false;  // white border, over a drawing
 };
 
 using Item = std::variant<Path, Words>;
 struct Group {
-  std::string id;  // "legend", for who edits the file
+  std::string id;  // "legend", for people who edit the file
   std::vector<Item> items;
 };
 

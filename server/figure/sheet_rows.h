@@ -15,8 +15,8 @@ struct SheetPixels {
 };
 SheetPixels pixels_of(const Sheet& sheet, int dpi);
 
-// The whole sheet as pixels, drawn some rows at a time: `take` gets each row in turn, RGB8, and
-// says whether to go on. False: it was told to stop, or cancelled.
+// Renders the whole sheet as pixels, some rows at a time: `take` receives each row in turn as RGB8,
+// and returns false to stop. False: stopped or canceled.
 bool sheet_rows(const Sheet& sheet, const Picture& drawing, int dpi, Progress& progress,
                 const std::function<bool(std::span<const std::uint8_t> rgb)>& take);
 

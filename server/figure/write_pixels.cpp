@@ -1,4 +1,4 @@
-// Sheets as pixels: PNG and TIFF.
+// Writes sheets as pixels: PNG and TIFF.
 #include <tiffio.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi,
   const auto per_metre = static_cast<png_uint_32>(std::lround(dpi / 0.0254));
   bool good = guarded(writer.png, [&] {
     png_init_io(writer.png, file.get());
-    // the best one takes four times as long for a tenth less
+    // the strongest level takes four times as long to save 10 %
     png_set_compression_level(writer.png, 4);
     png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width),
                  static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,

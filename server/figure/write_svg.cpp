@@ -1,5 +1,5 @@
-// Sheets as SVG, in millimetres: groups with names, words as text, so that all can be edited.
-// (cairo's SVG draws letters as shapes.)
+// Writes sheets as SVG, in millimeters: named groups, and text as text, so that everything can be
+// edited. (cairo's SVG draws letters as shapes.)
 
 #include <fstream>
 

@@ -4,8 +4,8 @@
 
 namespace strata::figure {
 
-// One for each kind of file, as write_figure, which has left out of all words what files do not
-// have.
+// One function per kind of file, called by write_figure, which removes characters that files cannot
+// hold from all texts.
 Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi,
                        const Document& document, const std::filesystem::path& path,
                        Progress& progress);
@@ -17,7 +17,7 @@ Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Documen
 Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Document& document,
                        const std::filesystem::path& path, Progress& progress);
 
-// The drawing within SVG and PDF.
+// Returns the JPEG of the drawing for SVG and PDF.
 std::vector<std::uint8_t> drawing_jpeg(const Picture& drawing);
 tl::unexpected<Error> unwritable();  // storage_full
 

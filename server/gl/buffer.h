@@ -15,25 +15,25 @@ class Buffer {
  public:
   enum class Use {
     fixed,      // filled at creation or by `upload`, read by the GPU
-    read_back,  // mapped for its whole life; the GPU writes, the CPU reads behind a fence
+    read_back,  // always mapped; the GPU writes, the CPU reads behind a fence
   };
 
   Buffer() = default;
-  // An Error `out_of_memory` when the driver has no memory for it.
+  // An Error `out_of_memory` if the driver has no memory for it.
   static Result<Buffer> create(std::size_t bytes, Use use, std::string_view label);
 
   GLuint id() const { return object_.id(); }
   std::size_t size() const { return size_; }
   explicit operator bool() const { return static_cast<bool>(object_); }
 
-  // `offset + data.size()` must lie inside the buffer.
+  // `offset + data.size()` must be inside the buffer.
   void upload(std::size_t offset, std::span<const std::byte> data);
   template <class T>
   void upload_values(std::size_t offset, std::span<const T> values) {
     upload(offset, std::as_bytes(values));
   }
-  // Ranges must lie inside the buffers and begin and end at multiples of 4. What shaders wrote
-  // needs a barrier before.
+  // Ranges must be inside the buffers and begin and end at multiples of 4. A barrier must precede
+  // these calls if shaders wrote the range.
   void clear(std::size_t offset, std::size_t bytes) const;                          // to zeros
   void copy_to(const Buffer& target, std::size_t offset, std::size_t bytes) const;  // to its start
   void bind_storage(GLuint binding) const;

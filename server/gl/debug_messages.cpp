@@ -14,8 +14,7 @@ void GLAPIENTRY on_message(GLenum, GLenum type, GLuint id, GLenum severity, GLsi
   if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR &&
       severity != GL_DEBUG_SEVERITY_HIGH)
     return;
-  // An allocation that does not fit is told to its caller by check_memory; it is no mistake of
-  // ours.
+  // check_memory reports a failed allocation to its caller; it is not a programming error.
   if (id == GL_OUT_OF_MEMORY) return;
   auto* messages = static_cast<DebugMessages*>(const_cast<void*>(user));
   messages->count_error();

@@ -21,7 +21,7 @@ bool has_extension(const char* list, std::string_view name) {
   return padded.find(" " + std::string(name) + " ") != std::string::npos;
 }
 
-// The EXT entry is called on purpose: libepoxy cannot resolve the core one before a display exists.
+// Calls the EXT entry on purpose: libepoxy cannot resolve the core one before a display exists.
 EGLDisplay platform_display(EGLenum platform, void* native) {
   return eglGetPlatformDisplayEXT(platform, native, nullptr);
 }
@@ -70,13 +70,13 @@ std::string hex(EGLint error) {
 }
 
 EGLContext create_context(EGLDisplay display, const EglOptions& options, bool robust) {
-  // A context without surfaces needs no configuration where the display says so.
+  // If the display supports it, a context without surfaces uses no configuration.
   EGLConfig config = EGL_NO_CONFIG_KHR;
   if (!has_extension(eglQueryString(display, EGL_EXTENSIONS), "EGL_KHR_no_config_context")) {
-    const std::array<EGLint, 5> wanted{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE,
-                                       EGL_PBUFFER_BIT, EGL_NONE};
+    const std::array<EGLint, 5> config_attributes{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                                  EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
     EGLint count = 0;
-    if (!eglChooseConfig(display, wanted.data(), &config, 1, &count) || count == 0)
+    if (!eglChooseConfig(display, config_attributes.data(), &config, 1, &count) || count == 0)
       return EGL_NO_CONTEXT;
   }
   std::vector<EGLint> attributes{
@@ -129,7 +129,7 @@ Result<EglContext> EglContext::create(const EglOptions& options) {
   }
   return fail(
       ErrorCode::unavailable, "No GPU context",
-      "No OpenGL 4.5 context could be made. Tried: " +
+      "The server could not create an OpenGL 4.5 context. It tried: " +
           (tried.empty() ? "no EGL platform was found" : tried) +
           ". Install a driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri), and let this user open "
           "/dev/dri/renderD* or /dev/nvidia*.");
@@ -156,8 +156,8 @@ EglContext& EglContext::operator=(EglContext&& other) noexcept {
 
 EglContext::~EglContext() { destroy(); }
 
-// The display stays initialised: EGL shares it among all contexts of the process, and terminating
-// would end theirs.
+// The display stays initialized: EGL shares it among all contexts of the process, and terminating
+// it would end them.
 void EglContext::destroy() {
   if (context_ == EGL_NO_CONTEXT) return;
   if (eglGetCurrentContext() == context_)
@@ -165,7 +165,7 @@ void EglContext::destroy() {
   eglDestroyContext(display_, std::exchange(context_, EGL_NO_CONTEXT));
 }
 
-// GL may tell a reset only once, whoever asks: it is kept.
+// GL may report a reset only once, so the result is kept.
 bool EglContext::lost() {
   lost_ = lost_ || (robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR);
   return lost_;

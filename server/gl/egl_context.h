@@ -12,13 +12,12 @@ struct EglOptions {
   bool debug = false;  // KHR_debug context
 };
 
-// A GL 4.5 core context without any window, current on the thread that created it until destroyed
-// there. A hardware device is taken where EGL offers one; then Mesa's surfaceless platform; then
-// any device (software). Robust access and reset notification are asked for where they are offered.
-// Move-only.
+// A GL 4.5 core context without a window, current on the thread that creates it, which must also
+// destroy it. Uses a hardware device if EGL offers one; then Mesa's surfaceless platform; then any
+// device (software). Robust access and reset notification are requested if available. Move-only.
 class EglContext {
  public:
-  // The error lists every platform that was tried and why it failed.
+  // The error lists every platform tried and the reason of its failure.
   static Result<EglContext> create(const EglOptions& options);
 
   EglContext() = default;
@@ -28,7 +27,7 @@ class EglContext {
 
   explicit operator bool() const { return context_ != EGL_NO_CONTEXT; }
   const std::string& platform() const { return platform_; }
-  // True from a reset of the device on: every GL object is gone.
+  // True after a reset of the device: all GL objects are lost.
   bool lost();
 
  private:

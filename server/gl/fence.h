@@ -6,18 +6,18 @@
 
 namespace strata::gl {
 
-// Marks a place in the command stream. Move-only; an empty fence counts as passed.
+// Marks a position in the command stream. Move-only; an empty fence counts as passed.
 class Fence {
  public:
   Fence() = default;
-  // Placed after every command given so far, and flushed.
+  // Placed after every command issued so far, and flushed.
   static Fence place();
   Fence(Fence&& other) noexcept;
   Fence& operator=(Fence&& other) noexcept;
   ~Fence();
 
   explicit operator bool() const { return sync_ != nullptr; }
-  // True once the GPU is past it, waiting at most `timeout_ns`. A lost context counts as passed.
+  // True after the GPU has passed it; waits at most `timeout_ns`. A lost context counts as passed.
   bool passed(std::uint64_t timeout_ns = 0);
 
  private:

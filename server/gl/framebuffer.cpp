@@ -26,8 +26,8 @@ Result<Framebuffer> Framebuffer::create(std::initializer_list<const Texture*> co
   }
   const GLenum status = glCheckNamedFramebufferStatus(id, GL_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return framebuffer;
-  return fail(ErrorCode::unavailable, "GPU cannot draw",
-              "The driver does not take the framebuffer '" + std::string(label) + "' (status " +
+  return fail(ErrorCode::unavailable, "Framebuffer not supported",
+              "The driver does not support the framebuffer '" + std::string(label) + "' (status " +
                   std::to_string(status) + "). Update the graphics driver.");
 }
 

@@ -9,11 +9,11 @@
 
 namespace strata::gl {
 
-// Draws into textures that must outlive it. Empty when default-constructed or moved from.
+// Renders into textures, which must outlive it. Empty when default-constructed or moved from.
 class Framebuffer {
  public:
   Framebuffer() = default;
-  // `depth` may be null. An Error `unavailable` when the driver cannot draw into these together.
+  // `depth` may be null. An Error `unavailable` if the driver cannot render into this combination.
   static Result<Framebuffer> create(std::initializer_list<const Texture*> colors,
                                     const Texture* depth, std::string_view label);
 

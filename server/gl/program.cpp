@@ -33,7 +33,8 @@ Result<Shader> compile(const std::filesystem::path& directory, const std::string
                        const std::vector<std::string>& defines) {
   const GLenum stage = stage_of(file);
   if (stage == GL_NONE)
-    return fail(ErrorCode::internal, kTitle, file + ": the ending must be .vert, .frag or .comp.");
+    return fail(ErrorCode::internal, kTitle,
+                file + ": the file name must end in .vert, .frag or .comp.");
   auto text = STRATA_TRY(load_shader(directory, file, defines));
   Shader shader(glCreateShader(stage));
   const char* source = text.c_str();

@@ -10,12 +10,12 @@
 
 namespace strata::gl {
 
-// A linked program from shader files; the stage is told by the file's ending (.vert, .frag, .comp).
+// A linked program from shader files; the ending of a file gives the stage (.vert, .frag, .comp).
 // Move-only.
 class Program {
  public:
   Program() = default;
-  // The error holds the compiler's message and the file.
+  // The error contains the compiler's message and the file name.
   static Result<Program> load(const std::filesystem::path& directory,
                               const std::vector<std::string>& files,
                               const std::vector<std::string>& defines = {});

@@ -58,13 +58,13 @@ Result<Readback> ReadbackPool::begin(std::size_t bytes) {
 }
 
 void ReadbackPool::give_back(Buffer buffer) {
-  std::size_t kept = buffer.size();
-  if (kept > kept_bytes_) return;
+  std::size_t retained_bytes = buffer.size();
+  if (retained_bytes > kept_bytes_) return;
   free_.push_back(std::move(buffer));
-  // The oldest unused ones go first.
-  for (auto it = free_.rbegin() + 1; it != free_.rend(); ++it) kept += it->size();
-  while (kept > kept_bytes_) {
-    kept -= free_.front().size();
+  // Frees the oldest unused buffers first.
+  for (auto it = free_.rbegin() + 1; it != free_.rend(); ++it) retained_bytes += it->size();
+  while (retained_bytes > kept_bytes_) {
+    retained_bytes -= free_.front().size();
     free_.erase(free_.begin());
   }
 }

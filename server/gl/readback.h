@@ -12,8 +12,8 @@ namespace strata::gl {
 
 class ReadbackPool;
 
-// One transfer from the GPU: fill `buffer()` by GL commands, `submit()`, wait until `ready()`, read
-// `data()`. Returns its memory to the pool when destroyed; the pool must outlive it.
+// One transfer from the GPU: fill `buffer()` by GL commands, call `submit()`, wait until `ready()`,
+// read `data()`. The destructor returns the memory to the pool, which must outlive it.
 class Readback {
  public:
   Readback() = default;
@@ -38,8 +38,8 @@ class Readback {
   std::size_t size_ = 0;
 };
 
-// Persistent-mapped buffers that transfers reuse in turn; sizes are powers of two. At most
-// `kept_bytes` stay unused.
+// Persistently mapped buffers that transfers reuse; sizes are powers of two. At most `kept_bytes`
+// of unused buffers are kept.
 class ReadbackPool {
  public:
   explicit ReadbackPool(std::size_t kept_bytes = std::size_t{64} << 20) : kept_bytes_(kept_bytes) {}

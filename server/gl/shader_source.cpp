@@ -9,22 +9,22 @@ namespace {
 
 constexpr const char* kTitle = "Shader cannot be built";
 
-// Appends the text of `file` with its includes in place; `line` numbers stay those of the file.
+// Appends the text of `file` with its includes in place; `line` numbers refer to the file.
 Result<void> append(const std::filesystem::path& directory, const std::string& file,
                     std::set<std::string>& seen, std::string& text) {
   if (file.find("..") != std::string::npos)
-    return fail(ErrorCode::internal, kTitle, "'" + file + "' leaves the shader folder.");
+    return fail(ErrorCode::internal, kTitle, "'" + file + "' is outside the shader folder.");
   std::ifstream stream(directory / file);
   if (!stream) {
-    return fail(
-        ErrorCode::internal, kTitle,
-        "'" + (directory / file).string() + "' cannot be read. Is the shader folder right?");
+    return fail(ErrorCode::internal, kTitle,
+                "'" + (directory / file).string() +
+                    "' cannot be read. Check the path of the shader folder.");
   }
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     constexpr std::string_view kInclude = "#include \"";
     if (!line.starts_with(kInclude)) {
-      // Includes guard themselves; the pragma only means something to C++.
+      // Each file is included once; the pragma is for C++ only.
       text += line.starts_with("#pragma once") ? "\n" : line + "\n";
       continue;
     }

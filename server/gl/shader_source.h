@@ -8,9 +8,10 @@
 
 namespace strata::gl {
 
-// Text of `file` in the folder `directory`, ready for the compiler: `#include "shared/…"` lines are
-// replaced by those files (each once), and `defines` ("NAME value") follow the #version line, which
-// must be the first. Fails when a file is missing or an include leaves the folder.
+// Returns the text of `file` in the folder `directory`, ready for the compiler: `#include
+// "shared/…"` lines are replaced by those files (each once), and `defines` ("NAME value") follow
+// the #version line, which must be the first. Fails if a file is missing or an include is outside
+// the folder.
 Result<std::string> load_shader(const std::filesystem::path& directory, const std::string& file,
                                 const std::vector<std::string>& defines = {});
 

@@ -9,11 +9,11 @@
 namespace strata::gl {
 
 // Immutable-storage 2D texture or 2D texture array, clamped: with one level and nearest filter
-// (integer formats, too), or with mipmaps and filtered between texels and levels.
+// (also for integer formats), or with mipmaps and linear filters.
 class Texture {
  public:
   Texture() = default;
-  // An Error `out_of_memory` when the driver has no memory for it.
+  // An Error `out_of_memory` if the driver has no memory for it.
   static Result<Texture> create_2d(GLenum format, int width, int height, std::string_view label);
   static Result<Texture> create_mipmapped(GLenum format, int width, int height, int levels,
                                           std::string_view label);
@@ -29,7 +29,7 @@ class Texture {
   std::size_t bytes() const;
 
   void bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
-  // All layers of an array at once.
+  // Binds all layers of an array.
   void bind_image(GLuint unit, GLenum access) const;
 
  private:
@@ -46,7 +46,7 @@ class Texture {
   int width_ = 0, height_ = 0, layers_ = 0, levels_ = 1;
 };
 
-// Bytes a texel of the sized formats used here.
+// Bytes a texel of the sized formats in use.
 std::size_t bytes_per_texel(GLenum format);
 
 }  // namespace strata::gl

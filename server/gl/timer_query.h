@@ -4,7 +4,7 @@
 
 namespace strata::gl {
 
-// GPU time between `begin` and `end`. One timer may run at a time.
+// GPU time between `begin` and `end`. Only one timer may run at a time.
 class TimerQuery {
  public:
   TimerQuery() = default;
@@ -13,7 +13,7 @@ class TimerQuery {
   explicit operator bool() const { return static_cast<bool>(object_); }
   void begin() const { glBeginQuery(GL_TIME_ELAPSED, object_.id()); }
   void end() const { glEndQuery(GL_TIME_ELAPSED); }
-  // Waits for the result where it is not there yet.
+  // Waits for the result if necessary.
   double elapsed_ms() const;
 
  private:

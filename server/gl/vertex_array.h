@@ -17,13 +17,13 @@ struct VertexAttribute {
   GLuint offset;  // bytes in the vertex
 };
 
-// How one interleaved vertex buffer and one index buffer are read. The buffers must outlive it.
+// The layout of one interleaved vertex buffer and one index buffer, which must outlive it.
 class VertexArray {
  public:
   VertexArray() = default;
   VertexArray(const Buffer& vertices, int stride, std::span<const VertexAttribute> attributes,
               const Buffer& indices, std::string_view label);
-  // Without buffers, for passes that make their vertices themselves.
+  // Without buffers, for passes that generate their vertices.
   explicit VertexArray(std::string_view label);
 
   GLuint id() const { return object_.id(); }

@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 // of a material library, a glTF's JSON, a PLY's header
 constexpr std::size_t kMaxText = std::size_t{64} << 20;
 
-// A name may stand between quotation marks.
+// A name may be in quotation marks.
 constexpr std::string_view kAroundNames = " \t\r\"";
 
-// A file that `reference` may mean, as a path below the folder.
+// Returns the file for `reference`, as a path below the folder.
 std::optional<fs::path> below(const fs::path& folder, std::string_view reference) {
   std::string slashes(reference);
   std::ranges::replace(slashes, '\\', '/');
@@ -33,7 +33,7 @@ std::optional<fs::path> below(const fs::path& folder, std::string_view reference
   return std::nullopt;
 }
 
-// Names may hold spaces and follow options: the longest end of the line that is a file.
+// Names may contain spaces and follow options: returns the longest end of the line that is a file.
 std::optional<fs::path> file_at_end(const fs::path& folder, std::string_view words) {
   for (words = trimmed(words, kAroundNames); !words.empty(); words = trimmed(words, kAroundNames)) {
     if (auto file = below(folder, words)) return file;
@@ -44,14 +44,14 @@ std::optional<fs::path> file_at_end(const fs::path& folder, std::string_view wor
   return std::nullopt;
 }
 
-// Hands out lines whose first word `wanted` takes, with the rest.
-void each_line(std::string_view text, const std::function<bool(const std::string&)>& wanted,
+// Passes the rest of each line whose first word `is_relevant` accepts.
+void each_line(std::string_view text, const std::function<bool(const std::string&)>& is_relevant,
                const std::function<void(std::string_view)>& take) {
   while (!text.empty()) {
     const auto end = std::min(text.find('\n'), text.size());
     const std::string_view line = trimmed(text.substr(0, end));
     const auto word_end = std::min(line.find_first_of(" \t"), line.size());
-    if (word_end > 0 && word_end < 32 && wanted(to_lower(line.substr(0, word_end))))
+    if (word_end > 0 && word_end < 32 && is_relevant(to_lower(line.substr(0, word_end))))
       take(line.substr(word_end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }

@@ -7,10 +7,10 @@
 
 namespace strata::jobs {
 
-// A mesh on this machine with the files that lie beside it and that it names: an OBJ's material
-// libraries and their textures, a PLY's `comment TextureFile`, a glTF's buffers and images. Names
-// are looked up in the mesh's folder and below, never elsewhere; what is not there is left out, and
-// the import tells whether it is missed. The mesh comes first.
+// Returns a mesh on this machine with the files that it names: an OBJ's material libraries and
+// their textures, a PLY's `comment TextureFile`, a glTF's buffers and images. Names are looked up
+// in the mesh's folder and below, never elsewhere; missing files are left out, and the import
+// reports them if they are needed. The mesh comes first.
 std::vector<mesh::InputFile> with_companions(const std::filesystem::path& mesh);
 
 }  // namespace strata::jobs

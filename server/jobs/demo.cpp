@@ -26,7 +26,7 @@ constexpr const char* kModel = "Demo pot";
 constexpr const char* kAuthor = "Strata";
 
 Layer sherds_layer() {
-  // Light and dark tones alternate, so that neighbours differ with every colour vision.
+  // Light and dark tones alternate, so that neighbors are distinct for all types of color vision.
   static constexpr Rgba kColors[DemoRules::kSherds] = {
       {230, 159, 0, 255},   {86, 180, 233, 255},  {0, 114, 178, 255},  {240, 228, 66, 255},
       {213, 94, 0, 255},    {204, 121, 167, 255}, {120, 94, 240, 255}, {255, 176, 124, 255},
@@ -38,7 +38,7 @@ Layer sherds_layer() {
   layer.palette = {PaletteMode::categorical, 1, DemoRules::kSherds, {}, {}};
   for (int i = 0; i < DemoRules::kSherds; ++i)
     layer.palette.points.push_back({double(i + 1), kColors[i], "Sherd " + std::to_string(i + 1)});
-  layer.opacity = 0.55;  // relief and colour of the clay stay visible
+  layer.opacity = 0.55;  // relief and color of the clay stay visible
   layer.order = 0;
   return layer;
 }
@@ -101,17 +101,17 @@ Result<Model> find_or_create_pot(store::Store& store, double detail, Progress& p
   return pot != models.end() ? *pot : create_pot(store, project, detail, progress);
 }
 
-Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Layer wanted) {
-  auto layer = store.layers().find(model.id, wanted.slug, Role::owner);
+Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Layer requested) {
+  auto layer = store.layers().find(model.id, requested.slug, Role::owner);
   if (layer || layer.error().code != ErrorCode::not_found) return layer;
-  wanted.model_id = model.id;
-  wanted.type = ValueType::u8;
-  wanted.resolution = kResolution;
-  return store.layers().create(wanted);
+  requested.model_id = model.id;
+  requested.type = ValueType::u8;
+  requested.resolution = kResolution;
+  return store.layers().create(requested);
 }
 
-// One fill: every texel that the rule gives a value gets it. Tiles come in the order of their
-// addresses.
+// Makes one fill: every texel gets the value that the rule returns for it, if any. Tiles are in the
+// order of their addresses.
 template <class Rule>
 store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer,
                                  double metres_per_unit, const Rule& rule) {
@@ -170,7 +170,8 @@ Result<void> write_entry(store::Store& store, const Model& model, const Layer& l
   if (!writer.submit(std::move(entry),
                      [&saved](Result<void> result) { saved.set_value(std::move(result)); }))
     return fail(ErrorCode::unavailable, "Database unavailable",
-                "The demo's layers were not saved. Try again.");
+                "The database did not answer, so the server could not save the layers of the "
+                "demo. Try again.");
   return saved.get_future().get();
 }
 
@@ -180,7 +181,7 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
   const auto pot = STRATA_TRY(find_or_create_pot(store, detail, progress));
   const auto pieces = STRATA_TRY(find_or_create_layer(store, pot, sherds_layer()));
   const auto cracks = STRATA_TRY(find_or_create_layer(store, pot, cracks_layer()));
-  // A layer that someone has painted on, or emptied, stays as it is.
+  // A layer that a user has painted on, or emptied, stays unchanged.
   if (pieces.sequence == 0 || cracks.sequence == 0) {
     const auto stored = STRATA_TRY(store.models().geometry(pot.id));
     const auto geometry = STRATA_TRY(mesh::decode_geometry(stored));

@@ -21,7 +21,7 @@
 namespace strata::jobs {
 namespace {
 
-// Layers of any size from here on fit the atlas: its gaps are made for the coarsest.
+// Layers from this resolution on fit the atlas: its gutters are sized for the coarsest.
 constexpr int kLowestResolution = 2048;
 constexpr int kMaxResolution = 16384;
 constexpr std::size_t kMaxNameLength = 200;
@@ -48,7 +48,8 @@ std::vector<std::string> names_of(std::span<const ImportFile> files) {
   return names;
 }
 
-// Under their last names; where folders held files of the same name, the later ones are numbered.
+// Returns the files under their base names; later files of the same name from other folders are
+// numbered.
 std::vector<store::NewModel::Source> sources_of(std::span<const ImportFile> files) {
   std::vector<store::NewModel::Source> sources;
   std::set<std::string> taken;
@@ -68,22 +69,23 @@ Result<void> refuse_faults(const std::vector<Repair>& repairs) {
       list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
   if (list.empty()) return {};
   return fail(ErrorCode::invalid, "File needs repair",
-              "It would be imported only after this: " + list +
-                  ". Mend the file, or import it without `strict`.",
+              "The server can import this file only after these repairs: " + list +
+                  ". Repair the file, or import it without `strict`.",
               "strict");
 }
 
-// The file's own texture coordinates where they can carry layers; otherwise an unfolding of our
-// own, and a note why.
+// Returns the file's own texture coordinates if they are suitable for layers; otherwise a new
+// unfolding, and a note with the reason.
 Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair>& repairs,
                               Progress& progress) {
   if (!mesh.corner_uvs.empty()) {
     progress.report(0, "Checking the texture coordinates");
-    auto kept = mesh::keep_uvs(mesh, kLowestResolution, progress);
-    if (kept) repairs.insert(repairs.end(), kept->repairs.begin(), kept->repairs.end());
-    if (kept || kept.error().code == ErrorCode::cancelled) return kept;
+    auto own_atlas = mesh::keep_uvs(mesh, kLowestResolution, progress);
+    if (own_atlas)
+      repairs.insert(repairs.end(), own_atlas->repairs.begin(), own_atlas->repairs.end());
+    if (own_atlas || own_atlas.error().code == ErrorCode::cancelled) return own_atlas;
     repairs.push_back(
-        {"texture coordinates not kept: " + kept.error().detail, mesh.triangle_count()});
+        {"texture coordinates not kept: " + own_atlas.error().detail, mesh.triangle_count()});
   }
   progress.report(0, "Unfolding the surface");
   return mesh::make_atlas(mesh, kLowestResolution, progress);
@@ -93,21 +95,22 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
 
 Result<void> check(const ImportRequest& request) {
   if (request.name.size() > kMaxNameLength)
-    return fail(ErrorCode::invalid, "Name too long", "A name has at most 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Name too long", "The name can have at most 200 bytes.",
+                "name");
   if (!request.up.empty() && !is_up(request.up))
-    return fail(ErrorCode::invalid, "Unknown direction", "`up` is one of x, y, z, -x, -y and -z.",
-                "up");
+    return fail(ErrorCode::invalid, "Unknown direction",
+                "`up` must be one of x, y, z, -x, -y and -z.", "up");
   if (!request.crs.empty() && !is_crs(request.crs))
     return fail(ErrorCode::invalid, "Unknown coordinate system",
-                "A coordinate system is given as EPSG:n, for example EPSG:25830.", "crs");
+                "Write a coordinate system as EPSG:n, for example EPSG:25830.", "crs");
   if (!(request.weld_distance >= 0 && request.weld_distance < 1e15))
-    return fail(ErrorCode::invalid, "Distance not usable",
-                "The distance to weld within is a number of 0 or more.", "weld");
+    return fail(ErrorCode::invalid, "Invalid distance",
+                "The welding distance must be a number of 0 or more.", "weld");
   const int resolution = request.resolution;
   if (resolution != 0 && (resolution < kLowestResolution || resolution > kMaxResolution ||
                           !std::has_single_bit(unsigned(resolution))))
-    return fail(ErrorCode::invalid, "Resolution not usable",
-                "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
+    return fail(ErrorCode::invalid, "Invalid resolution",
+                "The resolution of layers must be 2048, 4096, 8192 or 16384.", "resolution");
   STRATA_TRY(mesh::pick_scan(names_of(request.files)));
   return {};
 }

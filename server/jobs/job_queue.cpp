@@ -22,40 +22,39 @@ constexpr std::size_t kMaxRemembered = 1000;
 
 constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure"};
 
-// What a restart of the server left of a job.
+// Returns the problem of a job that a restart of the server ended.
 Error lost_problem(JobKind kind) {
-  constexpr const char* kTitle = "Server was restarted";
+  constexpr const char* kTitle = "Server restarted";
   switch (kind) {
     case JobKind::import:
-      return {
-          ErrorCode::unavailable,
-          kTitle,
-          "The server was restarted before this import was finished; nothing of it was kept. Start it again.",
-          {}};
+      return {ErrorCode::unavailable,
+              kTitle,
+              "The server restarted before this import finished, and kept nothing of it. "
+              "Start the import again.",
+              {}};
     case JobKind::layers:
-      return {
-          ErrorCode::unavailable,
-          kTitle,
-          "The server was restarted before this was finished. Layers that it had begun are on the model, hidden and incomplete: delete "
-          "them and start it again.",
-          {}};
+      return {ErrorCode::unavailable,
+              kTitle,
+              "The server restarted before this job finished. The model may have hidden, "
+              "incomplete layers of this job. Delete them and start the job again.",
+              {}};
     case JobKind::image:
-      return {
-          ErrorCode::unavailable,
-          kTitle,
-          "The server was restarted before this picture was finished; nothing of it was kept. Start it again.",
-          {}};
+      return {ErrorCode::unavailable,
+              kTitle,
+              "The server restarted before this picture finished, and kept nothing of it. "
+              "Start the job again.",
+              {}};
     case JobKind::figure: break;
   }
   return {ErrorCode::unavailable,
           kTitle,
-          "The server was restarted before this figure was finished. Start it again.",
+          "The server restarted before this figure finished. Start the job again.",
           {}};
 }
 
 ErrorCode code_of(const nlohmann::json& stored) {
   if (const auto code = error_code_named(stored.value("code", std::string()))) return *code;
-  // Jobs of release 0.1, which are kept for seven days, hold an HTTP status.
+  // Jobs of release 0.1, which are kept for seven days, contain an HTTP status.
   switch (stored.value("status", 500)) {
     case 422: return ErrorCode::invalid;
     case 499: return ErrorCode::cancelled;
@@ -122,7 +121,7 @@ struct Job {
   JobStatus status;
 };
 
-// The state as of now: what runs reports through its progress.
+// Returns the present state: a running job reports through its progress.
 JobStatus snapshot(const Job& job) {
   JobStatus status = job.status;
   if (status.state == JobState::running) {
@@ -137,14 +136,14 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
   try {
     return work(progress);
   } catch (const std::bad_alloc&) {
-    return fail(
-        ErrorCode::out_of_memory, "Not enough memory",
-        "The server has not enough memory for this. Make the file smaller, or give the server more.");
+    return fail(ErrorCode::out_of_memory, "Not enough memory",
+                "The server does not have enough memory for this job. Use a smaller file, or "
+                "ask an administrator to increase the memory of the server.");
   } catch (const std::exception& error) {
     log::error(std::string("A job failed unexpectedly: ") + error.what());
-    return fail(
-        ErrorCode::internal, "Job failed",
-        "The server could not finish this because of a fault of its own; its log says more.");
+    return fail(ErrorCode::internal, "Job failed",
+                "An internal error stopped this job. Ask an administrator to look into the log "
+                "of the server.");
   }
 }
 
@@ -153,10 +152,10 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
 struct JobQueue::Impl {
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::map<JobId, Job> jobs;  // by id: in order of asking
+  std::map<JobId, Job> jobs;  // by id: in the order of the requests
   std::deque<JobId> waiting;
-  std::size_t coming = 0;  // those that are being kept, before they wait
-  // In milliseconds: nobody asks for a thousand jobs a second, second after second.
+  std::size_t coming = 0;  // jobs that are being stored, before they wait
+  // In milliseconds: fewer than a thousand jobs a second are requested on average.
   std::int64_t last_id = std::chrono::duration_cast<std::chrono::milliseconds>(
                              std::chrono::system_clock::now().time_since_epoch())
                              .count();
@@ -177,25 +176,26 @@ struct JobQueue::Impl {
     }
   }
 
-  // What the end of the server cuts short is left as it is: the next one finds it.
+  // A job that the end of the server interrupts is not changed: the next server finds it.
   void keep_end(const JobStatus& status, bool cut_short) const {
     if (!store || cut_short) return;
-    if (auto kept = store->end(stored_of(status)); !kept)
-      log::warning("the end of a job could not be kept: " + kept.error().detail);
+    if (auto saved = store->end(stored_of(status)); !saved)
+      log::warning("the server could not save the result of a job: " + saved.error().detail);
   }
 
   Result<void> may_add() const {
     if (stopping)
-      return fail(ErrorCode::unavailable, "Server stops",
-                  "The server is stopping and takes no new work.");
-    if (waiting.size() + coming >= kMaxWaiting)
       return fail(
-          ErrorCode::busy, "Too much waiting work",
-          std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
+          ErrorCode::unavailable, "Server is stopping",
+          "The server is stopping and accepts no new jobs. Try again when it is running again.");
+    if (waiting.size() + coming >= kMaxWaiting)
+      return fail(ErrorCode::busy, "Too many waiting jobs",
+                  std::to_string(kMaxWaiting) +
+                      " jobs are waiting. Try again when some of them have finished.");
     return {};
   }
 
-  // How it ended, into `status`.
+  // Writes the end of the job into `status`.
   static void end(Job& job, Result<JobResult> result, JobStatus& status) {
     job.work = nullptr;
     if (result) {
@@ -226,7 +226,7 @@ struct JobQueue::Impl {
     for (;;) {
       changed.wait(lock, [&] { return stopping || !waiting.empty(); });
       if (stopping) return;
-      // stays where it is while it runs: only finished jobs are forgotten
+      // the reference stays valid during the job: only finished jobs are deleted
       Job& job = jobs.at(waiting.front());
       waiting.pop_front();
       job.status.state = JobState::running;
@@ -240,7 +240,8 @@ struct JobQueue::Impl {
       JobStatus ended = job.status;
       end(job, std::move(result), ended);
       lock.unlock();
-      // Who reads that it ended reads the same after a restart.
+      // Stored before it is published, so that a restart does not change the result that a client
+      // has read.
       keep_end(ended, cut_short);
       lock.lock();
       job.status = std::move(ended);
@@ -280,13 +281,14 @@ Result<JobId> JobQueue::add(ProjectId project, Work work, std::string user, JobK
   status.user = std::move(user);
   status.kind = kind;
   status.message = "Waiting";
-  auto kept = impl_->store ? impl_->store->begin(stored_of(status)) : Result<void>();
+  auto saved = impl_->store ? impl_->store->begin(stored_of(status)) : Result<void>();
   std::lock_guard lock(impl_->mutex);
   --impl_->coming;
-  if (!kept) return tl::unexpected(kept.error());
+  if (!saved) return tl::unexpected(saved.error());
   if (impl_->stopping)
-    return fail(ErrorCode::unavailable, "Server stops",
-                "The server is stopping and takes no new work.");
+    return fail(
+        ErrorCode::unavailable, "Server is stopping",
+        "The server is stopping and accepts no new jobs. Try again when it is running again.");
   const JobId id = status.id;
   Job& job = impl_->jobs[id];
   job.work = std::move(work);

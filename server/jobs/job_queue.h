@@ -18,26 +18,26 @@ class Jobs;
 
 namespace strata::jobs {
 
-// What a job makes.
+// The result type of a job.
 enum class JobKind { import, layers, image, figure };
 enum class JobState { queued, running, done, failed, cancelled };
 
-// What a job made.
+// The result of a job.
 struct JobResult {
   JobResult(ModelId the_model)
-      : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only that
+      : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only a model
   ModelId model = 0;
   std::vector<LayerId> layers;          // new ones on it
   std::optional<SurfaceImageId> image;  // a new one on it
-  // what else is to be told, see the schema `TransferReport`; null: nothing
+  // a report for the user, see the schema `TransferReport`; null: no report
   nlohmann::json report;
   std::shared_ptr<const TemporaryFile> file;
 };
 
 struct JobStatus {
   JobId id = 0;
-  ProjectId project = 0;  // whose members may know of it
-  std::string user;       // who started it; empty: the server itself
+  ProjectId project = 0;  // only its members may see the job
+  std::string user;       // the user who started it; empty: the server
   JobKind kind = JobKind::import;
   JobState state = JobState::queued;
   double progress = 0;
@@ -46,19 +46,20 @@ struct JobStatus {
   std::optional<JobResult> result;
 };
 
-// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are
-// remembered: the newest 1000; their files, of the newest kFilesKept that made one, until the queue
-// goes. Ids are higher than those of every queue before, so that an id of then is never another job
-// now.
+// Runs long work, one job at a time on a separate thread, in the order of the requests. Keeps the
+// newest 1000 finished jobs, and the files of the newest kFilesKept jobs that made one, until the
+// queue is destroyed. Ids are higher than those of all earlier queues, so that an old id never
+// names a new job.
 class JobQueue {
  public:
   static constexpr int kFilesKept = 16;
-  // With `store` jobs outlive the queue for store::Jobs::kDaysKept days, without their files: what
-  // a queue before did not finish has failed. `store` outlives the queue. Blocks.
+  // With `store`, jobs outlive the queue for store::Jobs::kDaysKept days, without their files:
+  // unfinished jobs of an earlier queue have failed. `store` must outlive the queue. Blocks.
   explicit JobQueue(store::Jobs* store = nullptr);
-  ~JobQueue();  // cancels what runs, joins
+  ~JobQueue();  // cancels the running job, joins
   using Work = std::function<Result<JobResult>(Progress&)>;
-  // Refused (unavailable) when 64 wait, or as the store refuses. Blocks while the store is written.
+  // Refused (unavailable) when 64 jobs wait, or as the store refuses. Blocks while the store is
+  // written.
   Result<JobId> add(ProjectId project, Work work, std::string user = {},
                     JobKind kind = JobKind::import);
   std::optional<JobStatus> status(JobId id) const;

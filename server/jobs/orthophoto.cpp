@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "domain/layers/mask_texels.h"
+#include "mesh/texels/surface_map.h"
 #include "mesh/texture/gutter_fill.h"
 
 namespace strata::jobs {
@@ -14,7 +15,7 @@ double pixel_area(const query::WorldFile& world) {
   return std::abs(world.x_per_column * world.y_per_row - world.x_per_row * world.y_per_column);
 }
 
-constexpr int kGutterRing = 8;  // pixels that go on exactly around the islands
+constexpr int kGutterRing = 8;  // width in pixels of the exact continuation around the islands
 
 template <class Visit>
 void for_each_pixel_of(TileAddress address, const TileMask& mask, int resolution, Visit&& visit) {
@@ -31,8 +32,8 @@ Picture empty_picture(int resolution) {
   return {resolution, resolution, std::vector<std::uint8_t>(4 * side * side)};
 }
 
-// What is covered, as a picture that goes on around the islands as the colours do: off the surface
-// there is no cover of its own.
+// Returns the covered part as a picture that continues around the islands like the colors: off the
+// surface, no cover is defined.
 Picture cover_of(const TileMap& colors, const mesh::SurfaceMap& map) {
   Picture cover = empty_picture(map.resolution);
   const int tiles = map.resolution / kTileSize;

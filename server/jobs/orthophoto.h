@@ -6,41 +6,45 @@
 #include "domain/layers/tile_mirror.h"
 #include "domain/scene/model.h"
 #include "media/picture.h"
-#include "mesh/texels/surface_map.h"
 #include "query/rasters/placed_picture.h"
 #include "render/memory/mipmapped_picture.h"
 
+namespace strata::mesh {
+struct SurfaceMap;
+}  // namespace strata::mesh
+
 namespace strata::jobs {
 
-// An orthophoto that becomes a look: its colours, carried along its plane onto the surface, as a
-// picture on the atlas.
+// Converts an orthophoto to a surface image: projects its colors along its plane onto the surface,
+// as a picture on the atlas.
 
-constexpr int kMaxOrthophotoSurfaceImage = 8192;  // texels a side: what looks have on the GPU
+constexpr int kMaxOrthophotoSurfaceImage = 8192;  // texels a side: the size of surface images on
+                                                  // the GPU
 
-// Texels a side at which a texel holds no more surface than a pixel, from the atlas' lowest
-// resolution to the largest.
+// Returns the texels a side at which a texel covers no more surface than a pixel, from the atlas'
+// lowest resolution to the largest.
 int orthophoto_resolution(const Model& model, const query::WorldFile& world);
 
-// The orthophoto's colours by places in its plane. Thread-safe.
+// The orthophoto's colors by places in its plane. Thread-safe.
 class OrthophotoSampler {
  public:
-  // `texel_area` in the square of the plane's unit: pixels much smaller than it are averaged, as
-  // light.
+  // `texel_area` in the square of the plane's unit: pixels much smaller than it are averaged in
+  // linear light.
   OrthophotoSampler(Picture picture, const query::WorldFile& world, double texel_area);
-  // Between the pixels: RGB with an alpha of 255, the first byte red. Nothing outside of the
-  // picture, or where less than half is opaque.
+  // Interpolates between the pixels: RGB with an alpha of 255, the first byte red. Nothing outside
+  // of the picture, or where less than half is opaque.
   std::optional<std::uint32_t> color_at(const glm::dvec2& place) const;
 
  private:
   query::PixelFinder finder_;
   int height_;
   render::MipmappedPicture::Level level_;  // lowest row first
-  double scale_;                           // its pixels to those of the picture
+  double scale_;                           // from pixels of the picture to those of `level_`
 };
 
-// The picture of u32 texels as `color_at` gives them, top row first. Surface that is not set is
-// clear, in colours that go on from what is; off the surface colours and cover go on from the
-// islands: so neither seams nor borders show where it is filtered.
+// Returns the picture of u32 texels from `color_at`, top row first. Surface without a color is
+// transparent, in colors that continue from the nearest ones; off the surface, colors and cover
+// continue from the islands. So neither seams nor borders are visible after filtering.
 Picture orthophoto_surface_image(const TileMap& colors, const mesh::SurfaceMap& map);
 
 }  // namespace strata::jobs

@@ -20,14 +20,14 @@ namespace strata::jobs {
 namespace {
 
 using GeometryPtr = std::shared_ptr<const mesh::Geometry>;
-// The value at a place of a triangle, NaN: none. Called on several threads.
+// Returns the value at a place of a triangle, NaN: no value. Called on several threads.
 using SurfaceValue = std::function<double(std::uint32_t triangle, const glm::vec3& weights)>;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-// Share of the whole: measuring dominates where rays or neighbourhoods are asked for.
+// Share of the whole: measuring takes most of the time for kinds with rays or neighborhoods.
 constexpr double kMeasured = 0.7;
-constexpr double kPrepared = 0.15;  // where samples or rays are made first
-// A surface that is flatter than this faces no way in particular.
+constexpr double kPrepared = 0.15;  // for kinds that make samples or rays first
+// A flatter surface has no azimuth.
 constexpr float kFlat = 0.02f;
 
 // Clockwise from north as seen from above, 0…360 degrees.
@@ -72,7 +72,8 @@ class Measure {
       case ShapeKind::model_distance: return to_model();
       case ShapeKind::vertex_property: return property();
     }
-    return fail(ErrorCode::internal, "Unknown kind", "This kind of layer is not known.");
+    return fail(ErrorCode::internal, "Unknown kind",
+                "The server does not know this kind of layer.");
   }
   std::string other_model() const { return other_model_; }
   std::string source() const { return source_; }
@@ -89,7 +90,8 @@ class Measure {
                               .position_index];
     return point;
   }
-  // Points about as close as those of a scan of a million triangles, whatever this mesh has.
+  // Returns a spacing of points about as in a scan of a million triangles, independent of this
+  // mesh.
   float even_spacing(double points) const {
     return static_cast<float>(std::sqrt(std::max(model_.area, 1e-300) / points));
   }
@@ -172,8 +174,8 @@ class Measure {
     progress_.report(0, "Looking for open edges");
     const mesh::BoundaryDistance distance(*geometry_);
     if (distance.is_closed())
-      return fail(ErrorCode::invalid, "No boundary",
-                  "This model is closed: it has no open edge that a distance could be measured to.",
+      return fail(ErrorCode::invalid, "No open edges",
+                  "This model is closed. It has no open edge, so there is no distance to measure.",
                   "compute.kind");
     return sampled(even_spacing(1e6),
                    [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
@@ -183,12 +185,14 @@ class Measure {
     auto other = store_.models().find(recipe_.model);
     if (!other) return refuse_model(other.error());
     if (other->id == model_.id)
-      return fail(ErrorCode::invalid, "The same model",
-                  "A model has no distance to itself; name another one.", "compute.model");
+      return fail(ErrorCode::invalid, "Same model",
+                  "The distance of a model to itself is always 0. Choose another model.",
+                  "compute.model");
     if (!other->crs.empty() && !model_.crs.empty() && other->crs != model_.crs)
-      return fail(ErrorCode::invalid, "Other coordinates",
-                  "This model lies in " + model_.crs + ", the other one in " + other->crs +
-                      "; bring both into one coordinate system before importing them.",
+      return fail(ErrorCode::invalid, "Different coordinate systems",
+                  "The coordinate system of this model is " + model_.crs +
+                      ", that of the other model is " + other->crs +
+                      ". Transform both scans into one coordinate system and import them again.",
                   "compute.model");
     other_model_ = other->name;
     progress_.report(0, "Reading the other model");
@@ -206,7 +210,7 @@ class Measure {
     return tl::unexpected(std::move(problem));
   }
 
-  // In the source that is named, or in the only one that has such a property.
+  // Reads the named source, or the only one that has such a property.
   Result<SurfaceValue> property() {
     std::vector<std::string> having;
     for (const SourceFile& source : model_.source_files) {
@@ -223,12 +227,14 @@ class Measure {
         having.push_back(source.name);
     }
     if (having.size() != 1)
-      return fail(ErrorCode::invalid, having.empty() ? "No such property" : "Several files have it",
-                  having.empty() ? "No source file of this model has vertices with a number \"" +
-                                       recipe_.property + "\"."
-                                 : "Name the source file whose property \"" + recipe_.property +
-                                       "\" is meant.",
-                  having.empty() ? "compute.property" : "compute.source");
+      return fail(
+          ErrorCode::invalid, having.empty() ? "Property not found" : "Property in several files",
+          having.empty()
+              ? "No source file of this model has vertices with a number \"" + recipe_.property +
+                    "\"."
+              : "Several source files have this property. Choose the file whose property \"" +
+                    recipe_.property + "\" you want.",
+          having.empty() ? "compute.property" : "compute.source");
     source_ = having.front();
     progress_.report(0, "Reading the scan");
     auto file = STRATA_TRY(read_source(store_, model_, source_, progress_));
@@ -246,7 +252,7 @@ class Measure {
   std::string other_model_, source_;
 };
 
-// Of what was painted, by a part of the tiles' texels at even steps.
+// Returns the range of the painted values, from a part of the tiles' texels at even steps.
 ValueRange range_of(const TileMap& tiles, ValueType type) {
   constexpr std::size_t kMaxValues = 1'000'000;
   const std::size_t step = std::max<std::size_t>(1, tiles.size() * kTexelsPerTile / kMaxValues);
@@ -270,8 +276,8 @@ ValueRange range_of(const TileMap& tiles, ValueType type) {
   return {least, quantile(0.02), quantile(0.98), most};
 }
 
-// `rounds`: measures become whole numbers where the type wants them; given numbers must be. `from`:
-// share of the work already done.
+// `rounds`: measured values are rounded if the type needs whole numbers; given numbers must fit the
+// type. `from`: share of the work that is already done.
 Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value, ValueType type,
                       int resolution, bool rounds, double from, Progress& progress) {
   progress.begin_stage(from, (1 + from) / 2);

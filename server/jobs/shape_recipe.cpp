@@ -38,7 +38,7 @@ double edge_mm(const Model& model) {
                      model);
 }
 
-// To two digits, as a person would say it.
+// Rounds to two digits, for people.
 double rounded(double value) {
   if (!(value > 0)) return value;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
@@ -47,9 +47,9 @@ double rounded(double value) {
 
 Result<void> refuse_foreign(bool is_set, bool takes, const char* member, ShapeKind kind) {
   if (!is_set || takes) return {};
-  return fail(ErrorCode::invalid, "Not of this kind",
-              "`" + std::string(member) + "` has no meaning for the kind " +
-                  std::string(name(kind)) + "; leave it out.",
+  return fail(ErrorCode::invalid, "Option not applicable",
+              "`" + std::string(member) + "` does not apply to the kind " +
+                  std::string(name(kind)) + ". Leave it out.",
               "compute." + std::string(member));
 }
 
@@ -69,10 +69,12 @@ Result<void> check_members(const ShapeRecipe& r) {
     STRATA_TRY(refuse_foreign(is_set, takes, member, kind));
   if (kind == ShapeKind::model_distance && r.model.empty())
     return fail(ErrorCode::invalid, "Model missing",
-                "Name the model whose surface the distance is measured to.", "compute.model");
+                "Choose the model to whose surface the server measures the distance.",
+                "compute.model");
   if (kind == ShapeKind::vertex_property && r.property.empty())
     return fail(ErrorCode::invalid, "Property missing",
-                "Name the property of the scan's vertices, such as quality.", "compute.property");
+                "Enter a property of the vertices of the scan, such as quality.",
+                "compute.property");
   return {};
 }
 
@@ -84,8 +86,8 @@ double least_radius_mm(const Model& model) {
 Result<void> check_length(double value, double least, double most, const char* member) {
   if (value >= least && value <= most) return {};
   return fail(ErrorCode::invalid, "Out of range for this model",
-              "For this model it is from " + short_number(rounded(least * 1.05)) + " to " +
-                  short_number(rounded(most)) + " mm.",
+              "For this model, the value must be from " + short_number(rounded(least * 1.05)) +
+                  " to " + short_number(rounded(most)) + " mm.",
               "compute." + std::string(member));
 }
 
@@ -108,7 +110,7 @@ Palette viridis(double low, double high) {
   return palette;
 }
 
-// Blue is hollow or behind, red bulges or stands in front: told apart with every colour vision.
+// Blue is hollow or behind, red bulges or is in front: distinct for all types of color vision.
 Palette diverging(double limit) {
   return linear(-limit, limit,
                 {{33, 102, 172, 255},
@@ -171,9 +173,9 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
 
 std::string_view name(ShapeKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 
-std::optional<ShapeKind> parse_shape_kind(std::string_view wanted) {
+std::optional<ShapeKind> parse_shape_kind(std::string_view name) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (kNames[i] == wanted) return static_cast<ShapeKind>(i);
+    if (kNames[i] == name) return static_cast<ShapeKind>(i);
   return std::nullopt;
 }
 
@@ -200,8 +202,8 @@ Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model) {
   if (recipe.kind == ShapeKind::ambient_occlusion) {
     if (!recipe.rays) recipe.rays = kDefaultRays;
     if (*recipe.rays < kMinRays || *recipe.rays > kMaxRays)
-      return fail(ErrorCode::invalid, "Out of range", "From 16 to 1024 rays a point.",
-                  "compute.rays");
+      return fail(ErrorCode::invalid, "Out of range",
+                  "The number of rays per point must be from 16 to 1024.", "compute.rays");
   }
   return recipe;
 }

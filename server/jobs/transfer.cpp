@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "domain/layers/texel_lookup.h"
+#include "mesh/surface/search_tree.h"
 #include "mesh/surface/surface_normals.h"
+#include "mesh/texels/surface_map.h"
 #include "mesh/texels/texel_owners.h"
 #include "store/content/models.h"
 #include "store/journal/journal_reads.h"
@@ -18,7 +20,7 @@ namespace {
 using GeometryPtr = std::shared_ptr<const mesh::Geometry>;
 constexpr float kNoUv = -1;
 
-// One side of a transfer, and how its texels find their counterparts on the other.
+// One side of a transfer, with the data for finding the counterparts of texels.
 struct Side {
   GeometryPtr geometry;
   std::shared_ptr<const mesh::SearchTree> tree;
@@ -59,8 +61,8 @@ std::optional<mesh::SearchTree::Hit> counterpart(const Side& from, const Side::S
                                  spot.normal, tolerance.least_cos);
 }
 
-// Sums of texels' areas by parts that are one thread's each: no lock, and the same sum on any
-// number of threads.
+// Sums of texels' areas in parts, each by one thread: no lock, and the same sum for any number of
+// threads.
 class AreaSum {
  public:
   explicit AreaSum(std::size_t texels) : parts_(texels / mesh::kTexelsAtOnce + 1) {}
@@ -87,7 +89,7 @@ class Group {
   int resolution() const { return resolution_; }
   double matched_m2() const { return matched_m2_; }
 
-  // Where on the source each of the target's texels takes its values from.
+  // Finds the place on the source from which each of the target's texels takes its values.
   Result<void> match(double from, double to) {
     progress_.begin_stage(from, from + 0.2 * (to - from));
     auto map = STRATA_TRY(target_.surface_map(resolution_));
@@ -108,7 +110,8 @@ class Group {
     return done;
   }
 
-  // Painted surface of each layer on the source, and what of it no place of the target takes.
+  // Painted surface of each layer on the source, and the part of it without a counterpart on the
+  // target.
   struct Balance {
     double source_m2 = 0, lost_m2 = 0;
   };

@@ -1,5 +1,8 @@
 #include "jobs/transfer_features.h"
 
+#include "mesh/surface/geometry.h"
+#include "mesh/surface/search_tree.h"
+
 namespace strata::jobs {
 
 TransferredFeatures transfer_features(std::span<const SurfaceFeature> features, const Model& source,

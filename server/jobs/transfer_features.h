@@ -10,13 +10,13 @@ namespace strata::jobs {
 
 struct TransferredFeatures {
   std::vector<SurfaceFeature> features;  // on the target
-  // of those given: at least a part has no counterpart within the tolerance
+  // number of given features of which at least a part has no counterpart within the tolerance
   std::size_t lost_features = 0;
 };
 
-// Lines and points of the source as they lie on the target: each place becomes the nearest one of
-// its surface. A line is parted where that is farther than the tolerance. Both models' world
-// coordinates are taken to be of one system, in their own units.
+// Moves lines and points of the source to the target: each place moves to the nearest one of the
+// target's surface. A line is split where that is farther than the tolerance. The world coordinates
+// of both models must be of one system, each in its own units.
 TransferredFeatures transfer_features(std::span<const SurfaceFeature> features, const Model& source,
                                       const TransferTarget& target, double tolerance_mm);
 

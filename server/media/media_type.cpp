@@ -47,7 +47,7 @@ bool has_at(std::string_view text, std::size_t offset, std::string_view part) {
   return text.size() >= offset + part.size() && text.substr(offset, part.size()) == part;
 }
 
-// Formats that share a container.
+// Distinguishes formats that share a container.
 std::string_view riff_type(std::string_view head) {
   if (has_at(head, 8, "WEBP")) return "image/webp";
   if (has_at(head, 8, "WAVE")) return "audio/wav";
@@ -66,14 +66,14 @@ std::string_view brand_type(std::string_view brand) {
 }
 
 std::string_view zip_type(std::string_view head) {
-  // OpenDocument and EPUB put their type first, uncompressed.
+  // OpenDocument and EPUB have their type first, uncompressed.
   for (const auto type :
        {"application/vnd.oasis.opendocument.text"sv,
         "application/vnd.oasis.opendocument.spreadsheet"sv,
         "application/vnd.oasis.opendocument.presentation"sv,
         "application/vnd.oasis.opendocument.graphics"sv, "application/epub+zip"sv})
     if (has_at(head, 30, "mimetype") && has_at(head, 38, type)) return type;
-  // Office names its parts; which of them comes first is nowhere said.
+  // Office names its parts, in an unspecified order.
   if (head.find("[Content_Types].xml") == std::string_view::npos &&
       head.find("_rels/.rels") == std::string_view::npos)
     return "application/zip";
@@ -111,7 +111,7 @@ bool is_text(std::string_view head) {
   });
 }
 
-// What a browser would take for markup, whatever stands around it.
+// Detects markup that a browser would interpret, anywhere in the text.
 std::string_view markup_type(std::string_view text) {
   constexpr std::array kHtml = {"<!doctype html"sv,
                                 "<html"sv,

@@ -24,7 +24,7 @@ struct DestroyTurbo {
   void operator()(void* handle) const { tjDestroy(handle); }
 };
 
-// They keep tables: one a thread.
+// Codecs keep tables: one per thread.
 tjhandle codec(tjhandle (*make)()) {
   tjhandle handle = make();
   if (!handle)
@@ -41,7 +41,7 @@ tjhandle decompressor() {
   return handle.get();
 }
 
-// Releases what libpng keeps between the two halves of reading.
+// Releases libpng's data between the two steps of reading.
 struct PngReader {
   png_image image{};
   PngReader() { image.version = PNG_IMAGE_VERSION; }
@@ -49,11 +49,10 @@ struct PngReader {
   ~PngReader() { png_image_free(&image); }
 };
 
-// From here on what encoding takes is grown: the worst case would be more than the pixels
-// themselves.
+// Above this size the output buffer grows: the worst case would be larger than the pixels.
 constexpr std::size_t kLargePicture_bytes = std::size_t{64} << 20;
 
-// For the C library: a stream's bytes at the end of a vector.
+// For the C library: appends a stream's bytes to a vector.
 ssize_t append_bytes(void* vector, const char* bytes, std::size_t count) {
   auto& out = *static_cast<std::vector<std::uint8_t>*>(vector);
   try {
@@ -87,7 +86,7 @@ Result<PictureInfo> begin_png(PngReader& reader, std::span<const std::uint8_t> b
   return sized_picture(PictureFormat::png, reader.image.width, reader.image.height, largest_side);
 }
 
-// Inks to colours, in place.
+// Converts inks to colors, in place.
 void show_inks(std::vector<std::uint8_t>& pixels, bool inverted) {
   for (std::size_t i = 0; i + 3 < pixels.size(); i += 4) {
     const unsigned paper = inverted ? pixels[i + 3] : 255u - pixels[i + 3];
@@ -115,12 +114,12 @@ Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_sid
   picture.rgba.resize(std::size_t(picture.width) * std::size_t(picture.height) * 4);
   const tjhandle handle = decompressor();
   const bool is_cmyk = space == TJCS_CMYK || space == TJCS_YCCK;
-  // LIMITSCANS: a small file of many scans would take minutes.
+  // LIMITSCANS: a small file with many scans would take minutes.
   if (tjDecompress2(handle, bytes.data(), bytes.size(), picture.rgba.data(), picture.width, 0,
                     picture.height, is_cmyk ? TJPF_CMYK : TJPF_RGBA,
                     TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
-    // Strange but harmless bytes are only warnings; a picture that ends too early is one, too, and
-    // is refused.
+    // The library only warns of harmless deviations, but also of a truncated picture, which is
+    // refused.
     const std::string why = tjGetErrorStr2(handle);
     if (tjGetErrorCode(handle) == TJERR_FATAL || says_premature_end(why))
       return damaged_picture(PictureFormat::jpeg, why);
@@ -133,7 +132,7 @@ Result<Picture> decode_png(std::span<const std::uint8_t> bytes, int largest_side
   PngReader reader;
   const auto info = STRATA_TRY(begin_png(reader, bytes, largest_side));
   reader.image.format = PNG_FORMAT_RGBA;
-  reader.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // what writers of photographs mean by 16 bits
+  reader.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // the usual meaning of 16-bit photographs
   Picture picture{info.width, info.height, {}};
   picture.rgba.resize(PNG_IMAGE_SIZE(reader.image));
   if (!png_image_finish_read(&reader.image, nullptr, picture.rgba.data(), 0, nullptr))
@@ -147,7 +146,7 @@ bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic, st
                     [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
 }
 
-// Formats that people send and that no library here reads, so that the refusal names them.
+// Common formats without a reader, so that the error names them.
 struct OtherFormat {
   std::size_t at;
   std::string_view magic, name;
@@ -172,11 +171,13 @@ tl::unexpected<Error> no_format(std::span<const std::uint8_t> bytes) {
   for (const OtherFormat& other : kOtherFormats)
     if (starts_with(bytes, other.magic, other.at))
       return fail(
-          ErrorCode::unsupported, "Picture format not taken",
+          ErrorCode::unsupported, "Unsupported picture format",
           "The picture is " + std::string(other.name) +
-              ", which is not read; save it as JPEG or PNG, and a model with such textures, too.");
-  return fail(ErrorCode::unsupported, "Picture format not taken",
-              "The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA; save it as one of them.");
+              ", a format that the server cannot read. Save the picture, or the textures of "
+              "the model, as JPEG or PNG.");
+  return fail(ErrorCode::unsupported, "Unsupported picture format",
+              "The picture is not a JPEG, PNG, TIFF, WebP, BMP or TGA file. Save it in one "
+              "of these formats.");
 }
 
 }  // namespace
@@ -203,9 +204,10 @@ tl::unexpected<Error> damaged_picture(PictureFormat format, const std::string& w
 Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height,
                                   int largest_side) {
   if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint64_t>(largest_side))
-    return fail(ErrorCode::invalid, "Picture size not usable",
+    return fail(ErrorCode::invalid, "Invalid picture size",
                 "The picture has " + std::to_string(width) + " × " + std::to_string(height) +
-                    " pixels; 1 to " + std::to_string(largest_side) + " a side are taken.");
+                    " pixels. Each side must have 1 to " + std::to_string(largest_side) +
+                    " pixels.");
   return PictureInfo{format, static_cast<int>(width), static_cast<int>(height)};
 }
 
@@ -264,7 +266,7 @@ std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int wi
   check_size(rgba, width, height);
   const tjhandle handle = compressor();
   const int sampling = settings.full_color ? TJSAMP_444 : TJSAMP_420;
-  // The fast transform's errors show only where little else is lost.
+  // The errors of the fast transform are visible only at high quality.
   const int transform = settings.quality < 85 ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT;
   const auto compress = [&](unsigned char** out, unsigned long* size, int flags) {
     if (tjCompress2(handle, rgba.data(), width, 0, height, TJPF_RGBX, out, size, sampling,
@@ -294,7 +296,7 @@ std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int wid
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGBA;
-  image.flags = PNG_IMAGE_FLAG_FAST;  // half the time for a tenth more bytes
+  image.flags = PNG_IMAGE_FLAG_FAST;  // half the time for 10 % more bytes
   std::vector<std::uint8_t> png;
   const std::unique_ptr<FILE, decltype(&fclose)> file(
       fopencookie(&png, "wb", {nullptr, append_bytes, nullptr, nullptr}), fclose);

@@ -10,14 +10,14 @@
 
 namespace strata {
 
-// Pictures as files, told apart by their bytes, never by a name. Thread-safe.
+// Pictures as files, identified by their bytes, never by a name. Thread-safe.
 //
-// JPEG: also grey and CMYK (whose inks become colours without their profile). PNG: all. TIFF: the
-// first page; grey, colour tables, RGB, CMYK and YCbCr of up to 16 bits, in strips or tiles,
-// losslessly packed, as JPEG or as fax. WebP: still pictures. BMP: without run lengths. TGA: all.
-// Of 16 bits the upper 8 are kept.
+// JPEG: also gray and CMYK (whose inks are converted without their profile). PNG: all. TIFF: the
+// first page; gray, color tables, RGB, CMYK and YCbCr of up to 16 bits, in strips or tiles, with
+// lossless, JPEG or fax compression. WebP: still pictures. BMP: without run lengths. TGA: all.
+// 16-bit values keep their upper 8 bits.
 
-// RGBA8, row 0 at the top, sRGB; alpha is not multiplied in.
+// RGBA8, row 0 at the top, sRGB; alpha is not premultiplied.
 struct Picture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
@@ -26,12 +26,11 @@ struct Picture {
 enum class PictureFormat { jpeg, png, tiff, webp, bmp, tga };
 std::string_view media_type(PictureFormat format);  // "image/jpeg", "image/png", …
 
-// What the first bytes say; nothing: none of them. A TGA has no mark: bytes are one where all
-// fields of its header make sense.
+// Returns the format by the first bytes; nothing: no known format. A TGA has no signature: it is
+// recognized if all fields of its header are plausible.
 std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes);
 
-// SurfaceImages are JPEG or PNG, which every browser shows. Others are stored as the PNG of their
-// pixels.
+// Surface images are JPEG or PNG, which every browser shows. Other formats are converted to PNG.
 inline bool is_surface_image_format(PictureFormat format) {
   return format == PictureFormat::jpeg || format == PictureFormat::png;
 }
@@ -43,19 +42,19 @@ struct PictureInfo {
 
 constexpr int kMaxPictureSide = 16384;
 
-// The size, from the header alone. unsupported: none of the formats, by its name where it is a
-// known one; invalid: damaged, or a side of more than `largest_side`.
+// Returns the size, from the header alone. unsupported: not one of the formats, with the name of a
+// known other format; invalid: damaged, or a side of more than `largest_side`.
 Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes,
                                     int largest_side = kMaxPictureSide);
 
-// Whole, as RGBA8. Refused as above, where the data ends before the picture does, and where it is
-// of a kind that is not read (invalid, which names it). Sizes are checked before anything is
-// allocated; takes at most twice the pixels' memory.
+// Decodes the whole picture as RGBA8. Refuses as above, and (invalid) truncated data and
+// unsupported variants, which the message names. Checks sizes before any allocation; takes at most
+// twice the pixels' memory.
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes,
                                int largest_side = kMaxPictureSide);
 
-// The same, but a JPEG may come smaller, by halves, as long as its longer side keeps `side` pixels:
-// it then takes little memory.
+// The same, but a JPEG may be reduced by halves as long as its longer side has at least `side`
+// pixels: it then takes little memory.
 Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side);
 
 struct JpegSettings {
@@ -64,8 +63,8 @@ struct JpegSettings {
   bool operator==(const JpegSettings&) const = default;
 };
 
-// RGBA8 rows, top first → JPEG, which leaves alpha out. Throws where `rgba` is not width × height ×
-// 4 bytes.
+// Encodes RGBA8 rows, top first, as JPEG, without alpha. Throws if `rgba` is not width × height × 4
+// bytes.
 std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height,
                                       JpegSettings settings);
 std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int width, int height);

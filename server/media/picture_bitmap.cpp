@@ -6,8 +6,7 @@
 
 #include "media/picture_formats.h"
 
-// stb_image, for BMP and TGA alone: no file, no other format, and nothing larger than a picture may
-// be.
+// stb_image, for BMP and TGA only: without files, other formats, and sizes above a picture's limit.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_BMP
@@ -24,7 +23,7 @@ namespace {
 
 static_assert(STBI_MAX_DIMENSIONS == kMaxPictureSide);
 
-// Numbers of a header, the lowest byte first; nothing beyond its end.
+// Reads little-endian numbers of a header; 0 beyond its end.
 std::uint32_t number(std::span<const std::uint8_t> bytes, std::size_t at, int size) {
   std::uint32_t value = 0;
   for (int i = 0; i < size; ++i) {
@@ -51,7 +50,7 @@ BmpHeader bmp_header(std::span<const std::uint8_t> bytes) {
     header.bits = number(bytes, 24, 2);
   } else {
     header.width = number(bytes, 18, 4);
-    const std::uint32_t height = number(bytes, 22, 4);  // negative: the top row comes first
+    const std::uint32_t height = number(bytes, 22, 4);  // negative: the top row is first
     header.height = height >> 31 ? 0u - height : height;
     header.bits = number(bytes, 28, 2);
     header.compression = number(bytes, 30, 4);
@@ -79,7 +78,7 @@ bool is_one_of(std::uint32_t value, std::initializer_list<std::uint32_t> known) 
   return std::find(known.begin(), known.end(), value) != known.end();
 }
 
-// stb_image reads zeros where a file ends too early.
+// stb_image reads zeros from a truncated file.
 bool is_whole_bmp(std::span<const std::uint8_t> bytes) {
   const BmpHeader header = bmp_header(bytes);
   const std::uint64_t row = (header.width * header.bits + 31) / 32 * 4,
@@ -133,11 +132,10 @@ Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::ui
   const BmpHeader header = bmp_header(bytes);
   auto info = STRATA_TRY(sized_picture(format, header.width, header.height, largest_side));
   if (header.compression == 1 || header.compression == 2)
-    return damaged_picture(format,
-                           "its pixels are packed as run lengths; save it without compression");
+    return damaged_picture(format, "it uses run-length compression; save it without compression");
   if (header.compression > 3 || !is_one_of(header.bits, {1, 4, 8, 16, 24, 32}))
     return damaged_picture(
-        format, "it has " + std::to_string(header.bits) + " bits a pixel and compression " +
+        format, "it has " + std::to_string(header.bits) + " bits per pixel and compression " +
                     std::to_string(header.compression) + "; save it with 24 bits, uncompressed");
   return info;
 }
@@ -147,7 +145,7 @@ Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t
   const auto info = STRATA_TRY(inspect_bitmap(format, bytes, largest_side));
   if (!(format == PictureFormat::bmp ? is_whole_bmp(bytes) : is_whole_tga(bytes)))
     return damaged_picture(format, "it ends too early");
-  if (bytes.size() > INT_MAX) return damaged_picture(format, "it has more than 2 GB");
+  if (bytes.size() > INT_MAX) return damaged_picture(format, "it is larger than 2 GB");
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&std::free)> pixels(
       stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,

@@ -6,10 +6,10 @@
 
 namespace strata {
 
-// The readers behind media/picture.h, for its own files only: one unit for each library.
+// The readers behind media/picture.h, for its own files only: one unit per library.
 
 tl::unexpected<Error> damaged_picture(PictureFormat format, const std::string& why);  // invalid
-// `invalid` where a side is none, or more than `largest_side`.
+// `invalid` if a side is 0 or more than `largest_side`.
 Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height,
                                   int largest_side);
 

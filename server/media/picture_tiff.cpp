@@ -14,15 +14,15 @@ tl::unexpected<Error> damaged(const TiffMemory& file) {
                          file.complaint.empty() ? "it is damaged" : file.complaint);
 }
 
-// Of photographs and scans; the other codecs are rare, and each is a reader more that a file can
-// attack.
+// The codecs of photographs and scans; the others are rare, and each would be another parser
+// exposed to attacks.
 bool is_read_codec(int compression) {
   return is_lossless(compression) || compression == COMPRESSION_JPEG ||
          compression == COMPRESSION_CCITTRLE || compression == COMPRESSION_CCITTFAX3 ||
          compression == COMPRESSION_CCITTFAX4;
 }
 
-// Of the first page, as far as libtiff makes colours of it.
+// Describes the first page, if libtiff can convert it to colors.
 Result<PictureInfo> describe(TIFF* tiff, int largest_side) {
   auto info = STRATA_TRY(
       sized_picture(PictureFormat::tiff, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
@@ -32,20 +32,19 @@ Result<PictureInfo> describe(TIFF* tiff, int largest_side) {
             kind = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT),
             compression = tiff_tag<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
   const auto unread = [](const std::string& what) {
-    return damaged_picture(
-        PictureFormat::tiff,
-        what + "; save it with 8 bits a sample, as RGB, without alpha or with it");
+    return damaged_picture(PictureFormat::tiff,
+                           what + "; save it as RGB with 8 bits per sample, with or without alpha");
   };
   if (samples < 1 || samples > kMaxSamples)
-    return unread("it has " + std::to_string(samples) + " samples a pixel");
+    return unread("it has " + std::to_string(samples) + " samples per pixel");
   if (kind == SAMPLEFORMAT_IEEEFP) return unread("its samples are floating-point numbers");
   if (kind == SAMPLEFORMAT_INT) return unread("its samples are signed numbers");
   if (bits > 16) return unread("its samples have " + std::to_string(bits) + " bits");
   if (!is_read_codec(compression) ||
       !TIFFIsCODECConfigured(static_cast<std::uint16_t>(compression)))
-    return unread("its compression " + std::to_string(compression) + " is not read");
+    return unread("its compression " + std::to_string(compression) + " is not supported");
   if (tiff_tag<std::uint16_t>(tiff, TIFFTAG_ORIENTATION) > ORIENTATION_BOTLEFT)
-    return unread("it is stored lying on its side");
+    return unread("it is stored rotated by 90° instead of upright");
   if (TIFFIsTiled(tiff)) {
     const auto width = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
                height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
@@ -76,7 +75,7 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, int lar
              height = static_cast<std::uint32_t>(info.height);
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
   Picture picture{info.width, info.height, std::vector<std::uint8_t>(pixels * 4)};
-  // libtiff writes its 32-bit words where the pixels are to be, and they are taken apart in place.
+  // libtiff writes 32-bit words to the place of the pixels, which are then split in place.
   auto* words = reinterpret_cast<std::uint32_t*>(picture.rgba.data());
   if (!TIFFReadRGBAImageOriented(tiff.get(), width, height, words, ORIENTATION_TOPLEFT, 1))
     return damaged(file);
@@ -84,7 +83,7 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, int lar
     const std::uint32_t packed = words[i], alpha = TIFFGetA(packed);
     const std::uint32_t colors[] = {TIFFGetR(packed), TIFFGetG(packed), TIFFGetB(packed)};
     std::uint8_t* rgba = &picture.rgba[4 * i];
-    // libtiff multiplies alpha in.
+    // libtiff multiplies the colors by alpha.
     for (int c = 0; c < 3; ++c)
       rgba[c] = static_cast<std::uint8_t>(
           alpha == 0 ? 0 : std::min(255u, (colors[c] * 255 + alpha / 2) / alpha));

@@ -11,7 +11,7 @@ const char* meaning(VP8StatusCode status) {
   switch (status) {
     case VP8_STATUS_NOT_ENOUGH_DATA: return "it ends too early";
     case VP8_STATUS_OUT_OF_MEMORY: return "there is not enough memory";
-    case VP8_STATUS_UNSUPPORTED_FEATURE: return "it uses something that libwebp does not know";
+    case VP8_STATUS_UNSUPPORTED_FEATURE: return "it uses a feature that libwebp does not support";
     default: return "it is damaged";
   }
 }
@@ -25,7 +25,7 @@ Result<PictureInfo> inspect_webp(std::span<const std::uint8_t> bytes, int larges
     return damaged_picture(PictureFormat::webp, meaning(status));
   if (features.has_animation)
     return damaged_picture(PictureFormat::webp,
-                           "it is animated; save one of its pictures as a still one");
+                           "it is animated; save one of its pictures as a still picture");
   return sized_picture(PictureFormat::webp, static_cast<std::uint64_t>(std::max(features.width, 0)),
                        static_cast<std::uint64_t>(std::max(features.height, 0)), largest_side);
 }

@@ -29,8 +29,8 @@ class PictureWriter::File {
   virtual std::vector<std::uint8_t> finish() = 0;
 };
 
-// libjpeg reports errors by a function that must not return: as with libpng, what runs below its
-// setjmp holds nothing with a destructor.
+// libjpeg reports errors by a function that must not return: as with libpng, code below its setjmp
+// must not hold objects with destructors.
 class PictureWriter::Jpeg : public PictureWriter::File {
  public:
   Jpeg(int width, int height, JpegSettings settings) {
@@ -129,7 +129,7 @@ class PictureWriter::Png : public PictureWriter::File {
                    static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
                    PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
       png_set_sRGB(writer_.png, writer_.info, PNG_sRGB_INTENT_PERCEPTUAL);
-      // Half the time for a tenth more bytes, as encode_png.
+      // Half the time for 10 % more bytes, as encode_png.
       png_set_filter(writer_.png, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
       png_set_compression_level(writer_.png, 3);
       png_write_info(writer_.png, writer_.info);

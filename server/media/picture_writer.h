@@ -9,19 +9,19 @@
 
 namespace strata {
 
-// Writes a picture as a file of JPEG or PNG while its rows come, top first, so that it is nowhere
-// as a whole. The bytes mean the same as those of encode_jpeg and encode_png. Belongs to one
-// thread. Throws std::runtime_error where the library fails.
+// Writes a picture as a JPEG or PNG file row by row, top first, so that the whole picture is never
+// in memory. The result decodes as that of encode_jpeg and encode_png. Belongs to one thread.
+// Throws std::runtime_error if the library fails.
 class PictureWriter {
  public:
-  // `jpeg` counts for JPEGs alone.
+  // `jpeg` is for JPEGs only.
   PictureWriter(PictureFormat format, int width, int height, JpegSettings jpeg = {});
   ~PictureWriter();
   PictureWriter(PictureWriter&&) noexcept;
 
-  // Whole rows of RGBA8, as many as there are.
+  // Appends whole rows of RGBA8.
   void put(std::span<const std::uint8_t> rgba);
-  // After the last row, once.
+  // Call once, after the last row.
   std::vector<std::uint8_t> finish();
 
  private:

@@ -6,7 +6,7 @@
 namespace strata {
 namespace {
 
-constexpr double kMinShare = 0.5;  // of a cell that is the tool
+constexpr double kMinShare = 0.5;  // of a cell's area that belongs to the tool
 
 bool has_transparency(const Picture& picture) {
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
@@ -14,7 +14,7 @@ bool has_transparency(const Picture& picture) {
   return false;
 }
 
-// How much of a pixel is the tool: 0…255. What is transparent is neither light nor dark.
+// Returns how much of a pixel is the tool: 0…255. Transparent pixels are neither light nor dark.
 std::uint32_t weight(const std::uint8_t* rgba, ShapePart part) {
   const std::uint32_t alpha = rgba[3];
   if (part == ShapePart::opaque) return alpha;
@@ -22,8 +22,7 @@ std::uint32_t weight(const std::uint8_t* rgba, ShapePart part) {
   return (part == ShapePart::light ? luma : 255u - luma) * alpha / 255u;
 }
 
-// Sums of weights over rectangles from the picture's corner; between pixels they are linear in both
-// directions.
+// Sums of weights over rectangles from the picture's corner; bilinear between pixels.
 class WeightSums {
  public:
   WeightSums(const Picture& picture, ShapePart part)
@@ -76,11 +75,11 @@ Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part
     }
   }
   if (!any)
-    return fail(
-        ErrorCode::invalid, "Empty shape",
-        "No part of the picture is the tool: it is what is opaque, or else what is light. Say `part=dark` for a dark "
-        "shape on a light ground.",
-        "body");
+    return fail(ErrorCode::invalid, "Empty shape",
+                "The server found no shape in the picture. It takes the opaque part or, if "
+                "there is no transparency, the light part. Send `part=dark` for a dark shape "
+                "on a light background.",
+                "body");
   return bits;
 }
 
@@ -104,7 +103,7 @@ ShapeTexture::ShapeTexture(const ShapeBits& bits)
     if (other_x < 0 || other_x > kLast || other_y < 0 || other_y > kLast) return;
     at(x, y) = static_cast<std::uint8_t>(std::min<int>(at(x, y), at(other_x, other_y) + 1));
   };
-  // Two sweeps over eight neighbours are exact for a king's steps.
+  // Two passes over eight neighbors are exact for chessboard distance.
   for (int y = 0; y <= kLast; ++y) {
     for (int x = 0; x <= kLast; ++x) {
       if (is_set(x, y)) at(x, y) = 0;

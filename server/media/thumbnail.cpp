@@ -44,8 +44,8 @@ Picture shrunk(const Picture& picture, int largest_side) {
   return small;
 }
 
-// As Exif numbers them: 2 mirrored, 3 upside down, 6 to be turned to the right, 8 to the left, and
-// those mirrored.
+// Exif's numbers: 2 mirrored, 3 upside down, 6 to be turned to the right, 8 to the left; the others
+// are these mirrored.
 Picture turned(Picture picture, int orientation) {
   if (orientation == 1) return picture;
   const bool swaps = orientation >= 5;
@@ -80,7 +80,7 @@ Result<std::vector<std::uint8_t>> make_thumbnail(std::span<const std::uint8_t> b
   if (pixels > most)
     return fail(ErrorCode::invalid, "Picture too large",
                 "The picture has " + std::to_string(pixels / 1'000'000) +
-                    " million pixels; small ones are made of at most " +
+                    " million pixels. The server makes thumbnails of pictures with at most " +
                     std::to_string(most / 1'000'000) + " million.");
   auto picture = STRATA_TRY(decode_coarse(bytes, largest_side));
   const Picture small = turned(shrunk(picture, largest_side), facts.orientation);

@@ -8,16 +8,16 @@
 
 namespace strata {
 
-// Pixels that the picture's header may announce; more are refused before anything is decoded.
+// Limits of the pixels in a picture's header; larger pictures are refused before decoding.
 struct ThumbnailLimits {
-  std::int64_t coarse = 200'000'000;  // of JPEGs, which come smaller than they are
-  // where all must be in memory at once: all other formats, and progressive JPEG
+  std::int64_t coarse = 200'000'000;  // of JPEGs, which are reduced while decoding
+  // of pictures that must be completely in memory: all other formats, and progressive JPEG
   std::int64_t whole = 64'000'000;
 };
 
-// A JPEG of at most `largest_side` pixels a side of a picture, turned as its Exif data says,
-// transparent places white. Every pixel is the mean of those it stands for. unsupported: neither of
-// the formats; invalid: damaged, or too many pixels.
+// Returns a JPEG of a picture with at most `largest_side` pixels per side, turned as its Exif data
+// says, with transparent areas white. Every pixel is the mean of the pixels that it covers.
+// unsupported: not one of the formats; invalid: damaged, or too many pixels.
 Result<std::vector<std::uint8_t>> make_thumbnail(std::span<const std::uint8_t> picture,
                                                  int largest_side, ThumbnailLimits limits = {});
 

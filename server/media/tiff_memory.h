@@ -10,12 +10,12 @@
 
 namespace strata {
 
-// TIFF files in memory, for libtiff. What a file may make it allocate at once is bounded.
+// TIFF files in memory, for libtiff. Limits single allocations that a file can cause.
 
 // of a file's own tiles; larger ones are refused
 constexpr std::uint64_t kMaxTiffTileBytes = 256u << 20;
 
-// A file in memory, and libtiff's first complaint about it.
+// A file in memory, and the first error message of libtiff about it.
 struct TiffMemory {
   std::span<const std::uint8_t> in;          // reading
   std::vector<std::uint8_t>* out = nullptr;  // writing
@@ -30,10 +30,10 @@ struct CloseTiff {
 };
 using Tiff = std::unique_ptr<TIFF, CloseTiff>;
 
-// Null: it cannot be opened, see the complaint. `file` outlives the result.
+// Null: the file cannot be opened; see the message. `file` must outlive the result.
 Tiff open_tiff(TiffMemory& file, const char* mode);
 
-// Of the directory that is open; its default where the file has none, otherwise 0.
+// Returns a tag of the open directory; its default if the file has none, otherwise 0.
 template <class T>
 T tiff_tag(TIFF* tiff, std::uint32_t tag) {
   T value = 0;
@@ -41,7 +41,7 @@ T tiff_tag(TIFF* tiff, std::uint32_t tag) {
   return value;
 }
 
-// Of a compression code: the others change values, and are the larger attack surface.
+// Whether a compression is lossless: others change values, and are a larger attack surface.
 bool is_lossless(int compression);
 
 }  // namespace strata

@@ -7,12 +7,13 @@
 
 namespace strata::mesh {
 
-// What lies in each of a row of buckets; an item that reaches across several is in each of them.
+// The items of each bucket in a row of buckets; an item that extends over several is in each of
+// them.
 class Buckets {
  public:
   Buckets() = default;
-  // reach_of(item) of 0 … items - 1 → pair of the first and the last bucket that it lies in. Asked
-  // twice.
+  // reach_of(item) of 0 … items - 1 returns the pair of the first and last bucket of an item. It is
+  // called twice for each.
   template <class ReachOf>
   Buckets(int count, std::uint32_t items, const ReachOf& reach_of)
       : first_(static_cast<std::size_t>(count) + 1, 0) {

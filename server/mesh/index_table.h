@@ -12,13 +12,14 @@ inline std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29);
 }
 
-// Open addressing over indices into arrays that live elsewhere: 4 bytes a slot, at most 3/4 full.
+// Hash table (open addressing) of indices into other arrays: 4 bytes a slot, at most 3/4 full.
 class IndexTable {
  public:
   explicit IndexTable(std::size_t expected)
       : slots_(std::bit_ceil(std::max<std::size_t>(16, expected + expected / 3 + 1)), kEmpty) {}
 
-  // The index that is `equal` to `index` and was put in earlier, or `index` itself, put in now.
+  // Returns an index inserted earlier that is `equal` to `index`, or inserts `index` and returns
+  // it.
   template <class Equal>
   std::uint32_t find_or_insert(std::uint64_t hash, std::uint32_t index, Equal equal) {
     for (std::size_t slot = first(hash);; slot = (slot + 1) & (slots_.size() - 1)) {
@@ -27,12 +28,12 @@ class IndexTable {
     }
   }
 
-  // Puts `index` in beside others of the same hash.
+  // Inserts `index` even if an equal one is present.
   void insert(std::uint64_t hash, std::uint32_t index) {
     find_or_insert(hash, index, [](std::uint32_t) { return false; });
   }
 
-  // Calls visit(index) for all that were put in with this hash, and perhaps others.
+  // Calls visit(index) for all indices inserted with this hash, and perhaps others.
   template <class Visit>
   void for_each(std::uint64_t hash, Visit visit) const {
     for (std::size_t slot = first(hash); slots_[slot] != kEmpty;

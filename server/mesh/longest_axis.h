@@ -4,7 +4,8 @@
 
 namespace strata::mesh {
 
-// Of a vector without negative components: 0, 1 or 2, the first of equals.
+// Returns the axis (0, 1 or 2) of the largest component, the first of equal ones. `extent` has no
+// negative component.
 inline int longest_axis(const glm::vec3& extent) {
   return extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
 }

@@ -11,7 +11,7 @@
 
 namespace strata::mesh {
 
-// For long work beside which others paint and look: on many cores it leaves them the other half.
+// Number of threads for long work during which people paint and view: on many cores, half of them.
 inline int background_threads() {
   return static_cast<int>(std::max(2u, std::thread::hardware_concurrency() / 2));
 }
@@ -20,9 +20,9 @@ inline int hardware_threads() {
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-// Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once,
-// in any order. Between them the current question (domain/people/question.h) is asked whether it
-// goes on. What one of them throws ends all and is thrown here.
+// Runs work(0) … work(count - 1) on up to `threads` threads (including the calling one), each index
+// once, in any order. Before each index it checks whether the current question
+// (domain/people/question.h) may continue. The first exception ends the work and is rethrown here.
 template <class Work>
 void parallel_for(int threads, int count, Work&& work) {
   const QuestionTurn turn;

@@ -5,7 +5,7 @@
 
 namespace strata::room {
 
-// The sequence of an edit: what is asked for is meant as it was after it. Nothing: as it is.
+// The sequence of an edit: selects the state after it. Nothing: the present state.
 using At = std::optional<std::int64_t>;
 
 }  // namespace strata::room

@@ -6,11 +6,11 @@
 namespace strata::room {
 namespace {
 
-// Distinct values of a raster's valid texels.
+// Returns the distinct values of a raster's valid texels.
 std::set<std::int64_t> keys_in(const TileMap& tiles) {
   std::set<std::int64_t> keys;
   for (const auto& [address, tile] : tiles) {
-    std::optional<std::uint32_t> last;  // neighbours mostly share a key
+    std::optional<std::uint32_t> last;  // neighbors mostly share a key
     for (std::size_t word = 0; word < tile->valid.words.size(); ++word)
       for (auto rest = tile->valid.words[word]; rest != 0; rest &= rest - 1) {
         const std::uint32_t bits = tile->bits(static_cast<int>(word * 64) + std::countr_zero(rest));
@@ -59,14 +59,14 @@ bool computes(const EditRequest& edit) {
 
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing) {
   if (is_as_computed(layer) && !computing)
-    return fail(
-        ErrorCode::forbidden, "Layer locked",
-        "The layer " + layer.name +
-            " is locked: its values were computed. A curator can unlock it to edit it by hand.",
-        "layer");
+    return fail(ErrorCode::forbidden, "Layer is locked",
+                "The layer " + layer.name +
+                    " is locked because its values were computed. Ask a curator to unlock it "
+                    "before you edit it by hand.",
+                "layer");
   if (!layer.locked || role >= Role::curator) return {};
-  return fail(ErrorCode::forbidden, "Layer locked",
-              "The layer " + layer.name + " is locked: a curator can unlock it.", "layer");
+  return fail(ErrorCode::forbidden, "Layer is locked",
+              "The layer " + layer.name + " is locked. Ask a curator to unlock it.", "layer");
 }
 
 nlohmann::json to_json(const EditAnswer& answer) {

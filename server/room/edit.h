@@ -23,7 +23,7 @@
 
 namespace strata::room {
 
-// What a caller asks for, in domain terms; net translates messages into it.
+// Requests of a caller, in domain terms; net translates messages into them.
 struct StrokeEdit {
   StrokeBatch batch;
   Uuid stroke;
@@ -33,15 +33,15 @@ struct FillEdit {
   bool erase = false;
   std::uint32_t value_bits = 0;
   struct Everywhere {};
-  struct Where {  // of the model's layers as they are when the edit's turn comes
+  struct Where {  // of the model's layers as they are when the edit starts
     Expression condition;
   };
   struct Island {  // the connected piece of the surface, across the seams of its atlas
     Place at;
   };
   struct Connected {
-    // what holds the same as the place, or like it nothing, and is connected with it across the
-    // surface
+    // the texels that have the same value as the place, or like it no value, and are connected with
+    // it across the surface
     Place at;
   };
   std::variant<Everywhere, Where, Island, Connected> region = Everywhere{};
@@ -53,20 +53,21 @@ struct PolygonEdit {
 };
 struct ImportEdit {
   TileMap tiles;
-  // what is valid in the tiles is painted over the layer; otherwise they replace its whole content
+  // true: valid texels of the tiles are painted over the layer; false: the tiles replace its whole
+  // content
   bool over = false;
-  bool computed = false;  // what a layer is made with, from the shape
+  bool computed = false;  // first content of a layer that is computed from the shape
 };
 struct ComputeEdit {
-  // a computed layer's content, from the layers and records as they are when the edit's turn comes
+  // a computed layer's content, from the layers and records as they are when the edit starts
   Expression expression;
-  // what it reads of the mesh (kShapeNames), as layers `surface.…`
+  // shape values that the expression reads (kShapeNames), as layers `surface.…`
   std::vector<query::LayerView> shapes;
-  bool overwrites = false;  // also what was edited by hand since
+  bool overwrites = false;  // also later edits by hand
 };
 struct UndoEdit {};  // the author's newest stroke in force on the layer
 struct RedoEdit {};
-struct ReviewEdit {  // of edits that wait for it, or were reviewed before
+struct ReviewEdit {  // of edits that wait for review, or were reviewed before
   Decision decision = Decision::accept;
   store::Reviewees which;
   std::string reason;  // for the authors
@@ -82,27 +83,27 @@ struct EditRequest {
   std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit,
                RestoreEdit, ReviewEdit>
       edit{};
-  nlohmann::json record{};  // the edit as asked, for the journal
-  // it is part of its answer; none: it has the limits of its author
+  nlohmann::json record{};  // the edit as requested, for the journal
+  // the question that this edit answers, with its limits; null: the limits of the author
   std::shared_ptr<Question> question{};
 };
 
-// The keys that an edit of the layer paints: none where it erases, undoes or brings back what was.
+// Returns the keys that an edit of the layer paints: empty if it erases, undoes or restores.
 std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit);
 
-// Whether the edit paints by itself: undo, redo and reviews only move what others painted.
+// Returns whether the edit paints: undo, redo and reviews only change the state of other edits.
 bool paints(const EditRequest& edit);
-// Whether the edit is provisional until a curator has accepted or rejected it.
+// Returns whether the edit is provisional until a curator accepts or rejects it.
 bool waits_for_review(const Layer& layer, const EditRequest& edit);
 
-// Whether the edit writes what a layer's values are computed to be, and is no change by hand.
+// Returns whether the edit writes a layer's computed values, and is not a change by hand.
 bool computes(const EditRequest& edit);
-// Refused (forbidden, `layer`): a locked layer, to who is no curator; one that is as it was
-// computed, to everybody who is not `computing` it. The pipeline asks before it begins an edit;
-// others only where they would change something else before that.
+// Refused (forbidden, `layer`): a locked layer, unless the role is curator or higher; a layer with
+// its computed content, unless `computing`. The pipeline checks this before it begins an edit;
+// other callers check it only if they change something else before.
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);
 
-// What a repeat of an edit in the journal is told.
+// Returns the answer to a repeat of an edit in the journal.
 EditAnswer idempotent_response(const store::JournalRow& row);
 
 }  // namespace strata::room

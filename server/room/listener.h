@@ -16,8 +16,8 @@
 
 namespace strata::room {
 
-// What the people in a room hear. Called on the room's strand, in one order for all; must return
-// quickly (post to a socket).
+// Receives the events of a room. Called on the room's strand, in the same order for all listeners;
+// must return quickly (post to a socket).
 class Listener {
  public:
   virtual ~Listener() = default;
@@ -33,7 +33,7 @@ class Listener {
     struct Review {
       Decision decision = Decision::accept;
       std::string reason;
-      std::vector<std::string> authors;  // of what was reviewed
+      std::vector<std::string> authors;  // of the reviewed edits
     };
     std::optional<Review> review{};
   };
@@ -45,10 +45,10 @@ class Listener {
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
   virtual void surface_image_changed(LayerChange change, const SurfaceImage& image) = 0;
   virtual void model_changed(const Model& model) = 0;
-  virtual void model_deleted() = 0;  // nothing else follows
+  virtual void model_deleted() = 0;  // the last event
   virtual void presence_changed() = 0;
-  // Of this person's own view, and on the GPU thread: it cannot be drawn as asked for, until
-  // something changes.
+  // An event of this participant's view only, on the GPU thread: the view cannot be drawn as
+  // requested, until something changes.
   virtual void view_refused(std::uint32_t view_id, const Error& why) = 0;
 };
 

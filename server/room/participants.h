@@ -18,28 +18,28 @@ namespace strata::room {
 
 class Listener;
 
-// Where somebody points on the surface.
+// The position of a pointer on the surface.
 struct Pointing {
   glm::dvec3 position{0};        // world
-  std::optional<double> radius;  // world, of the brush in hand
+  std::optional<double> radius;  // world, of the current brush
 };
 
-// How others see a person.
+// The appearance of a participant to others.
 struct Portrait {
   std::string full_name{};  // empty: none was given
   std::string color{kNobodysColor};
 };
 
-// What is known of one connection to the others; never stored.
+// The data of one connection that others receive; never stored.
 struct Presence {
   Uuid session;
   std::string user;
   std::string full_name;  // empty: none was given
   std::string color;      // #rrggbb
   std::optional<Pointing> pointer{};
-  bool leading = false;             // asks the others to look with them
-  std::optional<Uuid> following{};  // session of whom they look with
-  std::optional<Camera> camera{};   // newest of view 0 without its section, for who follows them
+  bool leading = false;             // asks the others to follow
+  std::optional<Uuid> following{};  // session of the leader
+  std::optional<Camera> camera{};   // newest of view 0 without its section, for followers
 };
 
 // One connection in a room. Methods are thread-safe and return at once. Destroying it leaves the
@@ -50,25 +50,26 @@ class Participant {
   virtual Uuid session() const = 0;
   virtual void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera,
                       bool moving) = 0;
-  // Replaces everything that was set before for this view.
+  // Replaces all former settings of this view.
   virtual Result<void> show(std::uint32_t view_id, ViewSettings settings) = 0;
   virtual void ack(std::uint32_t view_id, std::uint64_t frame) = 0;
-  virtual void edits() = 0;  // its person does: onlookers do not hold up what they see of it
+  virtual void edits() = 0;  // its user edits: slow frames of other participants do not delay
+                             // theirs
   virtual void pointer(std::optional<Pointing> at) = 0;
-  // Replaces what was said before. Refused as a whole, in `follow`: a session that is not here
-  // (not_found), one that follows this one (conflict).
+  // Replaces the former settings. Refused as a whole, in `follow`: a session that is not in the
+  // room (not_found), one that follows this one (conflict).
   virtual Result<void> look_together(bool leading, const std::optional<Uuid>& follow) = 0;
 };
 
-// Who is in a room. Thread-safe.
+// The participants of a room. Thread-safe.
 class Participants {
  public:
   virtual ~Participants() = default;
-  // Frames and what the listener hears are of layers and columns that they see, from one moment to
-  // the next.
+  // Frames and events contain only layers and columns that the participant sees at that moment.
   virtual std::unique_ptr<Participant> join(Author who, Portrait portrait, Listener* listener,
                                             stream::SendFrames send) = 0;
-  // Everyone, as told to one of the sessions: of all cameras only that of whom it follows.
+  // Returns all participants, as one of the sessions receives them: of all cameras, only that of
+  // its leader.
   virtual std::vector<Presence> presence(const Uuid& receiver) const = 0;
 };
 

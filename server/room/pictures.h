@@ -21,16 +21,17 @@
 namespace strata::room {
 
 struct PictureRequest {
-  // exactly these, by slug; nothing: those that are visible
+  // exactly these, by slug; nothing: the visible ones
   std::optional<std::vector<std::string>> layers{};
   ViewSettings shown{};
   At at{};  // of the layers
-  // With `at`, by layer: what waited for review then, and is hatched. Without, what waits now is.
+  // With `at`, by layer: texels that waited for review then, which are hatched. Without `at`, those
+  // that wait now are hatched.
   std::map<LayerId, TileMap> provisional{};
-  Role seen_by = Role::owner;  // columns that it does not see neither draw nor colour
+  Role seen_by = Role::owner;  // columns that it does not see affect neither drawing nor colors
 };
 
-// A camera with a picture of its own, which has so many pixels to one of its window's.
+// A camera with a separate picture, which has `pixels` pixels for each one of the camera's window.
 struct PicturePart {
   Camera camera;
   double pixels = 1;
@@ -43,28 +44,27 @@ struct PictureBand {
 };
 using SeePicture = std::function<Result<void>(std::size_t part, const PictureBand& band)>;
 
-// Pictures of an open model for scripts and sheets, and what they show. Blocks. Thread-safe.
+// Pictures of an open model for scripts and figures. Blocks. Thread-safe.
 class Pictures {
  public:
   virtual ~Pictures() = default;
-  // RGBA8, top row first; waits for the looks that they show. `see` gets each in turn, in bands of
-  // its whole width from the top, and may end it with an Error: a large picture is nowhere as a
-  // whole, and between its bands others have theirs. With `at` all show one state, also while
-  // others paint.
+  // Draws pictures as RGBA8, top row first; waits for the surface images that they show. `see`
+  // receives each picture in turn, in bands of its whole width from the top, and may end it with an
+  // Error: a large picture is never in memory as a whole, and between its bands, other requests are
+  // drawn. With `at`, all bands show one state, even during painting.
   virtual Result<void> draw(const PictureRequest& request, std::span<const PicturePart> parts,
                             const SeePicture& see) = 0;
-  // One, as a file.
+  // Draws one picture as a file.
   Result<std::vector<std::uint8_t>> draw_file(const PictureRequest& request, const Camera& camera,
                                               PictureFormat format, JpegSettings jpeg);
-  // What a layer of whole numbers has where it is seen: in the middle of each cell of a grid over
-  // the camera's window, row by row from the top left. Nothing: no surface, or nothing painted
-  // there.
+  // Returns the visible values of a layer of whole numbers: in the middle of each cell of a grid
+  // over the camera's window, row by row from the top left. Nothing: no surface, or no value there.
   virtual Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer,
                                                                       const Camera& camera,
                                                                       int columns, int rows,
                                                                       At at = {}) = 0;
-  // What is seen of layers (bottom to top) over a camera's window; `covers`: one for each. See
-  // query::seen_layers.
+  // Returns the visible parts of layers (bottom to top) in a camera's window; `covers`: one for
+  // each layer. See query::seen_layers.
   virtual Result<std::vector<query::SeenLayer>> seen_layers(
       const std::vector<std::string>& layers, const std::vector<query::LayerCover>& covers,
       const Camera& camera, int columns, int rows, At at = {}) = 0;

@@ -8,19 +8,25 @@
 #include <vector>
 
 #include "domain/layers/tile_mirror.h"
-#include "query/sampling/profile.h"
-#include "query/sampling/texel_samples.h"
 #include "query/sampling/values.h"
-#include "query/statistics/cross_table.h"
-#include "query/statistics/key_areas.h"
 #include "query/statistics/perimeter.h"
 #include "query/statistics/quantities.h"
 #include "query/statistics/statistics.h"
 #include "room/selection.h"
 
+namespace strata::mesh {
+struct SurfaceMap;
+}
+namespace strata::query {
+struct CrossTable;
+struct KeyArea;
+struct Profile;
+struct SurfaceTexels;
+}  // namespace strata::query
+
 namespace strata::room {
 
-// A state of a layer and what was measured of it.
+// A state of a layer with its measurements.
 struct LayerAreas {
   query::LayerView view;
   std::shared_ptr<const mesh::SurfaceMap> map;  // of the layer's resolution
@@ -28,30 +34,30 @@ struct LayerAreas {
   query::Perimeters perimeters;
 };
 
-struct StatisticsWanted {  // that takes longer
+struct StatisticsOptions {  // options that take longer
   bool quantiles = false, pieces = false, perimeter = false;
 };
 struct SelectedArea {
-  int resolution = 0;  // of the texels that are counted
+  int resolution = 0;  // of the counted texels
   std::uint64_t texels = 0;
   double area_m2 = 0, share = 0;                    // of the whole surface
-  glm::dvec3 bounds_min{0}, bounds_max{0};          // world, where there is a texel
-  std::map<std::string, query::Statistics> layers;  // by slug: what they hold there
+  glm::dvec3 bounds_min{0}, bounds_max{0};          // world, if there is a texel
+  std::map<std::string, query::Statistics> layers;  // by slug: their values in the area
 };
 
-struct PlacesInSteps {             // of which each the nearest surface point is taken
-  std::vector<glm::dvec3> places;  // world; 2 at least
+struct PlacesInSteps {             // for each place, the nearest surface point is used
+  std::vector<glm::dvec3> places;  // world; at least 2
   double step = 0;                 // model units, above 0
 };
 struct SeenLine {
   Camera camera;
-  std::vector<glm::dvec2> path;  // window pixels, origin top left; 2 at least
+  std::vector<glm::dvec2> path;  // window pixels, origin top left; at least 2
 };
 using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
 
-// Questions to an open model; they may take a while the first time (search tree, surface map), so
-// call from a worker thread. Values of the given layers only. Refused (invalid, `at`): a sequence
-// that is not durable yet. Thread-safe.
+// Questions to an open model. The first ones may take a while (search tree, surface map), so call
+// from a worker thread. Answers contain only values of the given layers. Refused (invalid, `at`): a
+// sequence that is not durable yet. Thread-safe.
 class Queries {
  public:
   virtual ~Queries() = default;
@@ -65,24 +71,25 @@ class Queries {
                                            const std::vector<std::string>& layers, At at = {}) = 0;
   virtual Result<query::Statistics> statistics(const std::string& layer,
                                                const Selection& selection = {},
-                                               StatisticsWanted wanted = {}) = 0;
-  // Counts texels of the finest layer that is named or asked of; of the model's default where none
-  // is.
+                                               StatisticsOptions options = {}) = 0;
+  // Counts texels of the finest layer in `layers` or in the condition; without a layer, at the
+  // model's default resolution.
   virtual Result<SelectedArea> select(const Selection& selection,
                                       const std::vector<std::string>& layers,
-                                      StatisticsWanted wanted = {}) = 0;
-  // The surface along a line; `layers` as for `position`.
+                                      StatisticsOptions options = {}) = 0;
+  // Returns the surface along a line; `layers` as for `position`.
   virtual Result<query::Profile> profile(const ProfileLine& line,
                                          const std::vector<std::string>& layers, At at = {}) = 0;
-  // What two layers of whole numbers hold together, at the finer one's texels.
+  // Returns how the values of two layers of whole numbers coincide, at the finer one's texels.
   virtual Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                                 const Selection& selection = {}) = 0;
-  // How much there is of each class of the layer's legend (query::classes_of).
+  // Returns the amount of each class of the layer's legend (query::classes_of).
   virtual Result<query::Quantities> quantities(const std::string& layer, At at = {}) = 0;
-  // The same with the borders of those classes (query::measure_perimeters; model units) and the
+  // The same with the borders of these classes (query::measure_perimeters; model units) and the
   // texels, all of one state.
   virtual Result<LayerAreas> layer_areas(const std::string& layer, At at = {}) = 0;
-  // A layer with the places of its texels where the selection holds, to be read at leisure.
+  // Returns a layer with the positions of its texels in the selection; the result stays valid after
+  // later edits.
   virtual Result<query::SurfaceTexels> surface_texels(const std::string& layer,
                                                       const Selection& selection = {}) = 0;
   virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(

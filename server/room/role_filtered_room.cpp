@@ -5,19 +5,24 @@
 
 #include "core/no_such.h"
 #include "domain/people/visibility.h"
+#include "query/sampling/profile.h"
+#include "query/sampling/texel_samples.h"
+#include "query/statistics/cross_table.h"
+#include "query/statistics/key_areas.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/participants.h"
 #include "room/pictures.h"
 #include "room/queries.h"
+#include "store/content/trash.h"
 
 namespace strata::room {
 namespace {
 
-// Every call that is told of layers looks at them here first. Edits are looked at when their turn
-// comes (EditPipeline), frames and events as they are made (OpenParticipant,
-// OpenRoom::ParticipantsPart), since what is seen may change meanwhile.
+// Every call that names layers is checked here first. Edits are checked when they start
+// (EditPipeline), frames and events when they are made (OpenParticipant,
+// OpenRoom::ParticipantsPart), because visibilities may change in between.
 class FilteredLayers final : public Layers {
  public:
   FilteredLayers(Layers& layers, Role role) : layers_(layers), role_(role) {}
@@ -37,7 +42,7 @@ class FilteredLayers final : public Layers {
     return {};
   }
 
-  // Of layers that were found here.
+  // The caller has found these layers through this class.
   Result<Layer> create(Layer layer, const store::IdempotentResponse<Layer>& answer,
                        std::vector<Column> columns) override {
     return layers_.create(std::move(layer), answer, std::move(columns));
@@ -97,14 +102,14 @@ class FilteredQueries final : public Queries {
     return queries_.pick(camera, x, y, layers, at);
   }
   Result<query::Statistics> statistics(const std::string& layer, const Selection& selection,
-                                       StatisticsWanted wanted) override {
+                                       StatisticsOptions options) override {
     STRATA_TRY(layers_.check({layer}));
-    return queries_.statistics(layer, seen_by(selection), wanted);
+    return queries_.statistics(layer, seen_by(selection), options);
   }
   Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
-                              StatisticsWanted wanted) override {
+                              StatisticsOptions options) override {
     STRATA_TRY(layers_.check(layers));
-    return queries_.select(seen_by(selection), layers, wanted);
+    return queries_.select(seen_by(selection), layers, options);
   }
   Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
                                  At at) override {
@@ -154,18 +159,18 @@ class FilteredPictures final : public Pictures {
   FilteredPictures(Pictures& pictures, const FilteredLayers& layers, Role role)
       : pictures_(pictures), layers_(layers), role_(role) {}
 
-  Result<void> draw(const PictureRequest& asked, std::span<const PicturePart> parts,
+  Result<void> draw(const PictureRequest& request, std::span<const PicturePart> parts,
                     const SeePicture& see) override {
-    PictureRequest seen = asked;
-    seen.seen_by = std::min(asked.seen_by, role_);
-    if (asked.layers) {
-      STRATA_TRY(layers_.check(*asked.layers));
+    PictureRequest seen = request;
+    seen.seen_by = std::min(request.seen_by, role_);
+    if (request.layers) {
+      STRATA_TRY(layers_.check(*request.layers));
     } else {
       seen.layers.emplace();
       std::vector<Layer> in_order = layers_.all();
-      sort_as_shown(in_order, asked.shown);
+      sort_as_shown(in_order, request.shown);
       for (const Layer& layer : in_order)
-        if (asked.shown.of(layer.id).visible.value_or(layer.visible))
+        if (request.shown.of(layer.id).visible.value_or(layer.visible))
           seen.layers->push_back(to_string(layer.id));
     }
     return pictures_.draw(seen, parts, see);
@@ -194,7 +199,7 @@ class FilteredEdits final : public Edits {
  public:
   FilteredEdits(Edits& edits, const FilteredLayers& layers) : edits_(edits), layers_(layers) {}
 
-  // Of a layer that was found here.
+  // The caller has found this layer through this class.
   void submit(EditRequest request, Applied applied, Saved saved) override {
     edits_.submit(std::move(request), std::move(applied), std::move(saved));
   }
@@ -232,7 +237,7 @@ class FilteredParticipants final : public Participants {
   const Role role_;
 };
 
-// The surface and the looks tell nothing of layers: those are the room's own.
+// The surface and the surface images contain no layer data: those of the room are used.
 class RoleFilteredRoom final : public Room {
  public:
   RoleFilteredRoom(std::shared_ptr<Room> room, Role role)

@@ -7,9 +7,9 @@
 
 namespace strata::room {
 
-// The room as who has the role sees it. What they do not see is not there, through every door:
-// layers and what reads them, columns of records, frames and events. The room itself, where they
-// see all of it.
+// Returns the room as a user with this role sees it. All calls leave out hidden data: layers and
+// their readers, columns of records, frames and events. Returns the room itself if the role sees
+// everything.
 std::shared_ptr<Room> seen_as(std::shared_ptr<Room> room, Role role);
 
 }  // namespace strata::room

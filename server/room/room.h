@@ -14,9 +14,9 @@ class Pictures;
 class SurfaceImages;
 class Participants;
 
-// One open model, as somebody sees it: layers that they do not see are not there. The only place
-// that joins store, renderer, streams and queries: keeps the order of edits, the tile mirrors,
-// undo, the journal and who is there. Who uses a part includes its header.
+// One open model, as a user sees it: without the layers that they do not see. This is the only
+// component that joins store, renderer, streams and queries: it keeps the order of edits, the tile
+// mirrors, undo, the journal and the participants. Code that uses a part includes its header.
 class Room {
  public:
   virtual ~Room() = default;
@@ -48,7 +48,7 @@ class Room {
     SurfaceImages* images = nullptr;
     Participants* participants = nullptr;
   };
-  Parts parts_;  // of whoever implements the room, before anybody else has it
+  Parts parts_;  // set by the implementation, before the room is shared
 };
 
 }  // namespace strata::room

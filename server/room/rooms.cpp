@@ -27,22 +27,24 @@ constexpr int kWorkerThreads = 2;
 constexpr int kReaderThreads = 2;
 constexpr auto kSweepEvery = std::chrono::seconds(5);
 
-// A share of what the machine has, or of what its container may take.
+// A share of the memory of the machine or of its container.
 std::uint64_t default_budget() {
   std::uint64_t bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
                         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   std::uint64_t limit = 0;
-  // "max" is no number
+  // "max" is not a number
   if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit) bytes = std::min(bytes, limit);
   return bytes / 10 * 6;
 }
 
 const Error kClosing{ErrorCode::unavailable,
                      "Model is closing",
-                     "The server is letting go of this model; try again in a moment.",
+                     "The server is closing this model. Try again in a moment.",
                      {}};
-const Error kStopping{
-    ErrorCode::unavailable, "Server is stopping", "Try again when it is back.", {}};
+const Error kStopping{ErrorCode::unavailable,
+                      "Server is stopping",
+                      "The server is stopping. Try again when it is running again.",
+                      {}};
 
 }  // namespace
 
@@ -79,7 +81,7 @@ struct Rooms::Impl {
     writer.drain();
     workers.join();
     readers.join();
-    renderer.finish();  // nothing comes back to strands that are gone
+    renderer.finish();  // no callback is posted to strands that are destroyed
     strands.join();
     rooms.clear();
   }
@@ -96,19 +98,19 @@ struct Rooms::Impl {
 
   Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
 
-  // Lets go of rooms that nobody has been in for a while, and of the memory of people who left:
-  // each view is some 15 MB, in pieces where the processor draws.
+  // Closes rooms that were empty for a while, and returns the memory of participants who left to
+  // the system: each view has some 15 MB, in small pieces if the processor draws.
   void sweep() {
-    std::size_t departed = 0;  // since memory was given back
-    bool due = false;          // a turn later, when the renderer has let go of their views
+    std::size_t departed = 0;  // since memory was returned
+    bool due = false;          // one round later, when the renderer has released their views
     for (;;) {
       {
         std::unique_lock lock(mutex);
         if (changed.wait_for(lock, kSweepEvery, [&] { return stopping; })) return;
       }
       const auto now = std::chrono::steady_clock::now();
-      bool closed =
-          close_rooms([&](const OpenRoom& room) { return room.is_idle(now); }, "nobody is looking");
+      bool closed = close_rooms([&](const OpenRoom& room) { return room.is_idle(now); },
+                                "because nobody uses it");
       for (const auto& room : open_ones()) closed |= room->drop_large_unused_maps(now);
       if (std::exchange(due, false)) give_back_memory();
       std::size_t here = 0;
@@ -122,8 +124,8 @@ struct Rooms::Impl {
     }
   }
 
-  // The surface map that was not used for the longest time, of a room where nothing is being
-  // painted. Those who ask wait, and so must not be on a strand.
+  // Drops the surface map that was unused for the longest time, of a room without painting in
+  // progress. Blocks, so it must not run on a strand.
   bool drop_a_map() {
     std::vector<std::pair<SurfaceMaps::Clock::time_point, std::shared_ptr<OpenRoom>>> by_use;
     {
@@ -137,14 +139,14 @@ struct Rooms::Impl {
                        [](const auto& entry) { return entry.second->drop_map(); });
   }
 
-  // Without waiting for their time; false when somebody is in every room.
+  // Closes empty rooms before their time; false if no room is empty.
   bool close_empty_rooms() {
     return close_rooms([](const OpenRoom& room) { return room.participant_count() == 0; },
-                       "for another that needs its memory");
+                       "because another model needs its memory");
   }
 
-  // Closes the rooms that no request is looking at and where no edit waits for an answer: ours is
-  // the only reference.
+  // Closes rooms that no request uses and where no edit waits for an answer: the map has the only
+  // reference.
   bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {
@@ -200,13 +202,14 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role see
 }
 
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
-  // An open room is found without the database, so that viewing goes on when that is away.
+  // Finds an open room without the database, so that viewing continues when the database is
+  // unreachable.
   if (auto room = find(model_ref)) return room;
   auto model = STRATA_TRY(services.store.models().find(model_ref));
   const int losses_before = context_losses;
   {
     std::unique_lock lock(mutex);
-    // One at a time loads a model; the others wait for it.
+    // One caller at a time loads a model; the others wait for it.
     changed.wait(lock, [&] { return stopping || draining || !opening.contains(model.id); });
     if (stopping || draining) return tl::unexpected(kStopping);
     if (auto found = rooms.find(model.id); found != rooms.end()) {
@@ -230,7 +233,7 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
     return fail(ErrorCode::not_found, "Not found", "The model was deleted.");
   }
   rooms[model.id] = *room;
-  if (context_losses != losses_before) (*room)->gpu_lost();  // it was filled in vain
+  if (context_losses != losses_before) (*room)->gpu_lost();  // it was filled for a lost context
   return room;
 }
 
@@ -250,7 +253,7 @@ Result<void> Rooms::retire_key(TableId table_id, std::int64_t key) {
 }
 
 Result<void> Rooms::settle() {
-  // whose model was deleted meanwhile
+  // gone: the model was deleted
   for (const auto& room : impl_->open_ones())
     if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::gone)
       return settled;
@@ -296,7 +299,7 @@ void Rooms::drain() {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (room->has_no_edits()) continue;
     log::error("model " + to_string(room->id()) +
-               ": edits still wait and are refused, since the server stops");
+               ": the server is stopping and rejects edits that still wait");
     room->close(kStopping);
   }
   impl_->writer.drain();

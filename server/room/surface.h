@@ -21,25 +21,25 @@ namespace strata::room {
 struct PlacedValue {
   glm::dvec3 world{0};
   std::uint32_t bits = 0;  // of the layer's type
-  int line = 0;            // of the text that they came from
+  int line = 0;            // line number in the imported text
 };
 using ValueAt = std::function<std::optional<std::uint32_t>(const glm::dvec3& world)>;
 
-// What an open model is, whatever its layers hold. Thread-safe. The tree is built and a map baked
-// when first asked for, so call from a worker thread.
+// The shape of an open model, without the content of its layers. Thread-safe. The tree and the maps
+// are built on first use, so call from a worker thread.
 class Surface {
  public:
   virtual ~Surface() = default;
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) = 0;
-  // What maps and measurements paint (query/maps), for an ImportEdit `over` the layer.
-  // Around the surface point nearest to each place, which may lie `tolerance` from it (model
-  // units): refused otherwise (invalid).
+  // Paint maps and measurements (query/maps), for an ImportEdit `over` the layer.
+  // Paints around the surface point nearest to each place, which may be at most `tolerance` away
+  // (model units): refused otherwise (invalid).
   virtual Result<TileMap> point_splats(const Layer& layer, const std::vector<PlacedValue>& values,
                                        double radius, double tolerance) = 0;
-  // The surface that is seen first along a direction, without perspective, by a function of its
-  // place in the world.
+  // Paints the surface that is first visible along a direction, without perspective, by a function
+  // of the position in the world.
   virtual Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,
                                   const ValueAt& value_at) = 0;
 };

@@ -12,8 +12,8 @@
 
 namespace strata::room {
 
-// Pictures of the surface. Thread-safe. Changes block (database) and are announced to the
-// listeners.
+// Pictures of the surface. Thread-safe. Changes block (database), and listeners are notified of
+// them.
 class SurfaceImages {
  public:
   virtual ~SurfaceImages() = default;

@@ -15,7 +15,7 @@
 
 namespace strata::room {
 
-// Records of a database layer that are to be seen before all others.
+// Highlighted records of a database layer.
 struct Highlight {
   // keys, ascending; or a condition over columns
   std::variant<std::vector<std::uint32_t>, Expression> records;
@@ -23,7 +23,7 @@ struct Highlight {
   bool operator==(const Highlight&) const = default;
 };
 
-// Layers as one person sees them; what is not set follows the layer's default.
+// A user's settings of a layer; empty members follow the layer's default.
 struct LayerView {
   LayerId layer_id = 0;
   std::optional<bool> visible;
@@ -38,7 +38,7 @@ struct SurfaceImageView {
   double opacity = 1;
 };
 
-// What one person's view shows.
+// The settings of one user's view.
 struct ViewSettings {
   std::vector<LayerView> layers;
   std::optional<std::vector<SurfaceImageView>>
@@ -46,7 +46,7 @@ struct ViewSettings {
   Light light;
   Background background{};
 
-  // What it says of a layer; of one that it does not name, nothing.
+  // Returns the settings of a layer, or empty ones.
   const LayerView& of(LayerId layer_id) const {
     static const LayerView kNothing;
     const auto last = std::find_if(layers.rbegin(), layers.rend(),
@@ -61,8 +61,8 @@ const Layer& layer_in(const State& state) {
   return state.layer;
 }
 
-// Layers, or what has one as `layer`, from bottom to top as somebody sees them; `of`: what they set
-// of a layer, by id.
+// Sorts layers, or objects with a `layer`, from bottom to top as a user sees them; `of` returns the
+// user's settings of a layer, by id.
 template <class Layers, class Of>
 void sort_as_shown(Layers& layers, const Of& of) {
   const auto place = [&](const auto& each) {

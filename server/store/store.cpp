@@ -19,9 +19,9 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
   if (!connection) return tl::unexpected(connection.error());
   auto encoding = STRATA_TRY(connection->query("SELECT current_setting('server_encoding')"));
   if (encoding.text(0, 0) != "UTF8")
-    return fail(ErrorCode::internal, "Database not usable",
-                "The database's encoding is " + encoding.text(0, 0) +
-                    "; Strata needs one made with ENCODING 'UTF8'.");
+    return fail(ErrorCode::internal, "Database cannot be used",
+                "The encoding of the database is " + encoding.text(0, 0) +
+                    ". Create the database with ENCODING 'UTF8'.");
   auto version = STRATA_TRY(migrate(*connection, migrations));
   store->impl_->schema_version = version;
   return store;
@@ -75,7 +75,7 @@ bool Store::ready() {
 
 Result<void> check_name(const std::string& name) {
   if (name.empty() || name.size() > kMaxNameLength)
-    return fail(ErrorCode::malformed, "Bad name",
+    return fail(ErrorCode::malformed, "Invalid name",
                 "`name` must have 1 to " + std::to_string(kMaxNameLength) + " bytes of UTF-8.",
                 "name");
   return check_text(name, "name");
@@ -109,18 +109,19 @@ PgArray visibilities_seen_by(Role role) {
   return names;
 }
 
-std::string free_slug(const std::string& wished, const PgResult& taken) {
+std::string free_slug(const std::string& requested, const PgResult& taken) {
   std::set<std::string> used;
   for (int i = 0; i < taken.rows(); ++i) used.insert(taken.text(i, 0));
-  std::string slug = wished;
-  for (int n = 2; used.contains(slug); ++n) slug = wished + "-" + std::to_string(n);
+  std::string slug = requested;
+  for (int n = 2; used.contains(slug); ++n) slug = requested + "-" + std::to_string(n);
   return slug;
 }
 
 Result<PgResult> insert_with_slug(
     PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
-    const std::string& wished, const std::function<Result<PgResult>(const std::string&)>& insert) {
-  const std::string base = make_slug(wished);
+    const std::string& requested,
+    const std::function<Result<PgResult>(const std::string&)>& insert) {
+  const std::string base = make_slug(requested);
   for (;;) {
     Params params;
     params.text(base + "%");

@@ -34,9 +34,9 @@ class Tools;
 
 struct StoreOptions {
   std::string dsn;      // libpq connection string
-  int connections = 8;  // pooled, for everything but the journal writer
+  int connections = 8;  // pooled, for everything except the journal writer
   PgLimits limits = kRequestLimits;
-  std::chrono::milliseconds slot_for{10'000};  // longest wait for one of the pool
+  std::chrono::milliseconds slot_for{10'000};  // longest wait for a connection of the pool
 };
 
 struct StoreInfo {
@@ -45,26 +45,26 @@ struct StoreInfo {
   std::uint64_t database_bytes = 0;
 };
 
-// Everything durable. All calls block the calling thread, are thread-safe and take a connection
-// from the pool; when the database is away they return an Error unavailable ("Database
+// All durable data. All calls block the calling thread, are thread-safe and take a connection from
+// the pool; when the database is unreachable they return an Error unavailable ("Database
 // unavailable") after trying to reconnect. Constraint failures are an Error conflict, unknown ids
-// not_found, a stale `version` `stale`. Changes keep the caller's answer with them
+// not_found, a stale `version` `stale`. A change stores the caller's answer in the same transaction
 // (IdempotentResponse).
 class Store {
  public:
-  // Connects and applies the missing migrations of `migrations_dir`; a newer schema than known is
-  // refused.
+  // Connects and applies the missing migrations of `migrations_dir`; refuses a schema that is newer
+  // than the known one.
   static Result<std::unique_ptr<Store>> open(StoreOptions options,
                                              const std::filesystem::path& migrations_dir);
   ~Store();
 
   Result<StoreInfo> info();
-  // One round trip, of 2 seconds at most (4 where it must connect first); while another thread
-  // asks, the last answer.
+  // Makes one round trip, of at most 2 seconds (4 if it must connect first); while another thread
+  // makes it, returns the last answer.
   bool ready();
 
-  // The parts, each with a header of its own: store/content/projects.h has Projects. They live as
-  // long as this.
+  // The parts, each with a separate header: store/content/projects.h declares Projects. They live
+  // as long as the store.
   Projects& projects();
   Models& models();
   SurfaceImages& surface_images();

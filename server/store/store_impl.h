@@ -32,25 +32,26 @@
 
 namespace strata::store {
 
-// In the transaction at hand; `conflict` where a call with this key was answered already.
+// Stores an answer in the current transaction; `conflict` if a call with this key was already
+// answered.
 Result<void> insert_answer(PgConnection& connection, const std::string& key,
                            const nlohmann::json& answer);
 
-// In the transaction at hand: the job ended well, with that as its result.
+// In the current transaction: marks the job as done, with this result.
 Result<void> finish_job(PgConnection& connection, JobId job, nlohmann::json result);
 
-// In the transaction at hand: what it changes is told as this person's doing
-// (db/migrations/000018_activity.sql). Empty: as nobody's.
+// In the current transaction: the activity names this user as the author of changes
+// (db/migrations/000018_activity.sql). Empty: no author.
 Result<void> act_as(PgConnection& connection, const std::string& user);
 
-// Of somebody who is deleted, in the transaction at hand: $1 and $2 of the SQL are the name and the
-// one that stands for it from now on.
+// Rename a deleted user in the current transaction: $1 and $2 of the SQL are the name and the name
+// that replaces it.
 Result<void> rename_in_activity(PgConnection& connection, const std::string& name,
                                 const std::string& former);
 Result<void> rename_in_journal(PgConnection& connection, const std::string& name,
                                const std::string& former);
-// Texts that may call them with @: in any case, as names are, and where no longer name and no
-// address of a mail begins or ends there.
+// SQL that is true for texts that may mention the user with @. Case is ignored, as in names; a
+// mention is not part of a longer name or of an email address.
 consteval auto mentions_them(const auto& text) {
   return sql("position('@' || lower($1) IN lower(", text, ")) > 0");
 }
@@ -61,13 +62,14 @@ consteval auto mention_renamed(const auto& text, const auto& longest) {
              longest, ")");
 }
 
-// In the transaction at hand: what is said of them holds until it is written.
+// In the current transaction: locks the user, so that facts that were read stay true until the
+// commit.
 Result<Person> lock_person(PgConnection& connection, const std::string& name);
-Result<void> lock_project(PgConnection& connection, ProjectId id);  // against its being deleted
+Result<void> lock_project(PgConnection& connection, ProjectId id);  // against deletion
 Result<void> join_groups(PgConnection& connection, PersonId person_id,
                          const std::vector<GroupId>& groups);
 
-Result<void> check_project_role(Role role);  // invalid: not one that is given in projects
+Result<void> check_project_role(Role role);  // invalid: not a role that projects give
 
 template <class T>
 Result<void> keep(PgConnection& connection, const IdempotentResponse<T>& answer,
@@ -81,7 +83,7 @@ inline Result<void> keep(PgConnection& connection, const IdempotentResponse<>& a
   return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make());
 }
 
-// A transaction that also keeps the answer to who asked for it.
+// Runs a transaction that also stores the answer for the caller.
 template <class Answer, class Work>
 auto change(Pool& pool, const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)
     -> std::invoke_result_t<Work, PgConnection&> {
@@ -90,8 +92,8 @@ auto change(Pool& pool, const Answer& answer, Work&& work, const PgLimits& limit
       return std::invoke_result_t<Work, PgConnection&>(tl::unexpected(named.error()));
     auto effect = work(connection);
     if (effect)
-      if (auto kept = keep(connection, answer, effect); !kept)
-        effect = tl::unexpected(kept.error());
+      if (auto saved = keep(connection, answer, effect); !saved)
+        effect = tl::unexpected(saved.error());
     return effect;
   });
 }
@@ -130,24 +132,24 @@ struct Store::Impl {
     return store::change(pool, answer, std::forward<Work>(work), limits);
   }
 
-  // Of its own, so that a busy pool is not taken for a database that is away.
+  // A separate connection, so that a busy pool does not look like an unreachable database.
   std::mutex probe_mutex;
   std::optional<PgConnection> probe;
   std::atomic<bool> was_ready = true;
 };
 
-// With all that hangs on it, in the transaction at hand, in the Trash or not
-// (store/content/bin.cpp).
+// In the current transaction: erases an object with everything that depends on it, in the Trash or
+// not (store/content/trash.cpp).
 Result<void> erase_layer(PgConnection& connection, LayerId id);
 Result<void> erase_model(PgConnection& connection, ModelId id);
 
-// Of what the role sees, for `= any($n)`.
+// Returns the visibilities that the role sees, for `= any($n)`.
 PgArray visibilities_seen_by(Role role);
 
 inline constexpr std::size_t kMaxNameLength = 255;
 
 inline tl::unexpected<Error> stale(std::string_view kind) {
-  return fail(ErrorCode::stale, "Changed meanwhile",
+  return fail(ErrorCode::stale, "Changed by somebody else",
               "The " + std::string(kind) +
                   " was changed since you read it. Read it again and repeat your change.",
               "version");
@@ -156,11 +158,11 @@ inline tl::unexpected<Error> stale(std::string_view kind) {
 // 1…255 bytes of storable text.
 Result<void> check_name(const std::string& name);
 Result<void> check_texts(std::initializer_list<std::pair<const std::string*, const char*>> texts);
-// Refuses JSON whose strings PostgreSQL cannot keep.
+// Refuses JSON whose strings PostgreSQL cannot store.
 Result<void> check_json(const nlohmann::json& json, const std::string& field);
 
-// An id for a reference in digits; nothing for a slug, and 0 (no row has it) for digits beyond 64
-// bits.
+// Returns the id for a reference in digits; nothing for a slug, and 0 (no row has it) for more than
+// 18 digits.
 std::optional<std::int64_t> number_of(const std::string& ref);
 template <class Id>
 std::optional<Id> id_of(const std::string& ref) {
@@ -168,14 +170,16 @@ std::optional<Id> id_of(const std::string& ref) {
   return number ? std::optional(Id(*number)) : std::nullopt;
 }
 
-// `wished`, or `wished-2`, `wished-3`… that `taken` (one text column) does not list.
-std::string free_slug(const std::string& wished, const PgResult& taken);
+// Returns the first of `requested`, `requested-2`, `requested-3`… that is not in `taken` (one text
+// column).
+std::string free_slug(const std::string& requested, const PgResult& taken);
 
-// Inserts with a free slug. `taken_sql` lists the slugs in use that start with the wished one ($1 =
-// like pattern, $2 = parent if any); `insert` runs an INSERT … ON CONFLICT DO NOTHING RETURNING …:
-// no row means that another one took the slug meanwhile, and the next is tried.
+// Inserts with a free slug. `taken_sql` lists the used slugs that start with the requested one ($1
+// = like pattern, $2 = parent if any); `insert` runs an INSERT … ON CONFLICT DO NOTHING RETURNING
+// …: no row means that another transaction took the slug first, and the next slug is tried.
 Result<PgResult> insert_with_slug(
     PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
-    const std::string& wished, const std::function<Result<PgResult>(const std::string&)>& insert);
+    const std::string& requested,
+    const std::function<Result<PgResult>(const std::string&)>& insert);
 
 }  // namespace strata::store

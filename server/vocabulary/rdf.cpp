@@ -12,7 +12,7 @@
 namespace strata {
 namespace {
 
-// libraptor2 sets the handlers of libxml2, which are the process's.
+// libraptor2 sets the handlers of libxml2, which are global in the process.
 std::mutex& one_at_a_time() {
   static std::mutex mutex;
   return mutex;
@@ -31,7 +31,7 @@ using Parser = std::unique_ptr<raptor_parser, Freed<raptor_free_parser>>;
 using Serializer = std::unique_ptr<raptor_serializer, Freed<raptor_free_serializer>>;
 using Statement = std::unique_ptr<raptor_statement, Freed<raptor_free_statement>>;
 
-// The first thing that is wrong, with its line.
+// The first error, with its line.
 struct Complaint {
   std::string text;
   int line = 0;
@@ -47,7 +47,7 @@ void note(void* user, raptor_log_message* message) {
 World new_world(Complaint& complaint) {
   World world(raptor_new_world());
   if (!world) return world;
-  // The network library is not even set up.
+  // Does not even initialize the network library.
   raptor_world_set_flag(world.get(), RAPTOR_WORLD_FLAG_WWW_SKIP_INIT_FINISH, 1);
   raptor_world_set_log_handler(world.get(), &complaint, note);
   if (raptor_world_open(world.get()) != 0) world.reset();
@@ -114,7 +114,7 @@ Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
   const char* name = syntax == RdfSyntax::turtle ? "Turtle" : "RDF/XML";
   const auto refuse = [&](const std::string& why) {
     return fail(ErrorCode::invalid, std::string("Not ") + name,
-                "It cannot be read as " + std::string(name) + ": " + why, "body");
+                "The text cannot be read as " + std::string(name) + ": " + why, "body");
   };
   if (!is_utf8(text) || text.find('\0') != std::string_view::npos)
     return refuse("it is not UTF-8.");

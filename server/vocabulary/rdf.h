@@ -10,27 +10,27 @@
 
 namespace strata {
 
-enum class RdfSyntax { turtle, rdf_xml };  // Turtle has N-Triples in it
+enum class RdfSyntax { turtle, rdf_xml };  // Turtle includes N-Triples
 
 // A triple of an RDF graph. Subjects and predicates are IRIs; blank nodes begin with "_:".
 struct Triple {
   std::string subject, predicate;
   std::string object;
   bool is_literal = false;
-  std::string language;  // of a literal, in lower case; empty: none
+  std::string language;  // of a literal, in lower case; may be empty
 };
 
-// What IRIs of a text without a base of its own are relative to: they begin with it.
+// The base of relative IRIs in a text without a base: the parsed IRIs begin with it.
 inline constexpr std::string_view kRelativeBase = "http://relative.invalid/";
 
-// Reads a graph by libraptor2, triple by triple, until the sink says false. Nothing is ever fetched
-// or included: neither addresses nor files nor external entities. An Error (invalid) says where the
-// text stops being what it should be. One at a time in the process.
+// Reads a graph with libraptor2, triple by triple, until the sink returns false. Never fetches or
+// includes addresses, files or external entities. An Error (invalid) names the place of the first
+// mistake. One call at a time in the process.
 Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
                       const std::function<bool(const Triple&)>& sink);
 
-// The triples as Turtle. IRIs that begin with kRelativeBase are written relative to the document,
-// without naming a base.
+// Writes the triples as Turtle. IRIs that begin with kRelativeBase are written relative to the
+// document, without a base.
 struct RdfPrefix {
   std::string name, iri;
 };

@@ -15,7 +15,7 @@ constexpr std::pair<const char*, std::string Term::*> kParts[] = {
     {"uri", &Term::uri},        {"color", &Term::color},
     {"pattern", &Term::pattern}};
 
-// What the cells below one of the first row are: a part of a term, or labels in a language.
+// The meaning of a column: a part of a term, or labels in a language.
 struct Head {
   std::string slug;
   std::string Term::*part = nullptr;
@@ -42,23 +42,23 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
   for (const std::string& cell : row.cells) {
     auto head = head_of(cell);
     if (!head)
-      return fail(
-          ErrorCode::invalid, "Unknown column",
-          "\"" + cell +
-              "\" is none of code, parent, label, label-es (or another language), definition, uri, color, pattern.",
-          "body");
+      return fail(ErrorCode::invalid, "Unknown column",
+                  "\"" + cell +
+                      "\" is not one of code, parent, label, label-es (or another language), "
+                      "definition, uri, color, pattern.",
+                  "body");
     if (!list.columns.insert(head->slug).second)
-      return fail(ErrorCode::invalid, "Column named twice",
-                  "\"" + head->slug + "\" stands twice in the first row.", "body");
+      return fail(ErrorCode::invalid, "Duplicate column",
+                  "\"" + head->slug + "\" appears twice in the first row.", "body");
     languages += !head->language.empty();
     heads.push_back(std::move(*head));
   }
   if (!list.columns.contains("code"))
-    return fail(ErrorCode::invalid, "No codes", "The first row must name the column `code`.",
+    return fail(ErrorCode::invalid, "Column missing", "The first row must name the column `code`.",
                 "body");
   if (languages > kMaxTermLanguages)
     return fail(ErrorCode::invalid, "Too many languages",
-                "A list of terms has labels in at most " + std::to_string(kMaxTermLanguages) +
+                "A term list can have labels in at most " + std::to_string(kMaxTermLanguages) +
                     " languages.",
                 "body");
   return heads;
@@ -70,7 +70,8 @@ Result<TermList> read_terms_csv(std::string_view text) {
   auto csv =
       STRATA_TRY(parse_csv(text, {kMaxTerms + 1, std::size(kParts) + kMaxTermLanguages + 1}));
   if (csv.rows.empty())
-    return fail(ErrorCode::invalid, "Empty table", "The first row names the columns.", "body");
+    return fail(ErrorCode::invalid, "Empty table",
+                "The text is empty. Its first row must name the columns.", "body");
   TermList list;
   auto heads = STRATA_TRY(read_heads(csv.rows.front(), list));
   list.rows = csv.rows.size() - 1;
@@ -89,16 +90,16 @@ Result<TermList> read_terms_csv(std::string_view text) {
     }
     Result<void> good;
     if (row.cells.size() != heads.size())
-      good = fail(ErrorCode::invalid, "Cells missing or too many",
+      good = fail(ErrorCode::invalid, "Wrong number of cells",
                   "The row has " + std::to_string(row.cells.size()) + " cells, the first row " +
                       std::to_string(heads.size()) + ".");
     if (good) good = check_term(term);
     if (good)
       if (const auto [first, is_new] = lines.emplace(term.code, row.line); !is_new)
-        good =
-            fail(ErrorCode::invalid, "Code twice",
-                 "\"" + term.code + "\" stands in line " + std::to_string(first->second) + ", too.",
-                 "code");
+        good = fail(
+            ErrorCode::invalid, "Duplicate code",
+            "\"" + term.code + "\" appears in line " + std::to_string(first->second) + ", too.",
+            "code");
     if (good)
       list.terms.push_back(std::move(term));
     else if (list.mistakes.size() < kMaxTermMistakes)

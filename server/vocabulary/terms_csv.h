@@ -8,13 +8,13 @@
 
 namespace strata {
 
-// CSV with the columns code, parent, label, label-es (or another language), definition, uri, color,
-// pattern, in any order; only `code` must be there. Parents are named by their codes. An Error
-// where the text is no CSV or its first row cannot be understood.
+// Reads CSV with the columns code, parent, label, label-es (or another language), definition, uri,
+// color, pattern, in any order; only `code` is required. Parents are named by their codes. Error:
+// the text is not CSV or its first row is invalid.
 Result<TermList> read_terms_csv(std::string_view text);
 
-// The same columns, those of all languages that a term has a label in. Begins with a byte order
-// mark, as Excel wants it.
+// Writes the same columns, with the languages of all labels. Begins with a byte order mark, which
+// Excel needs.
 std::string terms_csv(std::span<const Term> terms, char separator);
 
 }  // namespace strata

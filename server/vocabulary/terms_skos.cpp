@@ -11,17 +11,17 @@ namespace {
 
 const std::string kSkos = "http://www.w3.org/2004/02/skos/core#";
 const std::string kType = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type";
-constexpr std::size_t kMaxConceptBytes = 256u << 20;  // of all that is kept of a text
+constexpr std::size_t kMaxConceptBytes = 256u << 20;  // of all data kept from a text
 
 using ByLanguage = std::map<std::string, std::set<std::string>>;
 struct Concept {
-  bool is_described = false;  // the text says what it is, and does not only name it
+  bool is_described = false;  // has a description in the text, not only its name
   bool is_other = false;      // a scheme or a collection of concepts
   std::set<std::string> notations, broader;
   ByLanguage labels, definitions, notes;
 };
 
-// Without a language, in English, or the first.
+// Returns the text without a language, otherwise the English one, otherwise the first.
 std::string plainest(const ByLanguage& by_language) {
   for (const char* tag : {"", "en", "en-gb", "en-us"})
     if (const auto found = by_language.find(tag); found != by_language.end())
@@ -32,7 +32,7 @@ std::string plainest(const ByLanguage& by_language) {
 // Concepts by IRI.
 class Concepts {
  public:
-  // False: there are too many.
+  // False: too many concepts.
   bool take(const Triple& triple) {
     const std::string& predicate = triple.predicate;
     if (predicate == kType) {
@@ -131,21 +131,21 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
   });
   if (too_much || concepts.size() > kMaxTerms)
     return fail(ErrorCode::too_large, "Too many terms",
-                "A list takes at most " + std::to_string(kMaxTerms) + " terms.", "body");
+                "A term list can have at most " + std::to_string(kMaxTerms) + " terms.", "body");
   if (concepts.empty())
-    return fail(ErrorCode::invalid, "No terms", "There is no skos:Concept in it.", "body");
+    return fail(ErrorCode::invalid, "No terms", "The file contains no skos:Concept.", "body");
 
   TermList list;
   list.rows = concepts.size();
   list.columns = {"code", "parent", "label", "definition", "uri"};
   std::map<std::string, std::string> codes;  // by IRI
-  std::map<std::string, int> met;            // how often a code was wished for
+  std::map<std::string, int> met;            // number of concepts with a code
   std::set<std::string> used;
   for (const auto& [iri, about] : concepts) {
-    const std::string wished = code_of(iri, about);
-    int& n = met[wished];
-    std::string code = ++n == 1 ? wished : wished + "-" + std::to_string(n);
-    while (!used.insert(code).second) code = wished + "-" + std::to_string(++n);
+    const std::string requested = code_of(iri, about);
+    int& n = met[requested];
+    std::string code = ++n == 1 ? requested : requested + "-" + std::to_string(n);
+    while (!used.insert(code).second) code = requested + "-" + std::to_string(++n);
     codes[iri] = std::move(code);
   }
   std::set<std::string> languages;
@@ -166,7 +166,7 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
     term.definition = plainest(about.definitions.empty() ? about.notes : about.definitions);
     if (!iri.starts_with("_:") && !iri.starts_with(kRelativeBase)) term.uri = iri;
     if (!about.broader.empty()) {
-      // One that is told of here before one that is only named.
+      // Prefers a parent that the text describes to one that it only names.
       auto parent =
           std::find_if(about.broader.begin(), about.broader.end(),
                        [&](const std::string& broader) { return codes.contains(broader); });
@@ -183,7 +183,7 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
   }
   if (languages.size() > kMaxTermLanguages)
     return fail(ErrorCode::invalid, "Too many languages",
-                "A list of terms has labels in at most " + std::to_string(kMaxTermLanguages) +
+                "A term list can have labels in at most " + std::to_string(kMaxTermLanguages) +
                     " languages.",
                 "body");
   for (const auto& language : languages) list.columns.insert(label_slug(language));

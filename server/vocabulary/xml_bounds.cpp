@@ -23,7 +23,7 @@ class Scanner {
       const bool is_empty = tag();
       if (is_tag) depth += ends ? -1 : is_empty ? 0 : 1;
       if (depth > kDeepestXml)
-        return fail(ErrorCode::invalid, "Nested too deep",
+        return fail(ErrorCode::invalid, "Nested too deeply",
                     "its elements are nested more than " + std::to_string(kDeepestXml) + " deep",
                     "body");
     }
@@ -45,7 +45,7 @@ class Scanner {
     return true;
   }
 
-  // To behind the next `>` that stands in no quotes; whether a slash stands before it.
+  // Moves after the next `>` outside of quotes; returns whether a slash precedes it.
   bool tag() {
     for (++at_; at_ < text_.size() && text_[at_] != '>'; ++at_)
       if (text_[at_] == '"' || text_[at_] == '\'')
@@ -55,7 +55,7 @@ class Scanner {
     return is_empty;
   }
 
-  // A document type, with all that it declares.
+  // Checks a document type and its declarations.
   Result<void> declarations() {
     const auto end_of_document_type = [&] {
       at_ = std::min(at_ + 1, text_.size());
@@ -93,8 +93,8 @@ class Scanner {
                           declared.find("SYSTEM") == std::string_view::npos &&
                           declared.find("PUBLIC") == std::string_view::npos;
     if (is_plain) return {};
-    return fail(ErrorCode::invalid, "Entity not taken",
-                "it has an entity that is more than plain text", "body");
+    return fail(ErrorCode::invalid, "Entity not allowed",
+                "it contains an entity that is not plain text", "body");
   }
 
   const std::string_view text_;

@@ -6,12 +6,12 @@
 
 namespace strata {
 
-inline constexpr int kDeepestXml = 200;  // elements within each other
+inline constexpr int kDeepestXml = 200;  // nested elements
 
-// What a parser of XML should not be given, found without parsing it: elements that are nested
-// deeper than kDeepestXml (parsers take quadratic time and more for those), and entities that hold
-// anything but plain text (which grow, or name files and addresses). Other mistakes are the
-// parser's to find. The text of an Error says what is wrong.
+// Refuses input that is dangerous for XML parsers, without parsing it: elements that are nested
+// deeper than kDeepestXml (parsers take quadratic time or more for those), and entities that
+// contain anything except plain text (which can grow, or name files and addresses). The parser
+// reports other mistakes. The text of an Error names the mistake.
 Result<void> check_xml_bounds(std::string_view text);
 
 }  // namespace strata

@@ -1,7 +1,7 @@
 #pragma once
 #include "shared/types.h"
 STRATA_SHARED_BEGIN
-// As glMultiDrawElementsIndirect reads it.
+// In the layout of glMultiDrawElementsIndirect.
 struct DrawCommand {
   uint count;
   uint instance_count;  // 0: hidden
@@ -11,5 +11,5 @@ struct DrawCommand {
 };
 const uint kIndicesPerCluster = 3072u;
 const float kClusterMarginPx = 1.0;       // rounding of the window's coordinates
-const float kClusterMarginDepth = 4e-6;   // and of interpolated depth
+const float kClusterMarginDepth = 4e-6;   // rounding of interpolated depth
 STRATA_SHARED_END

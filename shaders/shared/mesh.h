@@ -4,19 +4,22 @@
 STRATA_SHARED_BEGIN
 struct MeshUniforms {
   mat4 clip_from_model;
-  vec4 eye;        // model space; w 1: a point (perspective), w 0: direction towards the eye (orthographic)
-  vec4 key_light;  // unit directions in model space, fixed to the camera; raking light: w is its strength
+  // model space; w 1: a point (perspective), w 0: direction towards the eye (orthographic)
+  vec4 eye;
+  // unit directions in model space, relative to the camera; w of the key light: strength of raking
+  // light
+  vec4 key_light;
   vec4 fill_light;
   vec4 up;
   vec4 section[kSectionPlanes];
-  vec4 look_opacity;  // of looks 0 to 3
+  vec4 look_opacity;  // of images 0 to 3
   uint eye_is_cut_away;
   uint reserved_0;
   uint reserved_1;
   uint reserved_2;
 };
 const uint kMaxLooks = 4u;
-const uint kBackground = 0xffffffffu;  // texture coordinate of a pixel that shows nothing of the surface
+const uint kBackground = 0xffffffffu;  // texture coordinate of a pixel without surface
 STRATA_SHARED_END
 #ifdef __cplusplus
 #include <cstddef>

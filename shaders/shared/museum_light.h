@@ -1,7 +1,8 @@
 #pragma once
 #include "shared/mesh.h"
 #ifndef __cplusplus
-// The usual light: a soft key from the upper left, a weak fill from the camera's right, and a sky that is brighter above.
+// The default light: a soft key from the upper left, a weak fill from the camera's right, and a sky
+// that is brighter at the top.
 float museum_light(vec3 normal, MeshUniforms mesh) {
   float key = dot(normal, mesh.key_light.xyz);
   float wrapped = max(0.0, key * 0.8 + 0.2);
@@ -10,7 +11,8 @@ float museum_light(vec3 normal, MeshUniforms mesh) {
   return min(0.22 + 0.18 * sky + 0.56 * wrapped * wrapped + 0.16 * fill, 1.0);
 }
 
-// Two-sided: scans are open and their windings are not always right. Smooth normals lean away at silhouettes without the
-// surface being seen from behind, so only those that clearly do are turned.
+// Two-sided: scans are open and their windings are not always right. At silhouettes smooth normals
+// point away although the surface is not seen from behind, so only normals that clearly point away
+// are reversed.
 bool is_seen_from_behind(float cosine_to_eye) { return cosine_to_eye < -0.3; }
 #endif

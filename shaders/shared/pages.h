@@ -1,7 +1,7 @@
 #pragma once
 #include "shared/types.h"
-// Where a tile lies in the texel pools. A page id is chunk << 19 | slice << 8 | cell, a cell being one of the 16 x 16 tiles
-// of a 2048 x 2048 slice.
+// The position of a tile in the texel pools. A page id is chunk << 19 | slice << 8 | cell, where a
+// cell is one of the 16 x 16 tiles of a 2048 x 2048 slice.
 STRATA_SHARED_BEGIN
 const uint kNoPage = 0xffffffffu;
 const uint kTileTexels = 128u;       // a side

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Prints the results of `strata-bench atlas --all --json FILE` as the tables of README.md: the scans, the files of other suites, then the broken files.
+"""Prints the results of `strata-bench atlas --all --json FILE` as the tables of results/atlas.md:
+the scans, the files of other test suites, then the broken files.
 
-    tests/bench/atlas_table.py FILE
+  tests/bench/atlas_table.py FILE
 """
 import json
 import sys

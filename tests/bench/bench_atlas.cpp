@@ -1,4 +1,4 @@
-// What an atlas makes of each mesh: texels used, stretch, texel footprints; seconds and memory of
+// Measures the atlas of each mesh: texels used, stretch, texel footprints; seconds and memory of
 // each step.
 #include <fstream>
 #include <iostream>

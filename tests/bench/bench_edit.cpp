@@ -1,5 +1,5 @@
-// Edits by tiles, beside the paper's own algorithms and its octree rival, on one context in one
-// run.
+// Measures edits by tiles and by the methods of the paper, its own algorithms and its octree rival,
+// on one context in one run.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -24,12 +24,12 @@ struct Options {
 };
 
 constexpr int kWidth = 1280, kHeight = 720;
-// Dabs on the model as `camera()` sees it; the same for every method.
+// Dabs on the model as `camera()` shows it; the same for every method.
 const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290},
                                {580, 340}, {690, 420}, {620, 380}};
-constexpr std::size_t kCompared = 3;  // of them
-// What a texel takes at least: position 8, depth 4, value and flag read and written 4, and what a
-// cache line brings besides.
+constexpr std::size_t kCompared = 3;  // the first of them
+// The least memory traffic of a texel: position 8, depth 4, value and flag read and written 4, and
+// the rest of each cache line.
 constexpr double kBytesPerTexel = 20;
 
 struct Measured {
@@ -45,7 +45,8 @@ struct Case {
   double median(const std::string& method) const { return of.at(method).ms.median(); }
 };
 
-// The methods in turn and back again (A B C C B A): what drifts in the machine falls on all alike.
+// Runs the methods in turn and back again (A B C C B A), so that a drift of the machine affects all
+// alike.
 Case measure(EditMethods& methods, int radius, int repeats) {
   Case result;
   for (const auto& method : methods.all()) method->edit(kCenters[0], radius);  // warm
@@ -135,7 +136,7 @@ class Report {
                 static_cast<unsigned long long>(agreement.paper_off),
                 static_cast<unsigned long long>(agreement.beyond_rounding));
     std::fflush(stdout);
-    // After each case, so that a long run that is ended keeps what it has.
+    // After each case, so that a long run that is stopped keeps its results.
     write_result(options_.json, machine_, results_,
                  {{"creation", creation_},
                   {"not_run", not_run_},

@@ -1,4 +1,5 @@
-// From a file to the first frame, and from a stopped server with a painted site to the first frame.
+// Measures the time from a file to the first frame, and from a stopped server with a painted site
+// to the first frame.
 #include <cmath>
 #include <iostream>
 
@@ -20,7 +21,7 @@ struct Options {
   int layers = 3, resolution = 4096;
 };
 
-// From around, at full detail: what a camera that stands still shows.
+// Returns the picture of a camera at rest: full detail, from the given direction.
 Picture frame(Site& site, const std::string& model, glm::dvec3 from) {
   auto room = must(site.rooms->open(model, Role::owner));
   const Model info = room->model();
@@ -34,10 +35,10 @@ Picture first_frame(Site& site, const std::string& model) {
   return frame(site, model, {0.4, -1, 0.6});
 }
 
-// Every camera is new, so the mesh is drawn for each.
+// Every camera is new, so each frame draws the mesh.
 Samples full_frames(Site& site, const std::string& model) {
   Samples samples;
-  auto room = must(site.rooms->open(model, Role::owner));  // stays open
+  auto room = must(site.rooms->open(model, Role::owner));  // keeps the room open
   first_frame(site, model);
   for (int i = 0; i < 8; ++i) {
     const double angle = glm::radians(45.0 * i + 10);

@@ -1,4 +1,4 @@
-// What a layer takes where nothing, a part and all of the surface is painted.
+// Measures the memory of a layer that is painted nowhere, in part and everywhere.
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -19,7 +19,8 @@ struct Options {
   std::vector<double> percents{0, 1, 10, 100};
 };
 
-// A patch of the surface, as one paints it: connected, around one place. `radius` in model units.
+// Returns a connected patch of the surface around one place, as people paint it. `radius` in model
+// units.
 std::map<TileAddress, TileData> patch(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                                       float radius, ValueType type) {
   auto slot = static_cast<std::uint32_t>(map.block_of_slot.size() / 2);
@@ -51,26 +52,26 @@ std::map<TileAddress, TileData> all_of(const mesh::SurfaceMap& map, ValueType ty
   return tiles;
 }
 
-// By bisection on the radius; the share is of all texels that can hold something.
+// Finds the radius by bisection; the percentage is of all texels that can have a value.
 std::map<TileAddress, TileData> painted(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                                         const mesh::Geometry& geometry, ValueType type,
                                         double percent) {
   if (percent <= 0) return {};
   auto all = all_of(map, type);
   if (percent >= 100) return all;
-  const auto wanted =
+  const auto target =
       static_cast<std::uint64_t>(static_cast<double>(texel_count(all)) * percent / 100);
   float low = 0, high = glm::length(geometry.box_max - geometry.box_min);
   std::map<TileAddress, TileData> best;
   for (int step = 0; step < 16; ++step) {
     const float middle = (low + high) / 2;
     best = patch(map, graph, middle, type);
-    (texel_count(best) < wanted ? low : high) = middle;
+    (texel_count(best) < target ? low : high) = middle;
   }
   return best;
 }
 
-// The same texels with values that cannot be compressed.
+// Returns the same texels with values that cannot be compressed.
 std::size_t stored_as_noise(TileData tile) {
   std::mt19937 random(1);
   for (int i = 0; i < kTexelsPerTile; ++i)

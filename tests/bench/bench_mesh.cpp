@@ -23,12 +23,12 @@ bool is_preset(const std::string& name) {
 mesh::TriangleMesh pot_of(const std::string& name) {
   const auto colon = name.find(':');
   if (colon == std::string::npos) return mesh::make_demo_pot();
-  const double wanted = std::stod(name.substr(colon + 1));
+  const double target = std::stod(name.substr(colon + 1));
   const double at_one = double(mesh::make_demo_pot().triangle_count());
-  return mesh::make_demo_pot(wanted / at_one);
+  return mesh::make_demo_pot(target / at_one);
 }
 
-// Runs a command that writes `file`; what is left of a failure is removed.
+// Runs a command that writes `file`; removes an incomplete file after a failure.
 Result<fs::path> made_by(const std::string& command, const fs::path& file,
                          const std::string& advice) {
   fs::create_directories(file.parent_path());
@@ -101,7 +101,7 @@ Result<std::vector<std::string>> all_meshes() {
   if (error)
     return fail(ErrorCode::not_found, "No data folder",
                 "There is no data folder at " + data.string() + ".");
-  // The scans first, the presets, then the broken ones.
+  // The scans first, then the presets, then the broken files.
   std::sort(names.begin(), names.end());
   const auto nasty = std::stable_partition(names.begin(), names.end(), [](const std::string& name) {
     return name.find("/nasty/") == std::string::npos;

@@ -12,8 +12,8 @@
 
 namespace strata::bench {
 
-// Meshes go by name: `pot` or `pot:TRIANGLES` (generated here), a file of any format that an import
-// takes, or a preset of the data folder's make_big_mesh.py (vessel, excavation, amazon, thai,
+// The name of a mesh is `pot` or `pot:TRIANGLES` (generated here), a file in any format of an
+// import, or a preset of the data folder's make_big_mesh.py (vessel, excavation, amazon, thai,
 // textured10m), made once into `cache`.
 struct BenchMesh {
   std::string name;
@@ -21,35 +21,35 @@ struct BenchMesh {
   double area = 0;                                 // unit²
   AtlasReport atlas;
   Standing standing;
-  std::string unit;  // empty: the file does not say
+  std::string unit;  // empty if the file has none
 };
 
 struct BenchMeshOptions {
   std::filesystem::path cache = "build/bench";
   bool make_always = false;  // never keep the file's own texture coordinates
-  std::string up = {};       // where neither the file nor the list of known scans says it; empty: z
+  std::string up = {};       // if neither the file nor the list of known scans has it; empty: z
 };
 
-// Whether it is made in this process, and no file.
+// Whether the mesh is generated in this process instead of read from a file.
 bool is_generated(const std::string& name);
 
-// As tables and captions call it: the path within the data folder, or the file's name.
+// Returns the name for tables and captions: the path within the data folder, or the file's name.
 std::string mesh_title(const std::string& name);
 
-// The mesh with the files that it names. Files that end in .xz or .gz are unpacked into `cache`.
-// Refused where there is no such file, and where a preset cannot be made.
+// Returns the mesh file and the files that it refers to. Unpacks files that end in .xz or .gz into
+// `cache`. Refuses a missing file, and a preset that cannot be made.
 Result<std::vector<mesh::InputFile>> mesh_files(const std::string& name,
                                                 const std::filesystem::path& cache);
 
-// Every mesh of the data folder, and the presets. Some of its folder `nasty` are refused when they
-// are read, as they should be.
+// Returns every mesh of the data folder, and the presets. Reading refuses some files of the folder
+// `nasty`, as it should.
 Result<std::vector<std::string>> all_meshes();
 
-// As the importer reads and repairs it; `pot` among them.
+// Reads and repairs the mesh as the importer does; also makes `pot`.
 Result<mesh::LoadedMesh> load_named_mesh(const std::string& name,
                                          const std::filesystem::path& cache, Progress& progress);
 
-// With the file's own texture coordinates where they can carry layers, unless `make_always`.
+// Keeps the file's own texture coordinates if they can have layers, unless `make_always`.
 Result<BenchMesh> load_bench_mesh(const std::string& name, const BenchMeshOptions& options = {});
 
 }  // namespace strata::bench

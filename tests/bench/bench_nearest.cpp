@@ -1,4 +1,4 @@
-// The nearest point of the surface: our search tree beside the point query of Embree.
+// Compares the nearest point of the surface in our search tree with the point query of Embree.
 #include <embree3/rtcore.h>
 #include <malloc.h>
 
@@ -22,7 +22,7 @@ struct Options {
   int points = 200'000;
 };
 
-// That malloc has given out, in MiB.
+// Returns the memory that malloc has allocated, in MiB.
 double allocated_mib() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd) / (1 << 20);
@@ -36,11 +36,11 @@ double cpu_seconds() {
 
 struct Measured {
   double build_ms = 0, build_cpu_ms = 0, mib = 0;
-  std::vector<double> query_us;    // of processor time, for each set of points
-  std::vector<float> distances{};  // of all sets
+  std::vector<double> query_us;    // processor time, for each set of points
+  std::vector<float> distances{};  // for all sets
 };
 
-// Point sets that stand for what is asked: a record's place on the surface, a measurement beside
+// Makes point sets like those of real queries: a record's place on the surface, a measurement near
 // it, a camera far from it.
 std::vector<std::vector<glm::vec3>> point_sets(const mesh::Geometry& geometry, int count) {
   std::mt19937 random(1);
@@ -62,7 +62,7 @@ std::vector<std::vector<glm::vec3>> point_sets(const mesh::Geometry& geometry, i
 }
 constexpr const char* kSets[] = {"on the surface", "within 1 % of the size", "around the model"};
 
-// Ericson, Real-Time Collision Detection, 5.1.5, in double as our tree does it.
+// Ericson, Real-Time Collision Detection, 5.1.5, in double like our tree.
 glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                                const glm::dvec3& c) {
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -96,13 +96,13 @@ bool visit_triangle(RTCPointQueryFunctionArguments* arguments) {
   const double squared = glm::dot(way, way);
   if (squared >= query.squared) return false;
   query.squared = squared;
-  // Rounded up: nothing nearer may be left out.
+  // Rounded up, so that no nearer point is left out.
   arguments->query->radius =
       std::nextafter(static_cast<float>(std::sqrt(squared)), std::numeric_limits<float>::max());
   return true;
 }
 
-// `build` returns the MiB that what it built takes.
+// `build` returns the memory of its result in MiB.
 template <class Build, class Nearest>
 Measured measure(const std::vector<std::vector<glm::vec3>>& sets, Build build, Nearest nearest) {
   Measured measured;
@@ -196,7 +196,7 @@ int run(const Options& options) {
        embree(static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT),
               RTC_BUILD_QUALITY_MEDIUM)},
       {"Embree, quick build", embree(RTC_SCENE_FLAG_ROBUST, RTC_BUILD_QUALITY_LOW)},
-      own};  // again: other work on the machine shows
+      own};  // measured twice to show the effect of other work on the machine
   nlohmann::json results = nlohmann::json::array();
   std::vector<float> expected;
   for (const auto& [name, make] : methods) {

@@ -1,5 +1,5 @@
-// Questions to a painted model over HTTP, from this process to itself: idle, while somebody paints,
-// many points, statistics.
+// Measures queries of a painted model over HTTP, from this process to itself: while idle, while
+// somebody paints, many points, statistics.
 #include <atomic>
 #include <iostream>
 #include <random>
@@ -78,7 +78,7 @@ class Queries {
 
     for (const std::string layer : {"units", "moisture"}) {
       const std::string path = model + "/layers/" + layer + "/statistics";
-      get_ms(path + "?where=valid(" + layer + ")");  // the surface map is there
+      get_ms(path + "?where=valid(" + layer + ")");  // the surface map exists
       add("statistics of " + layer + ", counted anew", 50, repeated(3, [&] {
             refill(layer);
             return get_ms(path);
@@ -111,7 +111,7 @@ class Queries {
                  const char* accept = "application/json") {
     return client_->post(path, body, accept).elapsed_ms;
   }
-  // From the filter of a person's view to the picture in which the records that it finds stand out:
+  // Measures from the filter of a person's view to the picture in which the found records are lit:
   // at the socket, 720p.
   void light_up() {
     make_parts();
@@ -145,7 +145,7 @@ class Queries {
     }
     add("a filter over 10 000 records, to lit pixels", 50, samples);
   }
-  // As many records as a large excavation has, each in a patch of the surface.
+  // The number of records of a large excavation, each in one patch of the surface.
   void make_parts() {
     constexpr int kParts = 10'000, kSide = 100;  // patches along a side of the atlas
     Layer layer;

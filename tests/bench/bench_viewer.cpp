@@ -1,5 +1,5 @@
-// One client at 720p, in this process and up to the socket: from a stroke to its pixels, frames of
-// a moving camera, bytes kept of steady painting.
+// Measures one client at 720p, in this process and up to the socket: from a stroke to its pixels,
+// frames of a moving camera, bytes stored of steady painting.
 #include <cmath>
 #include <future>
 #include <iostream>
@@ -37,7 +37,7 @@ struct Options {
 class OneViewer {
  public:
   explicit OneViewer(const Options& options) : options_(options) {
-    // Imported through the store like any model, from a PLY the bench writes when it is the
+    // Imports through the store as for any model, from a PLY that the bench writes for the
     // generated pot.
     store::NewModel made;
     made.model.name = made.model.slug = "bench";
@@ -61,7 +61,7 @@ class OneViewer {
     });
   }
 
-  // To changed pixels, with a still camera.
+  // Measures until changed pixels, with a camera at rest.
   nlohmann::json strokes() {
     Samples to_pixels, to_durable;
     std::uint64_t changed_bytes = 0;
@@ -82,9 +82,9 @@ class OneViewer {
             durable = now_ms() - start;
             saved.set_value();
           });
-      const std::int64_t wanted = sequence_known.get();
+      const std::int64_t target = sequence_known.get();
       const auto arrival = client_.wait_for(
-          *member_, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= wanted; });
+          *member_, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= target; });
       saved.get_future().get();
       if (i < 20) continue;  // warm
       to_pixels.add(arrival.at_ms - start);
@@ -100,13 +100,13 @@ class OneViewer {
             {"stroke_to_durable", to_durable.json()}};
   }
 
-  // A new camera every 16 ms, as a browser's animation frames send them, whatever has arrived.
+  // Sends a new camera every 16 ms, as a browser's animation frames do, without waiting for frames.
   nlohmann::json moving_camera() {
     Samples frame_ms, latency_ms;
     std::uint64_t bytes = 0;
     std::atomic<bool> moving{true};
     std::mutex sent_mutex;
-    std::map<std::uint64_t, double> sent_ms;  // of a camera's number
+    std::map<std::uint64_t, double> sent_ms;  // by camera number
     const std::uint64_t last_still = camera_number_;
     std::thread hand([&] {
       for (int i = 1; moving; ++i) {
@@ -143,8 +143,8 @@ class OneViewer {
             {"camera_to_last_byte", latency_ms.json()}};
   }
 
-  // Each new camera when the frame of the one before has come: what a frame takes, without waiting
-  // for its turn.
+  // Sends each new camera after the frame of the previous one: measures a frame without its wait
+  // for a turn.
   nlohmann::json cameras_in_turn() {
     Samples latency_ms, render_ms, encode_ms;
     for (int i = 0; i < options_.frames; ++i) {
@@ -166,8 +166,7 @@ class OneViewer {
             {"in_turn_encode", encode_ms.json()}};
   }
 
-  // A batch each 30 ms is what a client sends; the bytes kept do not depend on how fast we replay
-  // it.
+  // A client sends a batch every 30 ms; the stored bytes do not depend on the speed of this replay.
   nlohmann::json steady_painting() {
     const auto bytes_before = must(site_.store->journal().revision_bytes(model_.id));
     constexpr int kBatches = 400;

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""draw_annotators.py RESULT.json [OUT.svg]: how soon strokes were seen and saved, from what `annotators_test.py --json` measured; and its table.
+"""draw_annotators.py RESULT.json [OUT.svg]: draws the time until strokes are seen and saved, as
+`annotators_test.py --json` measured it, and prints its table.
 
-The figure (NAME.svg beside the result) has the share of strokes over the milliseconds since each was sent. Prints the table of README.md. Needs nothing but Python."""
+The figure (NAME.svg next to the result) shows the share of strokes over the milliseconds since each
+was sent. Prints the table of results/annotators.md. Needs only Python."""
 import json
 import sys
 from pathlib import Path
@@ -72,8 +74,8 @@ def draw(data, path):
 def table(data):
     latency = data["latency"]
     rows = (
-        ("`applied` heard by the author", latency["stroke_to_applied"]),
-        ("`saved` heard: durable", latency["stroke_to_saved"]),
+        ("`applied` reaches the author", latency["stroke_to_applied"]),
+        ("`saved` reaches the author: durable", latency["stroke_to_saved"]),
         ("the author's own pixels", latency["stroke_to_own_pixels"]),
         ("others' pixels, camera at rest", latency["stroke_to_others_pixels"]["still"]),
         ("others' pixels, camera turning", latency["stroke_to_others_pixels"]["turning"]),

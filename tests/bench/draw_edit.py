@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""draw_edit.py RESULT.json [OUT_DIR]: the paper's figures from what `strata-bench edit --json` measured.
+"""draw_edit.py RESULT.json [OUT_DIR]: draws the paper's figures from `strata-bench edit --json`.
 
-Writes OUT_DIR/NAME-radius-MODEL.svg (milliseconds over the tool's radius, one panel a texture size), NAME-models.svg (models
-side by side at 70 and 200 px) and NAME-bytes.svg (bytes between CPU and GPU an edit), NAME being that of the result, and
-prints the tables of README.md as Markdown. Needs nothing but Python.
+Writes OUT_DIR/NAME-radius-MODEL.svg (milliseconds over the tool's radius, one panel for each
+texture size), NAME-models.svg (all models at 70 and 200 px) and NAME-bytes.svg (bytes between CPU
+and GPU for each edit). NAME is that of the result. Prints the tables of results/edits.md and
+results/edits-h200.md as Markdown. Needs only Python.
 """
 import json
 import math
@@ -11,8 +12,7 @@ import sys
 from html import escape
 from pathlib import Path
 
-# Colours that colour-blind people can tell apart (Okabe and Ito), and dashes for those who print in
-# grey.
+# Colors that color-blind people can distinguish (Okabe and Ito), and dashes for prints in gray.
 METHODS = {
     "tiles": ("Tiles (Strata)", "#0072b2", "", 3),
     "paper": ("Paper: TEA + TPA", "#d55e00", "", 1.6),
@@ -142,7 +142,8 @@ def draw_radius(rows, model, path):
 
 
 def draw_bars(rows, models, value_of, groups, title, unit, path):
-    """Groups (radius, texture) of models of methods; `value_of` a row gives what is drawn on a logarithmic axis."""
+    """Draws groups (radius, texture) of models of methods; `value_of` returns the value of a row on
+    the logarithmic axis."""
     methods = present(rows)
     bar, gap, top, bottom, left = 8, 12, 60, 300, 70
     cluster = bar * len(methods) + gap
@@ -245,7 +246,7 @@ def tables(data):
             )
     moved = [r for r in rows if r["radius"] == 70]
     if moved:
-        out.append("\n**Bytes between CPU and GPU an edit, r = 70 px**\n")
+        out.append("\n**Bytes between CPU and GPU for each edit, r = 70 px**\n")
         methods = present(moved)
         out.append(
             "| model | texture | "

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""draw_stream.py RESULT.json [OUT_DIR]: figures and tables of what `strata-bench stream --json` measured.
+"""draw_stream.py RESULT.json [OUT_DIR]: draws figures and tables of `strata-bench stream --json`.
 
-Writes OUT_DIR/NAME-times.svg (from a camera and from a stroke to pixels, over the number of active viewers, one panel a link),
-NAME-rates.svg (pictures a second of a viewer, and of a second of the server's processors) and, where the peer was there,
-NAME-peer.svg; NAME being that of the result. Prints the tables of README.md as Markdown. Figures are medians of the runs of a
-case; whiskers go to the 95th percentile in times, to the lowest and highest run elsewhere. Needs nothing but Python."""
+Writes OUT_DIR/NAME-times.svg (from a camera and from a stroke to pixels, over the number of active
+viewers, one panel for each link), NAME-rates.svg (pictures a second of a viewer, and of a second of
+the server's processors) and, if the peer was measured, NAME-peer.svg. NAME is that of the result.
+Prints the tables of results/streaming.md as Markdown. Figures are medians of the runs of a case;
+whiskers reach the 95th percentile of times, and the lowest and highest run of other figures. Needs
+only Python."""
 import json
 import statistics
 import sys
@@ -12,8 +14,8 @@ from pathlib import Path
 
 from draw_edit import Log, line, save, short, text
 
-# What is measured: title, colour (Okabe and Ito), dash, where it stands in a run, and of which
-# hands.
+# Measured values: title, color (Okabe and Ito), dash, path in a run, and the actions of the
+# viewers.
 BOTH = "turn and paint"
 TIMES = (
     ("camera → last byte", "#0072b2", "", ("camera_to_last_byte",), ("turn",)),
@@ -68,7 +70,7 @@ PANEL, LEFT, TOP, BOTTOM, LEGEND = 300, 62, 44, 290, 20
 
 
 def values(row, *path):
-    """Of all runs that have it."""
+    """Returns the values of all runs that have one."""
     found = []
     for run in row["runs"]:
         for name in path:
@@ -123,7 +125,7 @@ def axes(body, y, x0, numbers, x, title):
 
 
 def curve(body, points, color, dash):
-    """Points (x, y, whisker's low and high y)."""
+    """Draws points (x, y, whisker's low and high y)."""
     path = " ".join(f"{x:.1f},{y:.1f}" for x, y, _, _ in points)
     body.append(
         f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2" stroke-dasharray="{dash}"/>'
@@ -151,7 +153,7 @@ def legend(body, kinds):
 
 
 def draw(data, path, title, unit, kinds, points_of):
-    """One panel a link; `points_of` (row, kind) gives value, low and high, or None."""
+    """Draws a panel for each link; `points_of` (row, kind) returns value, low and high, or None."""
     links = list(dict.fromkeys(row["link"] for row in rows_of(data, "active")))
     numbers = sorted({row["active"] for row in rows_of(data, "active")})
     found = {}
@@ -198,7 +200,7 @@ def time_point(row, kind):
 def rate_point(row, kind):
     found = values(row, *kind[3])
     if not found or statistics.median(found) <= 0:
-        return None  # has no place on a logarithmic axis; the table has it
+        return None  # cannot be on a logarithmic axis; the table has it
     return statistics.median(found), min(value for value in found if value > 0), max(found)
 
 
@@ -271,7 +273,7 @@ def active_table(data):
         [
             "link",
             "active",
-            "hands",
+            "action",
             "turning, frames/s: slowest viewer",
             "median viewer",
             "painting, frames/s",
@@ -356,10 +358,10 @@ def stalled_table(data):
                     ]
                 )
     return table(
-        "One who reads nothing",
+        "A viewer that reads nothing",
         [
             "active",
-            "hands",
+            "action",
             "",
             "turning, frames/s",
             "painting, frames/s",
@@ -397,7 +399,7 @@ def peer_table(data):
             ]
         out.append(cells)
     return table(
-        f"One viewer beside ParaView's web engine, {data['triangles']:,} triangles",
+        f"One viewer compared with ParaView's web engine, {data['triangles']:,} triangles",
         ["", "frames/s", "camera → picture, p50 / p95 ms", "frames a CPU second"]
         + (["× ParaView's", "p95 / ParaView's"] if peer else []),
         out,

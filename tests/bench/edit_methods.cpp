@@ -30,13 +30,14 @@ StrokeBatch dab(const EditScene& scene, glm::dvec2 center, double radius_px) {
   stroke.camera = scene.camera;
   stroke.path = {center};
   stroke.radius_px = radius_px;
-  stroke.fixed_depth_bias = kPaperDepthBias;  // so that both paint the same
+  stroke.fixed_depth_bias = kPaperDepthBias;  // so that both methods paint the same texels
   stroke.value_bits = kValue;
   return stroke;
 }
 
-// Whether a dab paints a position, in double; the rounding of floats decides near a threshold: the
-// tool's edge, a pixel's border (which depth is asked) and the depth test's own.
+// Decides in double whether a dab paints a position. Near a threshold the rounding of floats
+// decides: at the tool's edge, at a pixel's border (which selects the depth) and in the depth test
+// itself.
 struct Decision {
   bool painted = false, near_threshold = false;
 };
@@ -61,7 +62,7 @@ Decision decide(const EditScene& scene, const render::DepthCopy& depth, glm::dve
                                          std::abs(before) < 1e-6};
 }
 
-// Depth of the scene on the GPU, which every system has from drawing it.
+// The depth of the scene on the GPU, which every system already has from drawing it.
 class SceneDepth {
  public:
   SceneDepth(render::Renderer& renderer, const EditScene& scene) : renderer_(renderer) {
@@ -196,7 +197,7 @@ class EditMethods::Paper {
   EditCreation creation_;
 };
 
-// One tree and one layer of it, painted by either way.
+// One tree and one layer of it, painted by either method.
 class EditMethods::Tree {
  public:
   static Result<std::shared_ptr<Tree>> create(render::Renderer& renderer, const EditScene& scene,
@@ -284,7 +285,7 @@ class EditMethods::Tree {
 
 namespace {
 
-// `Edit` is given centre and radius; `peer` is shared by the two ways it can be asked.
+// `Edit` receives center and radius; the two methods of a peer share `peer`.
 template <class Peer, class Way>
 class PeerMethod : public EditMethod {
  public:
@@ -374,8 +375,8 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
       const auto per_side = static_cast<std::size_t>(map.blocks_per_side);
       const std::size_t x = map.block_of_slot[slot] % per_side * 8 + i % 8;
       const std::size_t y = map.block_of_slot[slot] / per_side * 8 + i / 8;
-      // Texels that the paper's raster does not cover are padding to it, though a thin triangle may
-      // own them here.
+      // The paper treats texels that its raster does not cover as padding, though in tiles a thin
+      // triangle may own them.
       if (!coverage[y * side + x]) continue;
       const bool a = theirs[y * side + x] != 0, b = written[y * side + x] != 0;
       agreement.compared += a || b;
@@ -391,7 +392,7 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
 }
 
 double copy_bandwidth(render::Renderer& renderer) {
-  // as much as any driver takes in one storage buffer
+  // the most that every driver accepts in one storage buffer
   constexpr std::size_t kBytes = std::size_t{128} << 20;
   constexpr int kRuns = 7;
   Samples samples;
@@ -409,7 +410,7 @@ double copy_bandwidth(render::Renderer& renderer) {
     }
   } else {
     renderer.run_on_gpu_thread_for_test([&] {
-      // By a shader: not every driver's own copy runs at the bandwidth of the memory.
+      // Copies with a shader: the copy of some drivers does not reach the bandwidth of the memory.
       constexpr std::size_t kBytesPerGroup = std::size_t{256} * 16;
       const auto program = must(gl::Program::load(test::peer_shader_dir(), {"copy.comp"}));
       auto from = must(gl::Buffer::create(kBytes, gl::Buffer::Use::fixed, "copied"));

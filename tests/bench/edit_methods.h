@@ -10,7 +10,7 @@
 
 namespace strata::bench {
 
-// What all methods are asked to paint on, as one camera sees it.
+// The scene that all methods paint, as one camera sees it.
 struct EditScene {
   BenchMesh mesh;
   Camera camera;
@@ -19,22 +19,22 @@ struct EditScene {
 
 struct EditCost {
   double ms = 0;                               // until a frame may show the edit
-  double ms_to_memory = 0;                     // until main memory has it, too; 0: not asked
-  double gpu_ms = 0;                           // of the GPU's own clock; 0: not known
+  double ms_to_memory = 0;                     // until main memory also has it; 0: not measured
+  double gpu_ms = 0;                           // by the GPU's own clock; 0: unknown
   std::uint64_t cells = 0;                     // texels or leaves painted
   std::uint64_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
 };
 
-// What must be there before the first edit.
+// The data that must exist before the first edit.
 struct EditCreation {
   double structure_s = 0;
   std::uint64_t model_bytes = 0;      // mesh or tree
-  std::uint64_t structure_bytes = 0;  // beside it, of this resolution
+  std::uint64_t structure_bytes = 0;  // in addition, for this resolution
   std::uint64_t layer_bytes = 0;      // one layer of 8 bits, painted all over
 };
 
-// One way to paint a dab. Everything it makes is made by the constructor and not counted by `edit`,
-// but by `creation`; so is the depth of the scene, which every method but rays takes as given.
+// One method of painting a dab. The constructor makes all data; `creation` counts that, `edit` does
+// not. The depth of the scene is not counted either; every method except rays uses it as given.
 class EditMethod {
  public:
   virtual ~EditMethod() = default;
@@ -43,10 +43,10 @@ class EditMethod {
   virtual EditCreation creation() const = 0;
 };
 
-// Surface texels that tiles and paper paint. Where they differ, arithmetic in double tells who is
-// off.
+// Surface texels that tiles and paper paint. Where they differ, arithmetic in double shows which
+// one is wrong.
 struct EditAgreement {
-  std::uint64_t compared = 0;  // painted by either
+  std::uint64_t compared = 0;  // painted by at least one of them
   std::uint64_t differ = 0;
   std::uint64_t tiles_off = 0, paper_off = 0;
   std::uint64_t beyond_rounding = 0;  // differ, though no threshold is near
@@ -62,7 +62,7 @@ struct EditAgreement {
 };
 
 // The methods of one scene and texture size, made from `names`: tiles, paper, paper-compute,
-// octree, octree-fair. What cannot be made is told in `not_made`.
+// octree, octree-fair. `not_made` lists the methods that cannot be made.
 class EditMethods {
  public:
   EditMethods(render::Renderer& renderer, const EditScene& scene, int texture,
@@ -86,8 +86,8 @@ class EditMethods {
   std::vector<std::string> not_made_;
 };
 
-// Read and written bytes a second of a large copy, where edits are made: by all cores, or by the
-// GPU.
+// Returns the bytes per second that a large copy reads and writes, on the device that edits: all
+// cores, or the GPU.
 double copy_bandwidth(render::Renderer& renderer);
 
 }  // namespace strata::bench

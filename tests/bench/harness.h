@@ -36,7 +36,7 @@ double now_ms();
 
 // {cpu, cores, gl_renderer, driver, commit}
 nlohmann::json machine(const render::GpuInfo* gpu);
-// `more`: further members beside `machine` and `results`.
+// `more`: further members, in addition to `machine` and `results`.
 void write_result(const std::string& json_file, const nlohmann::json& machine,
                   const nlohmann::json& results,
                   const nlohmann::json& more = nlohmann::json::object());
@@ -52,7 +52,7 @@ T must(Result<T> result) {
   if constexpr (!std::is_void_v<T>) return std::move(*result);
 }
 
-// Waits for what `start` is given as its callback.
+// Waits for the result that `start` passes to its callback.
 template <class T, class Start>
 T await(Start start) {
   auto promise = std::make_shared<std::promise<Result<T>>>();
@@ -64,22 +64,22 @@ T await(Start start) {
     return must(future.get());
 }
 
-// SurfaceImages at a model from a direction, so that it fills the window.
+// Returns a camera that sees the model from a direction and fills the window with it.
 Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height);
-// The same of a box in world coordinates.
+// The same for a box in world coordinates.
 Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height);
 
-// PostgreSQL does not run as root: others may pass through what becomes a data folder.
+// PostgreSQL does not run as root: lets others enter the parent folders of a future data folder.
 void let_others_through(const std::filesystem::path& folder);
-// Under the system's folder for such; others may pass through.
+// In the system's temporary folder; others may enter it.
 std::filesystem::path make_temporary_folder();
 
-// A whole server without sockets, on a database of its own in a temporary folder.
+// A whole server without sockets, on a separate database in a temporary folder.
 class Site {
  public:
   Site();
   ~Site();
-  void restart();  // everything above the database anew
+  void restart();  // restarts everything above the database
   std::filesystem::path folder;
   std::unique_ptr<store::Cluster> cluster;
   std::unique_ptr<store::Store> store;
@@ -88,7 +88,7 @@ class Site {
   std::unique_ptr<room::Rooms> rooms;
 };
 
-// Waits for an edit to be durable.
+// Waits until an edit is durable.
 room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request);
 room::EditRequest stroke_request(const Layer& layer, const Camera& camera,
                                  std::vector<glm::dvec2> path, double radius_px, double value);

@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""What one reader's heavy questions cost the others, and how soon the server is done with them when nobody waits any more.
+"""Measures the effect of one reader's heavy queries on others, and how soon the server stops work
+for closed connections.
 
     STRATA_BINARY=build/release/bin/strata tests/bench/one_reader.py [--json FILE] [--only NAME,…]
 
-  frame      a picture of 320 × 180 of one person: alone, and beside three of 8192² of another (median and longest of several)
-  list       a condition of 1900 items over a filled layer of 4096²
-  leave      seconds from closing the connections until the server has used no processor for half a second: of long conditions, of large pictures
-  stop       seconds from SIGTERM to the end of the process under both
-  empty      memory that statistics of an empty layer of 16384² take, at most and after
-  points     1 200 000 points: until they are refused
+frame      a picture of 320 × 180 of one person: alone, and during three of 8192² of another person
+           (median and longest of several)
+list       a condition of 1900 items over a filled layer of 4096²
+leave      seconds from closing the connections until the server has used no processor for half a
+           second: after long conditions, after large pictures
+stop       seconds from SIGTERM to the end of the process, during both
+empty      memory for statistics of an empty layer of 16384², at most and afterward
+points     1 200 000 points: until the server refuses them
 
-Prints a line each. Needs nothing but Python and the server.
+Prints a line for each. Needs only Python and the server.
 """
 import argparse
 import http.client
@@ -68,7 +71,7 @@ def timed(server, path, body, token=None, headers=None):
 
 
 def until_idle(server):
-    """Seconds until the process used next to nothing of a processor for half a second."""
+    """Returns the seconds until the process used almost no processor for half a second."""
     start, last = time.monotonic(), time.monotonic()
     used = processor_seconds(server.process.pid)
     while time.monotonic() - start < 300:

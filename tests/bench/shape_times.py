@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""What layers computed from a shape take, and a transfer, from the request to the durable layer.
+"""Measures layers computed from a shape, and a transfer, from the request to the durable layer.
 
-    STRATA_BINARY=build/release/bin/strata tests/bench/shape_times.py SCAN.ply [--unit mm] [--resolution 4096] [--from OTHER.ply]
-                                                                      [--kinds slope,…] [--cancel] [--json FILE]
+  STRATA_BINARY=build/release/bin/strata tests/bench/shape_times.py SCAN.ply [--unit mm] \
+    [--resolution 4096] [--from OTHER.ply] [--kinds slope,…] [--cancel] [--json FILE]
 
-Each is done once after one that is not counted, which opens the model and maps its surface. Beside the seconds on the clock stand
-those of the server's processors, which are what to compare where others use the machine, too; the most memory that the server (not its
-PostgreSQL) held meanwhile; and the longest time in which what a person sees of the job's progress did not change. With --cancel each
-is started again and cancelled when a quarter, half and most of that time has passed: the longest time until it had ended.
+Each is done once, after one that is not counted, which opens the model and maps its surface. Prints
+seconds on the clock; seconds of the server's processors, which are the ones to compare if other
+programs use the machine, too; the most memory of the server (not of its PostgreSQL) in that time;
+and the longest time without a change in the job's visible progress. With --cancel each is started
+again and cancelled after a quarter, half and most of that time: the longest time to its end.
 """
 import argparse
 import json
@@ -49,7 +50,7 @@ def forget_peak(server):
 
 
 def follow(server, job_id, what):
-    """The ended job, and the longest time in which it showed nothing new."""
+    """Returns the ended job, and the longest time without new progress."""
     seen, since, silence = None, time.monotonic(), 0
 
     def ended():
@@ -66,7 +67,7 @@ def follow(server, job_id, what):
 
 
 def measure(server, what, path, body):
-    """One line of the table; the figures and the job."""
+    """Prints one line of the table; returns the figures and the job."""
     forget_peak(server)
     start, used = time.monotonic(), processor_seconds(server.process.pid)
     job, silence = follow(server, server.ok("POST", path, body).json()["id"], what)
@@ -88,7 +89,8 @@ def measure(server, what, path, body):
 
 
 def seconds_to_cancel(server, path, body, after):
-    """From the request to cancel to the job's end; None where the job had ended before."""
+    """Returns the time from the request to cancel to the job's end; None if the job had ended
+    before."""
     job_id = server.ok("POST", path, body).json()["id"]
     time.sleep(after)
     asked = time.monotonic()
@@ -154,7 +156,7 @@ def main():
                     flush=True,
                 )
             for layer in job.get("layers", []):
-                # so that each is measured beside the first alone
+                # so that each is measured with only the first layer
                 server.ok("DELETE", f"{path}/layers/{layer}")
             rows.append(figures)
         if asked.other:

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""strata-bench atlas and sheet take every format that an import takes, name what they cannot read, and go on."""
+"""strata-bench atlas and sheet accept every format of an import, name the files that they cannot
+read, and continue."""
 import json
 import os
 import struct

@@ -10,10 +10,10 @@ namespace strata::bench {
 namespace {
 
 struct Known {
-  const char* beginning;  // of the title
+  const char* beginning;  // in the title
   Standing standing;
 };
-// Looked up by eye on the sheet itself.
+// Determined by eye on the sheet itself.
 const std::array kKnown{
     Known{"amazon", {"y", 0}},
     Known{"bust_manwreath", {"y", -50}},
@@ -24,14 +24,14 @@ const std::array kKnown{
     Known{"statue_nefertiti", {"y", 0}},
     Known{"textured10m", {"y", 0}},
     Known{"thai", {"y", 0}},
-    Known{"vessel_jug", {"z", 0}},  // before the preset
+    Known{"vessel_jug", {"z", 0}},  // of the text before the preset
     Known{"vessel", {"y", 0}},
 };
 
 constexpr double kFieldOfViewDegrees = 30;
 constexpr double kMargin = 0.06;  // of the picture, on each side
 
-// To the right of who stands before the model, towards them, and up.
+// To the right of an observer in front of the model, towards the observer, and up.
 struct Axes {
   glm::dvec3 right, front, up;
 };
@@ -68,9 +68,9 @@ Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, g
   const glm::dvec3 right = glm::normalize(glm::cross(axes.up, back)), up = glm::cross(back, right);
   const double field = glm::radians(kFieldOfViewDegrees),
                slope = std::tan(field / 2) * (1 - 2 * kMargin);
-  // A vertex (x, y, z) of the view's axes is in the picture of a camera at (cx, cy, d) where |x −
-  // cx| ≤ slope (d − z), and so with y: four planes in cx, cy and d, of which only the farthest of
-  // all vertices count.
+  // A camera at (cx, cy, d) shows a vertex (x, y, z) of the view's axes if |x − cx| ≤ slope (d −
+  // z), and the same for y: four planes in cx, cy and d. Only the farthest planes of all vertices
+  // count.
   constexpr double kMin = std::numeric_limits<double>::lowest();
   double to_right = kMin, to_left = kMin, to_top = kMin, to_bottom = kMin, nearest = kMin,
          farthest = -kMin;

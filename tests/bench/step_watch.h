@@ -10,12 +10,12 @@
 
 namespace strata::bench {
 
-// Seconds, processor seconds and peak memory of the steps of long work, told apart by the messages
-// it reports: sampled once a millisecond.
+// Measures seconds, processor seconds and peak memory of the steps of long work. Its progress
+// messages separate the steps; a thread samples them once a millisecond.
 class StepWatch {
  public:
-  // Runs `work`, and notes every message that `progress` shows meanwhile as a step; `name` is the
-  // one before the first.
+  // Runs `work`, and records each message that `progress` shows as a step; `name` is the step
+  // before the first message.
   template <class Work>
   auto run(const std::string& name, Progress& progress, Work work) {
     Sampling sampling(*this, name, progress);
@@ -26,7 +26,7 @@ class StepWatch {
   void print() const;
   double seconds() const;
   double peak_mib() const;
-  double cpu_seconds() const;  // of this process; what its PostgreSQL took is not in it
+  double cpu_seconds() const;  // of this process, without its PostgreSQL
 
  private:
   struct Step {
@@ -45,7 +45,8 @@ class StepWatch {
   std::vector<Step> steps_;
 };
 
-// Resident memory of this process now, and the most since `forget_peak_memory`, in MiB; from /proc.
+// Resident memory of this process now, and the maximum since `forget_peak_memory`, in MiB; from
+// /proc.
 double memory_mib();
 double peak_memory_mib();
 void forget_peak_memory();

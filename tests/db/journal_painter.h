@@ -31,7 +31,7 @@ inline Layer make_layer(store::Store& store, ModelId model_id, ValueType type = 
   return store.layers().create(layer).value();
 }
 
-// Paints a layer in memory, and makes the journal entries that a room would make of it.
+// Paints a layer in memory, and makes the journal entries that a room would make.
 class Painter {
  public:
   Painter(Layer layer, std::uint32_t seed, int key_every = 64)
@@ -55,7 +55,7 @@ class Painter {
     return entry;
   }
 
-  // A stroke over some random tiles: writes, erases and rewrites of equal values.
+  // Paints some random tiles: writes, erases and rewrites of equal values.
   store::JournalEntry paint(std::int64_t sequence, int tiles, int tile_range) {
     store::JournalEntry entry = this->entry(sequence);
     std::map<TileAddress, TileMask> touched;

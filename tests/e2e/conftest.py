@@ -1,4 +1,5 @@
-"""Fixtures of all end-to-end tests. The cases of a file tell one story of one server, in their order, and the first that fails ends it."""
+"""Fixtures of all end-to-end tests. The cases of a file are one sequence on one server, in their
+order; the first failure ends it."""
 import types
 
 import pytest
@@ -7,20 +8,20 @@ from support.strata_server import StrataServer
 
 @pytest.fixture(scope="module")
 def server():
-    """A server for all cases of a file, which override this to put into it what they begin with."""
+    """A server for all cases of a file, which override this to add their initial data."""
     with StrataServer() as started:
         yield started
 
 
 @pytest.fixture(scope="module")
 def story():
-    """What a case hands on to later ones of its file."""
+    """Values that a case passes to later cases of its file."""
     return types.SimpleNamespace()
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport():
-    """A failure shows the logs of the servers that run."""
+    """A failure shows the logs of the running servers."""
     outcome = yield
     report = outcome.get_result()
     if report.failed:

@@ -1,5 +1,4 @@
-// Files of records: what they are by their first bytes, whatever they are called, and small
-// pictures of them.
+// Files of records: their type from the first bytes, independent of the name, and their thumbnails.
 #include <cstdint>
 #include <cstdlib>
 #include <span>

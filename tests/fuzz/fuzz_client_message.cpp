@@ -1,5 +1,5 @@
-// Feeds arbitrary bytes to everything that reads the wire: text messages, HTTP bodies and frame
-// headers. Besides crashes it finds values that are read but not written back the same.
+// Feeds arbitrary bytes to all readers of the wire format: text messages, HTTP bodies and frame
+// headers. In addition to crashes it finds values that are read but not written back unchanged.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -52,7 +52,7 @@ void read_frame(std::span<const std::uint8_t> bytes) {
   demand(std::equal(written.begin(), written.end(), bytes.begin()));
 }
 
-// The fixtures of protocol/ are seeds as they lie there: {"schema": …, "json": the message} or {…,
+// The fixtures of protocol/ are seeds without changes: {"schema": …, "json": the message} or {…,
 // "text": the message}.
 std::string unwrap_fixture(std::string_view text) {
   const auto json = parse_json(text);

@@ -1,4 +1,4 @@
-// A table as CSV: what is read is what comes back from writing it, with lines that ascend.
+// A table as CSV: writing and reading it returns the same table, with ascending lines.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

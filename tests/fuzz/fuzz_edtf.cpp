@@ -1,4 +1,4 @@
-// A period as EDTF: its days are in order, and a mark behind it changes none of them.
+// A period as EDTF: its days are in order, and a trailing qualifier does not change them.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -1,5 +1,5 @@
-// A formula over layers: what is read comes back from a text made of it, and a condition selects
-// surface only.
+// A formula over layers: the text made from an expression parses to the same expression, and a
+// condition selects only surface.
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -124,11 +124,11 @@ std::string text_of(const Expression& expression) {
   std::abort();
 }
 
-// The text made of an expression has more brackets than that which it was read from.
+// The generated text has more brackets than the original text.
 bool is_beyond_limits(const strata::Error& problem) {
   return problem.title == "Expression too long" ||
          problem.detail.find("nested too deeply") != std::string::npos ||
-         problem.detail.find("too much at once") != std::string::npos;
+         problem.detail.find("too many parts") != std::string::npos;
 }
 
 // One block of surface.
@@ -144,7 +144,7 @@ strata::mesh::SurfaceMap one_block() {
   return map;
 }
 
-// Values from below zero up, with gaps.
+// Values from below zero upward, with gaps.
 strata::query::LayerView layer(const std::string& slug) {
   strata::query::LayerView view;
   view.layer.slug = slug;

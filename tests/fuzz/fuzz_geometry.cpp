@@ -6,8 +6,8 @@
 
 #include "mesh/surface/search_tree.h"
 
-// Stored geometry comes back from a database that others can write to. The input is tried as it is,
-// and as the content of a frame whose checksum is right: a fuzzer does not find checksums.
+// Stored geometry comes from a database that others can write to. The input is tried unchanged, and
+// as the content of a frame with a correct checksum: a fuzzer does not find checksums.
 namespace {
 
 void decode_and_use(std::span<const std::uint8_t> bytes) {

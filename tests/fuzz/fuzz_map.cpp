@@ -1,5 +1,5 @@
-// Flat maps: a TIFF; a .shp with its .dbf right behind it (its header says how long it is); or a
-// GeoJSON text.
+// Flat maps: a TIFF; a .shp directly followed by its .dbf (its header has its length); or a GeoJSON
+// text.
 #include <cmath>
 #include <cstdlib>
 

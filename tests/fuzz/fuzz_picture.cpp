@@ -1,5 +1,5 @@
-// Pictures of looks, orthophotos and tool shapes: what is read has the size that its header says,
-// and a shape is the same after it was sent as the picture that the page shows.
+// Pictures of surface images, orthophotos and brush shapes: a decoded picture has the size of its
+// header, and a shape does not change if it is sent again as the picture that the page shows.
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -27,7 +27,7 @@ void check_shape(const strata::Picture& picture) {
              texture.is_set(i % strata::kShapeSide, i / strata::kShapeSide));
     const auto again = strata::shape_of(strata::picture_of(*bits), strata::ShapePart::opaque);
     demand(again.has_value() && *again == *bits);
-    return;  // one is enough: making it ready takes longer than all else
+    return;  // one is enough: its preparation takes longer than everything else
   }
 }
 

@@ -1,5 +1,5 @@
-// Texels of a layer of 128², as TIFF, PNG or NumPy; the first byte is the layer's type. What is
-// read is written and read again the same in every form that can hold it.
+// Texels of a layer of 128², as TIFF, PNG or NumPy; the first byte is the layer's type. A decoded
+// raster is written and read again unchanged in every format that can store it.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -16,7 +16,7 @@ void demand(bool holds) {
   if (!holds) std::abort();
 }
 
-// A NumPy file of version 1 whose texels go on with zeros: few inputs are as long as a layer is.
+// A NumPy file of version 1, padded with zero texels: few inputs are as long as a layer.
 std::vector<std::uint8_t> with_all_texels(std::span<const std::uint8_t> bytes, const Layer& layer) {
   std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
   const std::size_t header = bytes.size() < 10 ? 0 : std::size_t{10} + bytes[8] + 256u * bytes[9];

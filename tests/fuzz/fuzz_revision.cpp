@@ -1,6 +1,6 @@
-// Tiles and revisions as they are stored: they come back from a database that others can write to.
-// The first byte is the layer's type. What follows is tried as it is, and as the content of a frame
-// that is whole: a fuzzer hardly makes one of the right size.
+// Stored tiles and revisions: they come from a database that others can write to. The first byte is
+// the layer's type. The rest is tried unchanged, and as the content of a complete frame: a fuzzer
+// rarely makes one of the right size.
 #include <zstd.h>
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The short texts of requests, each to every reader of one: targets and their queries, cookies,
-// origins, points, ids, world files, tables of readings, keys of colours.
+// The short texts of requests, each for every parser: targets and their queries, cookies, origins,
+// points, ids, world files, tables of readings, keys of colors.
 #include <charconv>
 #include <cmath>
 #include <cstdint>

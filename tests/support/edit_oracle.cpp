@@ -19,11 +19,11 @@ namespace {
 constexpr double kRounding_px = 2e-3;
 constexpr double kRoundingDepth = 1e-6;
 constexpr double kRoundingAngle_rad = 5e-4;
-constexpr double kRoundingOfSize = 1e-6;  // of the model's diagonal, at a section plane
+constexpr double kRoundingOfSize = 1e-6;  // relative to the model's diagonal, at a section plane
 
-// Where a line between two points of a shape's raster passes in each row of cells, whether one of
-// them is the tool's. With `slack` (cells) the shape is so much larger all around; below 0,
-// smaller. Row by row and cell by cell: nothing of the distances that the shader leaps by.
+// Whether the line between two points of a shape's raster passes through one of the tool's cells:
+// tests each row cell by cell, without the shader's distance jumps. With `slack` (cells) the shape
+// is larger on all sides; below 0, smaller.
 bool line_meets_shape(const ShapeTexture& shape, const glm::dvec2& a, const glm::dvec2& b,
                       double slack) {
   for (int y = 0; y < kShapeSide; ++y) {
@@ -49,8 +49,8 @@ bool line_meets_shape(const ShapeTexture& shape, const glm::dvec2& a, const glm:
   return false;
 }
 
-// As `inside` for a shape: kRounding_px and more where the point is under it for certain, the
-// negative where it is not.
+// Like `inside`, for a shape: at least kRounding_px if the point is certainly under it, the
+// negative of it if it certainly is not.
 double inside_shape(const StrokeBatch& stroke, const std::vector<double>& radii,
                     const glm::dvec2& p) {
   const auto in_raster = [&](std::size_t i) {
@@ -73,8 +73,8 @@ double inside_shape(const StrokeBatch& stroke, const std::vector<double>& radii,
   return best;
 }
 
-// How far inside the tool a point is, in pixels; negative outside. Steps along each segment finely
-// enough for kRounding_px: independent of the closed form in the shader.
+// Returns how far a point is inside the tool, in pixels; negative outside. Steps along each segment
+// finely enough for kRounding_px: independent of the closed form in the shader.
 double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const glm::dvec2& p) {
   const auto point = [&](std::size_t i) {
     return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y);
@@ -94,7 +94,7 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
     const auto at = [&](double t) {
       return margin(a + (b - a) * t, radii[i - 1] + (radii[i] - radii[i - 1]) * t);
     };
-    // The margin is concave along the segment: ternary search finds its top.
+    // The margin is concave along the segment: ternary search finds its maximum.
     double low = 0, high = 1;
     for (int step = 0; step < 60; ++step) {
       const double third = (high - low) / 3;
@@ -108,9 +108,9 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
   return best;
 }
 
-// How much steeper than allowed the surface is in a pixel: the angle between the direction to the
-// eye and the normal of the plane through the pixel's centre and two neighbours, by points in the
-// world; and the same where rounding picks other neighbours.
+// Returns how much the surface in a pixel exceeds the allowed angle: between the direction to the
+// eye and the normal of the plane through the pixel's center and two neighbors, from points in the
+// world; and the same if rounding selects other neighbors.
 std::pair<double, double> angle_margins(const StrokeBatch& stroke,
                                         const std::function<double(int, int)>& at, int x, int y) {
   const Camera& camera = stroke.camera;
@@ -121,8 +121,7 @@ std::pair<double, double> angle_margins(const StrokeBatch& stroke,
                                      (py + 0.5) * 2 / camera.height - 1, at(px, py) * 2 - 1, 1);
     return glm::dvec3(p) / p.w;
   };
-  // The neighbour on either side whose depth is nearer; both where they are as near but for
-  // rounding.
+  // The neighbor on the side with the nearer depth; both if they are equally near within rounding.
   const auto neighbours = [&](int dx, int dy, int where, int last) {
     const double before = std::abs(at(x, y) - at(x - dx, y - dy)),
                  after = std::abs(at(x + dx, y + dy) - at(x, y));
@@ -147,7 +146,7 @@ std::pair<double, double> angle_margins(const StrokeBatch& stroke,
   return {low, high};
 }
 
-// Margins of one texel: written when all are positive, undecided when the smallest is near 0.
+// Margins of one texel: it is written if all are positive, and undecided if the smallest is near 0.
 bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<double>& radii,
             const std::vector<float>& depth, const glm::dmat4& clip_from_model,
             const render::DepthBias& bias, const glm::vec3& position, bool& undecided) {
@@ -169,9 +168,9 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
       std::min({window.x, window.y, camera.width - window.x, camera.height - window.y});
   double margin_px = std::min(window_margin, inside(stroke, radii, window));
   if (margin_px < -kRounding_px) return false;
-  const bool kept = section_margin >= 0;
+  const bool is_uncut = section_margin >= 0;
   undecided = std::abs(margin_px) < kRounding_px || std::abs(section_margin) < rounding;
-  if (stroke.through || window_margin <= 0) return kept && margin_px > 0;
+  if (stroke.through || window_margin <= 0) return is_uncut && margin_px > 0;
 
   const int x = static_cast<int>(window.x), y = static_cast<int>(window.y);
   const auto at = [&](int px, int py) {
@@ -188,7 +187,7 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   const double allowed = stroke.fixed_depth_bias.value_or(
       base + std::min(bias.slope_factor * slope, bias.slope_limit * base));
   const double depth_margin = here - (ndc.z * 0.5 + 0.5 - allowed);
-  // Near a pixel's border the other pixel may have been asked.
+  // Near a pixel's border the test may have read the other pixel.
   const double border = std::min({window.x - x, window.y - y, x + 1 - window.x, y + 1 - window.y});
   undecided = undecided || std::abs(depth_margin) < kRoundingDepth || border < kRounding_px;
   bool faces = true;
@@ -197,10 +196,10 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
     faces = here < 1 && low >= 0;
     undecided = undecided || (low < kRoundingAngle_rad && high > -kRoundingAngle_rad);
   }
-  return kept && !inside && margin_px > 0 && depth_margin >= 0 && faces;
+  return is_uncut && !inside && margin_px > 0 && depth_margin >= 0 && faces;
 }
 
-// In window pixels, one a path point.
+// In window pixels, one for each path point.
 std::vector<double> radii_of(const StrokeBatch& stroke, const std::vector<float>& depth) {
   const auto narrowed = [&](std::vector<double> radii) {
     for (std::size_t i = 0; i < stroke.widths.size(); ++i) radii[i] *= stroke.widths[i];

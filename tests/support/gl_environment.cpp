@@ -1,5 +1,6 @@
-// Linked into every test that needs GL. LeakSanitizer looks at the end: driver libraries that were
-// unloaded by then look like leaks without a name, so they are loaded here and never unloaded.
+// Linked into every test that needs GL. LeakSanitizer checks at the end of the process: driver
+// libraries that are unloaded by then look like leaks without a name, so this file loads them and
+// never unloads them.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 

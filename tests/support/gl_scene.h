@@ -12,12 +12,12 @@
 
 namespace strata::test {
 
-// Meshes with charts of their own for GL tests.
+// Meshes with their own charts for GL tests.
 mesh::TriangleMesh bumpy_sphere(int quads_per_edge);  // radius ≈ 1; 6 charts; 12 · n² triangles
 // two unit squares at z = 0 and z = -gap; 2 charts
 mesh::TriangleMesh folded_sheets(double gap);
 mesh::TriangleMesh flat_square(int quads_per_edge = 1);  // unit square at z = 0, uv 0.05 … 0.95
-// The same with heights: of x and y, -0.5 … 0.5.
+// The same with heights from x and y, -0.5 … 0.5.
 mesh::TriangleMesh relief_square(int quads_per_edge,
                                  const std::function<double(double, double)>& height);
 
@@ -42,9 +42,9 @@ Result<T> await(Call call) {
   return future.get();
 }
 
-// A renderer in a debug context with blocking calls, where any Error fails the test. Its
+// A renderer in a debug context with blocking calls, in which any Error fails the test. Its
 // destructor checks that no GL error was reported. STRATA_TEST_EDIT_PATH (`compute` or `kernel`)
-// says where strokes are painted if the options do not.
+// selects the path that paints, unless the options do.
 class TestRenderer {
  public:
   explicit TestRenderer(render::RendererOptions options = {});
@@ -59,19 +59,19 @@ class TestRenderer {
   render::StrokeOutcome paint(render::LayerHandle layer, const StrokeBatch& stroke);
   render::Frame draw(const render::FrameRequest& request);
   void write(render::LayerHandle layer, std::vector<render::TileUpload> tiles);
-  // Depth of the full mesh, row 0 below.
+  // Depth of the full mesh, bottom row first.
   std::vector<float> depth(const Scene& scene, const Camera& camera);
 
  private:
   std::unique_ptr<render::Renderer> renderer_;
 };
 
-// Of the whole mesh; with a context current.
+// The depth of the whole mesh; with a current context.
 std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths,
                                                 const render::MeshBuffers& mesh,
                                                 const Camera& camera);
 
-// A dab of a disc with a u8 value.
+// A dab with a disc and a u8 value.
 StrokeBatch dab(const Camera& camera, double x, double y, double radius_px,
                 std::uint32_t value_bits = 7);
 

@@ -9,7 +9,7 @@
 
 namespace strata::test {
 
-// Builds glTF files piece by piece: each `add` makes a buffer view and an accessor, and gives the
+// Builds glTF files step by step: each `add` makes a buffer view and an accessor, and returns the
 // accessor's number.
 class GltfBuilder {
  public:

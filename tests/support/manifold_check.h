@@ -10,17 +10,17 @@
 
 namespace strata::test {
 
-// What is not as in a surface, counted by brute force.
+// Faults of a surface, counted by brute force.
 struct ManifoldFaults {
   std::size_t crowded_edges = 0;     // more than two triangles
-  std::size_t disagreements = 0;     // two triangles that run along an edge the same way
+  std::size_t disagreements = 0;     // two triangles that use an edge in the same direction
   std::size_t vertices_of_fans = 0;  // vertices whose triangles are not one fan
-  std::size_t boundary_edges = 0;    // no fault
+  std::size_t boundary_edges = 0;    // not a fault
 };
 
 inline ManifoldFaults manifold_faults(const mesh::TriangleMesh& mesh) {
   ManifoldFaults faults;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, int>> edges;  // up and down
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, int>> edges;  // both directions
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> links(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
     for (int k = 0; k < 3; ++k) {

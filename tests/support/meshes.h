@@ -8,7 +8,7 @@
 
 namespace strata::test {
 
-// Small meshes of each class that scans come in. Deterministic.
+// Small meshes of each class of scans. Deterministic.
 mesh::TriangleMesh sphere(int segments, double noise = 0);  // closed
 mesh::TriangleMesh torus(int segments);                     // closed, with a hole through it
 // boundary; corner_uvs fill [0.05, 0.95]²
@@ -19,15 +19,15 @@ mesh::TriangleMesh grid_with_fins(int cells);
 mesh::TriangleMesh slivers(int count);
 // 12 triangles; corner_uvs in 6 separate squares
 mesh::TriangleMesh cube_with_face_charts();
-// every 7th triangle turned round, some twice
+// every 7th triangle reversed, some doubled
 mesh::TriangleMesh flipped_and_duplicate(int cells);
-mesh::TriangleMesh separate_triangles(int count);  // no two connected
-// apart, of 12 triangles and 8 vertices each
+mesh::TriangleMesh separate_triangles(int count);  // not connected
+// not connected, with 12 triangles and 8 vertices each
 mesh::TriangleMesh cubes(int count);
 // two flat caps with a hole, straight and slanted flanks
 mesh::TriangleMesh gear(int teeth);
 mesh::TriangleMesh flat_ring(int sides);              // one plane, thin and hollow
-mesh::TriangleMesh strips(int count, double length);  // apart, two triangles each, 1 wide
+mesh::TriangleMesh strips(int count, double length);  // not connected, two triangles each, 1 wide
 
 mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, double scale, const glm::dvec3& offset);
 

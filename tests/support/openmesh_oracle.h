@@ -10,18 +10,18 @@
 
 namespace strata::test {
 
-// The mesh as OpenMesh builds it face by face. `add_face` takes a face only where the surface stays
-// one: it refuses a third triangle at an edge, two triangles that run along an edge the same way,
-// and a vertex whose triangles would be more than one closed fan. So it judges the work of
-// mesh/repair/manifold by code that is not ours. Debian builds it with assertions: some faults end
-// the program instead, which fails a test as well.
+// Builds the mesh with OpenMesh, face by face. `add_face` accepts a face only if the surface stays
+// a manifold: it refuses a third triangle at an edge, two triangles that use an edge in the same
+// direction, and a vertex whose triangles would be more than one closed fan. So independent code
+// checks the results of mesh/repair/manifold. Debian builds it with assertions: some faults end the
+// program instead, which also fails a test.
 struct OpenMeshOracle {
   OpenMesh::TriConnectivity mesh;
   std::vector<std::uint32_t> refused;  // triangles
 
   explicit OpenMeshOracle(const mesh::TriangleMesh& triangles) {
     for (std::size_t i = 0; i < triangles.positions.size(); ++i) mesh.new_vertex();
-    // It explains each refusal on its error stream.
+    // It prints the reason of each refusal on its error stream.
     omerr().disable();
     for (std::uint32_t t = 0; t < triangles.triangle_count(); ++t) {
       std::array<OpenMesh::VertexHandle, 3> corners;

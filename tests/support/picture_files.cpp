@@ -1,6 +1,6 @@
 #include "support/picture_files.h"
 
-#include <stdio.h>  // jpeglib.h wants it first
+#include <stdio.h>  // jpeglib.h needs it first
 
 #include <jpeglib.h>
 #include <webp/encode.h>
@@ -122,7 +122,7 @@ Bytes bmp_of(const Bytes& rgba, int width, int height, int bits, bool top_down) 
   put(out, 1, 2);
   put(out, static_cast<std::uint32_t>(bits), 2);
   put(out, 0, 24);
-  // blue low: (255 − i, i, i)
+  // blue in the low byte: (255 − i, i, i)
   for (std::uint32_t i = 0; i < colors; ++i) put(out, (255 - i) << 16 | i << 8 | i, 4);
   for (int i = 0; i < height; ++i) {
     const int y = top_down ? i : height - 1 - i;
@@ -158,7 +158,7 @@ Bytes tga_of(const Bytes& rgba, int width, int height, int bits, bool packed) {
               std::uint32_t{p[3]} << 24,
           bits / 8);
   };
-  for (int y = height - 1; y >= 0; --y)  // the lowest row first
+  for (int y = height - 1; y >= 0; --y)  // bottom row first
     for (int x = 0; x < width;) {
       const std::uint8_t* p = &rgba[4 * (std::size_t(y) * width + x)];
       int same = 1;
@@ -193,7 +193,7 @@ Bytes cmyk_jpeg_of(const Bytes& rgba, int width, int height, Inks inks) {
     Bytes row;
     for (int x = 0; x < width; ++x) {
       const std::uint8_t* p = &rgba[4 * (std::size_t(y) * width + x)];
-      // Without black: what is stored inverted is the colour itself.
+      // Without black: the stored inverted value is the color itself.
       for (int c = 0; c < 3; ++c)
         row.push_back(inks == Inks::plain_cmyk ? static_cast<std::uint8_t>(255 - p[c]) : p[c]);
       row.push_back(inks == Inks::plain_cmyk ? 0 : 255);

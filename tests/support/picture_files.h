@@ -7,7 +7,7 @@
 
 namespace strata::test {
 
-// Pictures in the formats that the server reads and does not write.
+// Pictures in formats that the server reads and does not write.
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -17,20 +17,19 @@ struct TiffSettings {
   std::uint16_t compression = 1;    // COMPRESSION_NONE
   std::uint16_t sample_format = 1;  // SAMPLEFORMAT_UINT
   bool tiled = false, big_endian = false, separate = false;
-  int alpha = -1;  // the kind of the last sample; −1: it is no extra sample
+  int alpha = -1;  // the kind of the last sample; −1: no extra sample
   int pages = 1;
   int orientation = 1;
   std::vector<std::uint16_t> palette;  // 3 × 2^bits
 };
-// `sample(x, y, s)`: in the range of `bits`; the second page and later ones hold zeros.
+// `sample(x, y, s)`: in the range of `bits`; the second and later pages have zeros.
 Bytes tiff_of(int width, int height, const TiffSettings& settings,
               const std::function<std::uint32_t(int, int, int)>& sample);
 
 Bytes webp_of(const Bytes& rgba, int width, int height);  // lossless
-// `bits`: 8 (a table of 256 colours, `rgba`'s red), 24 or 32; `top_down`: the first row is the top
-// one.
+// `bits`: 8 (a table of 256 colors, `rgba`'s red), 24 or 32; `top_down`: top row first.
 Bytes bmp_of(const Bytes& rgba, int width, int height, int bits, bool top_down = false);
-// `bits`: 8 (grey, of red), 24 or 32.
+// `bits`: 8 (gray, from red), 24 or 32.
 Bytes tga_of(const Bytes& rgba, int width, int height, int bits, bool packed);
 
 enum class Inks { adobe_cmyk, adobe_ycck, plain_cmyk };

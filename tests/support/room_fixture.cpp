@@ -177,7 +177,7 @@ void RoomTest::expect_room_equals_journal(const Layer& layer) {
 }
 
 void RoomTest::expect_picture_of_journal() {
-  // A second renderer that has never painted: what it shows comes from the journal alone.
+  // A second renderer that has never painted: its picture comes only from the journal.
   render::RendererOptions options;
   options.shader_dir = shader_dir().string();
   auto renderer = render::Renderer::start(options);

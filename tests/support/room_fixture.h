@@ -17,34 +17,34 @@
 
 namespace strata::test {
 
-// Rooms over a real database and a real renderer, with one small model: a folded surface in
-// millimetres.
+// Rooms with a real database and a real renderer, and one small model: a folded surface in
+// millimeters.
 class RoomTest : public ::testing::Test {
  protected:
   void SetUp() override;
   void TearDown() override;
 
-  // Closes every room and opens the server's parts anew on the same database, as a restart does.
+  // Closes every room and opens the server's parts again on the same database, as a restart does.
   void restart(std::uint64_t gpu_memory = 0);
   std::shared_ptr<room::Room> room();
   Layer make_layer(ValueType type, int resolution = 2048, const std::string& name = "Layer");
 
-  // SurfaceImages at the model from +z (or `from`), 640 × 480, orthographic or perspective.
+  // Returns a camera that sees the model from +z (or `from`), 640 × 480, orthographic or
+  // perspective.
   Camera camera(glm::dvec3 from = {0, 0, 1}, bool orthographic = false) const;
-  // Of an annotator.
+  // By an annotator.
   room::EditRequest stroke(const Layer& layer, double value, std::vector<glm::dvec2> path,
                            double radius_px, const std::string& user = "anna") const;
   room::EditRequest request(const Layer& layer, decltype(room::EditRequest::edit) edit,
                             const std::string& user = "anna") const;
-  // Sends and waits until it is durable or refused.
+  // Sends the edit and waits until it is durable or refused.
   Result<room::EditAnswer> send(room::EditRequest request);
-  // Sends again what was refused for the moment (503), as a client does.
+  // Repeats an edit that was refused temporarily (503), as a client does.
   Result<room::EditAnswer> send_until_taken(const room::EditRequest& request);
   std::future<Result<room::EditAnswer>> start(room::EditRequest request);
-  // What the journal holds of the layer, and that the room holds the same.
+  // Expects the layer of the room to equal that of the journal.
   void expect_room_equals_journal(const Layer& layer);
-  // The picture of the room, once the GPU shows what the journal holds; fails when that never
-  // comes.
+  // Waits until the room's picture shows the journal's content; fails after a time limit.
   void expect_picture_of_journal();
 
   std::string dsn_;

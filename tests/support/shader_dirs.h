@@ -7,8 +7,8 @@
 
 namespace strata::test {
 
-// The shaders that tests and benchmarks load: the sources', or a bundle's (STRATA_SHADERS,
-// STRATA_PEER_SHADERS), so that the same binaries run on a machine that has nothing but a driver.
+// The shaders for tests and benchmarks: those of the source tree, or of a bundle (STRATA_SHADERS,
+// STRATA_PEER_SHADERS), so that the same programs run on a machine that has only a driver.
 inline std::filesystem::path shader_dir() {
   const char* bundled = std::getenv("STRATA_SHADERS");
   return bundled ? bundled : STRATA_SHADER_DIR;

@@ -9,9 +9,10 @@
 
 #include "domain/layers/tile_mirror.h"
 #include "mesh/atlas/atlas.h"
+#include "mesh/surface/geometry.h"
 #include "mesh/texels/texel_graph.h"
 
-// A mesh with all that questions about its surface need, and layers on it.
+// A mesh with all data for queries of its surface, and layers on it.
 namespace strata::test {
 
 struct Surface {
@@ -38,7 +39,7 @@ void for_each_surface_texel(const mesh::SurfaceMap& map, Visit visit) {
       visit(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
 }
 
-// A layer that holds what `value_at` gives for each texel's position; gutter follows.
+// Returns a layer with `value_at` of each texel's position; gutter texels follow.
 inline TileMap layer_of(const mesh::SurfaceMap& map,
                         const std::function<int(glm::vec3)>& value_at) {
   TileMap tiles;

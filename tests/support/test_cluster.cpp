@@ -36,14 +36,14 @@ const auto* const kStopAtEnd = ::testing::AddGlobalTestEnvironment(new StopAtEnd
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  // In memory where there is room: the tests kill processes, not machines, and a disk makes every
+  // In memory if there is room: the tests kill processes, not machines, and a disk makes every
   // initdb slow.
   std::error_code error;
-  const char* wanted = std::getenv("STRATA_TEST_TMP");
+  const char* parent = std::getenv("STRATA_TEST_TMP");
   const auto space = std::filesystem::space("/dev/shm", error);
   const bool in_memory =
       !error && space.available > (std::uintmax_t{3} << 30) && access("/dev/shm", W_OK) == 0;
-  std::string name = std::string(wanted      ? wanted
+  std::string name = std::string(parent      ? parent
                                  : in_memory ? "/dev/shm"
                                              : "/tmp") +
                      "/strata-test-XXXXXX";
@@ -59,7 +59,7 @@ TemporaryFolder::~TemporaryFolder() {
 
 namespace {
 
-// With owners and modes, which std::filesystem::copy does not keep: PostgreSQL insists on both.
+// With owners and modes, which std::filesystem::copy does not keep: PostgreSQL requires both.
 void copy_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::string program = "cp", archive = "-a", source = from / ".", target = to;
   std::array<char*, 5> words{program.data(), archive.data(), source.data(), target.data(), nullptr};
@@ -117,7 +117,7 @@ std::vector<int> children_of(int parent) {
 }  // namespace
 
 Hang::Hang(const store::Cluster& cluster) : cluster_(cluster), stopped_{cluster.postmaster_pid()} {
-  ::kill(stopped_.front(), SIGSTOP);  // first: then it has no new children
+  ::kill(stopped_.front(), SIGSTOP);  // first, so that it starts no new children
   for (const int child : children_of(stopped_.front())) {
     ::kill(child, SIGSTOP);
     stopped_.push_back(child);
@@ -154,7 +154,7 @@ std::string create_database(const std::string& of_template) {
 std::string empty_database() { return create_database("template1"); }
 
 std::string fresh_database() {
-  // No test works in the cluster's own database, so it is the template once it is migrated.
+  // No test uses the cluster's own database, so after its migration it is the template.
   const store::Cluster& cluster = shared_cluster();
   if (!shared->migrated) open_store(cluster.dsn(), 1);
   shared->migrated = true;

@@ -9,7 +9,7 @@
 
 namespace strata::test {
 
-// A little-endian TIFF of one uncompressed strip, written byte by byte.
+// A little-endian TIFF with one uncompressed strip, written byte by byte.
 struct TiffFile {
   struct Tag {
     std::uint16_t id, type;  // 2 text, 3 u16, 4 u32, 12 f64

@@ -5,7 +5,7 @@
 
 namespace strata::test {
 
-// A picture of a room as one piece.
+// Returns a picture of a room as one piece.
 inline Result<Picture> whole_picture(room::Pictures& pictures, const room::PictureRequest& request,
                                      const Camera& camera) {
   Picture whole;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""scripts/check_commits takes good subjects and names what is wrong with others."""
+"""scripts/check_commits accepts valid subjects and names the faults of others."""
 
 import pathlib
 import shutil

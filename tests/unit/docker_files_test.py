@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The files in docker/ agree with one another and with the program: what docker/check finds out in half an hour, as far as reading tells."""
+"""The files in docker/ agree with one another and with the program: the part of docker/check, which
+takes half an hour, that reading alone can test."""
 import os
 import re
 import sys
@@ -61,7 +62,7 @@ def check_compose():
     for name, file in files.items():
         check_services(name, file["services"], base["services"], known)
 
-    # Every setting is explained, and what is explained does something.
+    # Every setting is explained, and every explained setting is used.
     explained = read("docker", "env.example")
     settings = set(re.findall(r"^#?([A-Z_]+)=", explained, re.M))
     used = set(re.findall(r"\$\{(\w+)", "".join(texts.values())))
@@ -72,7 +73,7 @@ def check_compose():
     for name in re.search(r"COMPOSE_FILE=(.*)", explained).group(1).split(":"):
         assert name in files, name
 
-    # A backup is made by the image's own programs.
+    # The image's own programs make backups.
     major = re.search(r"postgresql-(\d+)", read("scripts", "setup.sh")).group(1)
     assert base["services"]["database"]["image"].startswith(f"postgres:{major}-"), major
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""`./run` refuses wrong use with a reason before it installs anything, and its steps show how far they are, in a log and in a terminal."""
+"""`./run` refuses wrong use with a reason before it installs packages, and its steps show their
+progress, in a log and in a terminal."""
 import os
 import pty
 import re
@@ -42,7 +43,7 @@ def check_usage(folder):
 
 
 def shell(folder, script, text=""):
-    """A script that sources setup.sh; it ends up with what it wrote to standard error."""
+    """Runs a script that sources setup.sh; returns its result with its standard error."""
     command = f'set -euo pipefail; . "{ROOT}/scripts/setup.sh"\n{script}'
     return subprocess.run(
         ["bash", "-c", command], cwd=folder, input=text, capture_output=True, text=True, timeout=60

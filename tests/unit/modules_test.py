@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The drawing of the modules is what CMake links, and no header includes itself in a circle."""
+"""The drawing of the modules shows the links of CMake, and no headers include each other in a
+cycle."""
 
 import pathlib
 import re
@@ -12,7 +13,7 @@ Graph = dict[str, set[str]]
 
 
 def linked() -> Graph:
-    """The modules with those that their CMakeLists.txt links."""
+    """Returns the modules with the links in their CMakeLists.txt."""
     links: Graph = {"protocol": {"domain", "core"}}
     for file in sorted((ROOT / "server").glob("*/CMakeLists.txt")):
         call = re.search(
@@ -24,7 +25,7 @@ def linked() -> Graph:
 
 
 def reached(graph: Graph, start: str) -> set[str]:
-    """All that is linked from `start`, directly or not."""
+    """Returns all that is linked from `start`, directly or indirectly."""
     found: set[str] = set()
     waiting = list(graph[start])
     while waiting:
@@ -36,7 +37,7 @@ def reached(graph: Graph, start: str) -> set[str]:
 
 
 def reduced(graph: Graph) -> set[tuple[str, str]]:
-    """The links that do not follow from others."""
+    """Returns the links that do not follow from others."""
     return {
         (module, to)
         for module, links in graph.items()
@@ -51,7 +52,7 @@ def drawn() -> set[tuple[str, str]]:
 
 
 def circle(graph: Graph) -> list[str]:
-    """A circle of the graph; empty: there is none."""
+    """Returns a cycle of the graph; empty if there is none."""
     done: set[str] = set()
 
     def walk(node: str, path: list[str]) -> list[str]:
@@ -82,7 +83,7 @@ def headers() -> Graph:
 
 
 def main() -> int:
-    # The test's own pieces: a circle is found, and a link that follows from others is left out.
+    # Tests the functions above: a cycle is found, and a link that follows from others is left out.
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == ["a", "b", "c", "a"]
     assert reduced({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == {("a", "b"), ("b", "c")}
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""The notices of third parties name what is compiled into the program and what is linked. Argument: the build folder."""
+"""The third-party notices name all compiled-in and linked libraries. Argument: the build folder."""
 import os
 import subprocess
 import sys
 import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# Libraries of headers only, static ones, and shared ones.
+# Header-only, static and shared libraries.
 EXPECTED = (
     "nlohmann-json3-dev",
     "libcli11-dev",

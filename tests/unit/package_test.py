@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""The Debian package holds what the server runs with, says what it needs, and its scripts, settings, manual page and completion fit the program.
-Arguments: the build folder, the program. 77 where packages cannot be made here or the page is not built."""
+"""The Debian package has all files that the server needs at run time, lists its dependencies, and
+its scripts, settings, manual page and completion match the program. Arguments: the build folder,
+the program. Exits with 77 if packages cannot be made here or the page is not built."""
 import io
 import os
 import re
@@ -24,7 +25,7 @@ def read(*path):
 
 
 def files_below(*path):
-    """Relative paths of the files of a folder of the project."""
+    """Returns the relative paths of the files in a folder of the project."""
     top = os.path.join(ROOT, *path)
     return [
         os.path.relpath(os.path.join(folder, name), ROOT)

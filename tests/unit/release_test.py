@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every file that names the release names the one of CMakeLists.txt."""
+"""Every file that names the release has the version of CMakeLists.txt."""
 
 import json
 import pathlib

@@ -9,18 +9,19 @@
 
 namespace strata::protocol {
 
-// The value of a text that `parse_json` takes, read several times as fast by simdjson. Nothing for
-// a text that it refuses, and for the few it takes that simdjson does not (whole numbers beyond 64
-// bits, a byte order mark): who asks then reads it with care, which also says what is wrong.
+// Returns the value of a text that `parse_json` accepts, read several times as fast by simdjson.
+// Returns nothing for a text that `parse_json` refuses, and for the few that it accepts but
+// simdjson does not (whole numbers beyond 64 bits, a byte order mark): the caller then uses the
+// strict reader, which also reports the error.
 std::optional<nlohmann::json> read_json_fast(std::string_view text, int max_depth);
 
-// A list that is longer than it may be.
+// A list that exceeds its limit.
 struct ListTooLong {
   std::string path;    // "points", "layers[3].keys"
-  std::string wanted;  // what belongs there, in words
+  std::string wanted;  // the expected content, in words
 };
-// The first of a text, found before anything of it is built, and without looking at what follows.
-// Nothing where there is none, and where the text is no JSON up to there.
+// Finds the first such list of a text before any of it is built, without reading the rest. Returns
+// nothing if there is no such list, or if the text is not JSON up to there.
 std::optional<ListTooLong> find_long_list(std::string_view text, const ListLimits& lists);
 
 }  // namespace strata::protocol

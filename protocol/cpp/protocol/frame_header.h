@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 
-// The binary message that carries one rectangle of a picture: see protocol/frame.md, whose rules
-// are named in brackets.
+// The binary message with one rectangle of a picture: see protocol/frame.md, which numbers its
+// rules.
 namespace strata::protocol {
 
 constexpr std::size_t kFrameHeaderBytes = 56;
@@ -20,7 +20,7 @@ enum class FrameCodec : std::uint8_t { jpeg = 1, png = 2 };
 struct FrameHeader {
   FrameCodec codec = FrameCodec::jpeg;
   bool keyframe = false;  // the rectangle is the whole picture
-  bool still = false;     // full quality; nothing better follows
+  bool still = false;     // full quality; the last picture until something changes
   bool last = false;      // last rectangle of this frame: draw, then ack
   std::uint32_t view_id = 0;
   std::uint32_t frame = 0;
@@ -33,13 +33,13 @@ struct FrameHeader {
   bool operator==(const FrameHeader&) const = default;
 };
 
-// The first bytes of the message. Precondition: the header keeps the rules (asserted); our own code
-// made it.
+// Returns the first bytes of the message. Precondition: the header follows the rules (asserted),
+// because the server made it.
 std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeader& header);
 
-// The header of a whole message; the payload is what follows kFrameHeaderBytes. Refused: a message
-// that is too short or too long, and every header that breaks a rule; the Error's field is the
-// name of the member.
+// Returns the header of a whole message; the payload follows after kFrameHeaderBytes. Refused: a
+// message that is too short or too long, and every header that breaks a rule; the Error's field is
+// the name of the member.
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message);
 
 }  // namespace strata::protocol

@@ -16,8 +16,8 @@
 #include "domain/scene/light.h"
 #include "domain/scene/model.h"
 
-// What the generated reading and writing is made of. JSON that comes in here has passed `validate`,
-// so that no type is in doubt; for anything else nlohmann-json throws.
+// Functions for the generated reading and writing. JSON must have passed `validate`, so that its
+// types are known; for other JSON, nlohmann-json throws.
 namespace strata::protocol {
 
 template <class T>
@@ -35,7 +35,7 @@ struct IsOptional<std::optional<T>> : std::true_type {};
 
 using IdOrSlug = std::variant<std::int64_t, std::string>;
 
-// Types of the core that stand for a definition (`x-cpp-type` in the schemas).
+// Types of the core that represent a definition (`x-cpp-type` in the schemas).
 void read_core(const nlohmann::json& json, Uuid& value);
 void read_core(const nlohmann::json& json, glm::dvec2& value);
 void read_core(const nlohmann::json& json, glm::dvec3& value);
@@ -145,7 +145,7 @@ inline std::string join_field(const std::string& parent, const std::string& memb
 // Puts the path of the surrounding object before the field that a check named (".view" or "view").
 Result<void> named_in_message(Result<void> checked, const std::string& parent);
 
-// `check` of whatever a variant holds, where that has one.
+// Calls `check` of the variant's value, if it has one.
 template <class Variant>
 Result<void> check_alternative(const Variant& variant, const std::string& field) {
   return std::visit(

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kMaxRef = 64;
 
-// Only what a JSON text can carry goes out: invalid UTF-8 (of a file name, say) is replaced.
+// Replaces invalid UTF-8 (of a file name, for example), which a JSON text cannot contain.
 std::string dump(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -8,10 +8,12 @@
 #include "protocol/strict_json.h"
 #include "protocol/validate.h"
 
-// The boundary: text from outside becomes a value, or an Error that names the field. Thread-safe.
+// The boundary: converts external text to a value, or to an Error that names the field.
+// Thread-safe.
 namespace strata::protocol {
 
-// From JSON already parsed (for example a part of a larger object); `field` is where it stands.
+// Converts JSON that is parsed already (for example a part of a larger object); `field` is its
+// place.
 template <class T>
 Result<T> from_json(const nlohmann::json& json, const std::string& field = {}) {
   STRATA_TRY(validate(kSchemaOf<T>, json, field));
@@ -21,7 +23,7 @@ Result<T> from_json(const nlohmann::json& json, const std::string& field = {}) {
   return value;
 }
 
-// The body of an HTTP request.
+// Parses the body of an HTTP request.
 template <class T>
 Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
   JsonLimits bounded = limits;
@@ -30,18 +32,18 @@ Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
   return from_json<T>(json);
 }
 
-// A text message of the WebSocket. `ref`, when given, becomes the message's `id` as far as it can
-// be read, also when the message is refused, so that the `problem` can name it.
+// Parses a text message of the WebSocket. `ref`, if given, becomes the message's `id` if it can be
+// read, also for a refused message, so that the `problem` can name it.
 Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref = nullptr,
                                            const JsonLimits& limits = {});
 Result<ServerMessage> parse_server_message(std::string_view text,
                                            const JsonLimits& limits = {16 * 1024 * 1024, 32});
 
-// One line of JSON, ready to send.
+// Returns one line of JSON, ready to send.
 std::string to_text(const ClientMessage& message);
 std::string to_text(const ServerMessage& message);
 
-// "12" or "cracks": what the store and the routes take.
+// Returns "12" or "cracks", as the store and the routes accept it.
 std::string to_ref(const LayerRef& layer);
 
 }  // namespace strata::protocol

@@ -15,10 +15,10 @@ struct JsonLimits {
   const ListLimits* lists = nullptr;  // null: lists have any length
 };
 
-// JSON text from outside, parsed strictly: valid UTF-8, no duplicate member, no NUL in a text, no
-// number beyond double, nothing after the value. Problems: 413 when it is too long, 400 when it is
-// not JSON, 422 for the rest. A list that is longer than it may be is refused before its items are
-// built, whatever follows it.
+// Parses external JSON text strictly: valid UTF-8, no duplicate member, no NUL in a text, no number
+// beyond double, nothing after the value. Problems: 413 if it is too long, 400 if it is not JSON,
+// 422 for the rest. A list beyond its limit is refused before its items are built, without reading
+// the rest.
 Result<nlohmann::json> parse_json(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace strata::protocol

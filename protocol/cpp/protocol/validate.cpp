@@ -50,8 +50,8 @@ const json& resolve(const json& schema) {
   return *node;
 }
 
-// The part of a schema that a member of `value` answers to; null when none is found. A choice by
-// `op` follows the op.
+// Returns the part of a schema for a member of `value`; null if none is found. A choice by `op`
+// follows the op.
 const json* child_schema(const json& schema, const json& value, const std::string& step) {
   const json& node = resolve(schema);
   if (value.is_array()) return node.contains("items") ? &node["items"] : nullptr;
@@ -75,14 +75,14 @@ std::string listed(const json& values) {
 
 std::string number(const json& value) { return value.dump(); }
 
-// What a schema says of numbers, and of lists that hold nothing else.
+// The rule of a schema for numbers, or for lists of numbers only.
 struct NumberRule {
   bool is_list = false;
-  double least = 0, most = 0;         // numbers; of a list how many items
+  double least = 0, most = 0;         // numbers; of a list, number of items
   std::shared_ptr<NumberRule> items;  // of a list
 };
 
-// Null where the schema says more, or is of something else.
+// Returns null if the schema has other rules, or is for other types.
 std::shared_ptr<NumberRule> number_rule(const json& schema) {
   const json& node = resolve(schema);
   const std::string type = node.value("type", std::string());
@@ -113,9 +113,9 @@ bool holds(const NumberRule& rule, const json& value) {
          std::ranges::all_of(value, [&](const json& item) { return holds(*rule.items, item); });
 }
 
-// A hundred thousand points take valijson longer than all else that is done with them. Those
-// members of a message that are long lists of numbers, and right, are cut to their first items in
-// the copy that comes back; nothing where there are none.
+// valijson needs more time for a hundred thousand points than all other processing. Returns a copy
+// of a message in which long, valid lists of numbers are cut to their first items; nothing if there
+// is no such list.
 std::optional<json> without_long_lists(Schema schema, const json& value) {
   constexpr std::size_t kLong = 256;
   if (!value.is_object()) return std::nullopt;
@@ -141,7 +141,7 @@ std::optional<json> without_long_lists(Schema schema, const json& value) {
   return shorter;
 }
 
-// In words, what a schema lets through.
+// Describes the values that a schema accepts.
 std::string expectation(const json& schema) {
   const json& node = resolve(schema);
   if (node.contains("const")) return "exactly " + node["const"].dump();
@@ -179,7 +179,7 @@ std::string expectation(const json& schema) {
   return type;
 }
 
-// Deeper lists are bounded by what holds them.
+// Deeper lists are limited by their parents.
 constexpr int kLimitsDeep = 6;
 
 std::shared_ptr<const ListLimits> limits_of(const json& schema, int deep) {
@@ -199,8 +199,8 @@ std::shared_ptr<const ListLimits> limits_of(const json& schema, int deep) {
   return limits;
 }
 
-// The member that valijson names at the end of a description: everything after `before`, less the
-// closing "'.".
+// Returns the member that valijson names at the end of a description: the text after `before`,
+// without the closing "'.".
 std::string member_named(const std::string& description, std::string_view before) {
   const auto begin = description.find(before);
   if (begin == std::string::npos) return {};
@@ -209,8 +209,8 @@ std::string member_named(const std::string& description, std::string_view before
   return member;
 }
 
-// The first member that a `oneOf` of an object demands beside one that is given; empty where no
-// choice was begun.
+// Returns the first missing member that a `oneOf` of an object requires together with a given one;
+// empty if no choice has begun.
 std::string missing_companion(const json& schema, const json& value) {
   for (const auto& choice : resolve(schema).value("oneOf", json::array())) {
     const auto names = choice.value("required", std::vector<std::string>());
@@ -222,7 +222,7 @@ std::string missing_companion(const json& schema, const json& value) {
   return {};
 }
 
-// Names of the members of which a `oneOf` of an object demands exactly one.
+// Returns the names of the members of which a `oneOf` of an object requires exactly one.
 std::vector<std::string> exclusive_members(const json* schema) {
   std::vector<std::string> names;
   if (schema == nullptr) return names;
@@ -233,7 +233,8 @@ std::vector<std::string> exclusive_members(const json* schema) {
   return names;
 }
 
-// Where just one choice of a `oneOf` of an object is begun: that choice; null otherwise.
+// Returns the choice of a `oneOf` of an object that has begun, if it is the only one; null
+// otherwise.
 const json* begun_choice(const json* schema, const json* value) {
   if (schema == nullptr || value == nullptr || !value->is_object()) return nullptr;
   const json& node = resolve(*schema);
@@ -247,8 +248,7 @@ const json* begun_choice(const json* schema, const json* value) {
   return begun;
 }
 
-// The first member that a choice rules out, and that is given all the same; empty where there is
-// none.
+// Returns the first given member that a choice forbids; empty if no such member is given.
 std::string ruled_out(const json& choice, const json& value) {
   for (const auto& other : choice.value("not", json::object()).value("anyOf", json::array()))
     if (value.contains(other["required"][0])) return other["required"][0].get<std::string>();

@@ -8,8 +8,8 @@
 
 namespace strata::protocol {
 
-// Whether `json` is what the definition says. The Error (invalid) names the first wrong member
-// ("camera.view[3]"), put after `field` when that is not empty, and says what belongs there.
+// Checks `json` against the definition. The Error (invalid) names the first wrong member
+// ("camera.view[3]"), after `field` if that is not empty, and describes the expected value.
 // Thread-safe; each schema is built once, on first use.
 Result<void> validate(Schema schema, const nlohmann::json& json, const std::string& field = {});
 

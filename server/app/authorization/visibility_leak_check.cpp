@@ -15,13 +15,15 @@ namespace {
 
 tl::unexpected<Error> shows_through(const Layer& layer) {
   return fail(
-      ErrorCode::conflict, "Would show through",
+      ErrorCode::conflict, "Visible to too many people",
       "The layer " + layer.name + " is " + std::string(name(layer.visibility)) +
-          " and made of this, so that more people would see it. Let fewer see that layer first, or take this out of it.",
+          " and uses these values in its expression or for its colors, so more people would "
+          "see them. First restrict the visibility of that layer, or change its expression "
+          "or palette.",
       "visibility");
 }
 
-// Whether the expression reads the column of the record behind the keys of one of these layers.
+// Whether the expression reads this column of the records of one of these layers.
 bool reads_column(const Expression& e, const std::set<std::string>& layers,
                   const std::string& column) {
   if (e.is_column() && layers.contains(e.name) && !e.path.empty() && e.path.front() == column)
@@ -49,12 +51,12 @@ Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
     const auto table = STRATA_TRY(store.tables().find(to_string(*layer.table), Role::owner));
     const Column* column = find_column(table.columns, layer.palette.column);
     if (column && column->visibility > layer.visibility)
-      return fail(
-          ErrorCode::invalid, "Would show through",
-          "The palette colours by " + column->name + ", which is " +
-              std::string(name(column->visibility)) +
-              ": more people would see the layer. Let fewer see it, or colour it by something else.",
-          "palette.column");
+      return fail(ErrorCode::invalid, "Visible to too many people",
+                  "The palette takes its colors from the column " + column->name + ", which is " +
+                      std::string(name(column->visibility)) +
+                      ", but more people see the layer than the column. Restrict the visibility of "
+                      "the layer, or choose another column for its colors.",
+                  "palette.column");
   }
   for (const Layer& other : others)
     if (other.formula && other.visibility < layer.visibility &&
@@ -92,7 +94,7 @@ Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,
   if (!expression) return false;
   const auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
   const std::vector<std::string> named = layers_of(*expression);
-  std::map<std::string, Table> seen, all;  // by the slug of the layer
+  std::map<std::string, Table> seen, all;  // by the layer's slug
   for (const Layer& layer : layers) {
     if (std::ranges::find(named, layer.slug) == named.end()) continue;
     if (!sees(role, layer.visibility)) return false;

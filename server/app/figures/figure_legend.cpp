@@ -15,16 +15,16 @@
 namespace strata::app {
 namespace {
 
-// of the grid in which the drawing is looked at: some tenths of a second
+// limit of the grid that is searched for layers: takes some tenths of a second
 constexpr double kMaxCells = 250'000;
-constexpr std::size_t kMaxPlaces = 32;  // of a line that are looked at
+constexpr std::size_t kMaxPlaces = 32;  // tested points per line
 constexpr double kOpaque = 0.99;
-// surfaces that are steeper to the eye hide what is behind them, too
+// steeper surfaces count as this steep, so that they hide points behind them, too
 constexpr double kMinCosine = 1.0 / 12;
-// as far below the surface as marks are drawn
+// the depth below the surface at which the picture still draws lines and points
 constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
 
-// How each layer is drawn, as the picture has it.
+// Returns the palette that the picture uses for the layer.
 const Palette& palette_of(const FigureRequest& request, const Layer& layer) {
   const auto& own = request.shown.shown.of(layer.id).palette;
   return own ? *own : layer.palette;
@@ -37,7 +37,7 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
   query::LayerCover cover;
   cover.tells_values = lists_values(palette);
   if (!palette.column.empty()) {
-    // Its colours are those of records: some may let through what lies below.
+    // Colored by records: some colors may be transparent.
     cover.of = [opacity](double) {
       return opacity > 0 ? query::Cover::some : query::Cover::nothing;
     };
@@ -53,9 +53,9 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
   return cover;
 }
 
-// Whether a mark's place is in the drawing, and no surface lies before it: as the picture decides
-// it (feature_sight_pass.comp), a place may lie anywhere before the surface, and behind it as far
-// as it reaches, measured square to the surface.
+// Whether a place of a feature is in the drawing and not hidden by a surface. As in the picture
+// (feature_sight_pass.comp), it may be anywhere in front of the surface, and behind it up to
+// `reach`, measured perpendicular to the surface.
 Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const glm::dvec3& place,
                      double reach) {
   const auto is_cut_off = [&](const glm::dvec4& plane) {
@@ -70,16 +70,16 @@ Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const g
   if (!hit) return tl::unexpected(hit.error());
   if (!hit->hit) return true;
   const glm::dvec3 apart = place - glm::dvec3(hit->position);
-  if ((camera.view * glm::dvec4(apart, 0)).z >= 0) return true;  // nearer than the surface
+  if ((camera.view * glm::dvec4(apart, 0)).z >= 0) return true;  // in front of the surface
   return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))),
                   kMinCosine * glm::length(apart)) <= reach;
 }
 
-// Keys of records whose lines or points the drawing shows. They lie over all layers.
+// Returns the keys of records with lines or points in the drawing. These cover all layers.
 Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& request,
                                      const Layer& layer, const Camera& camera) {
   const Model model = request.room->model();
-  std::optional<std::int64_t> at;  // of the table; none: now, as the picture has it
+  std::optional<std::int64_t> at;  // of the table; nothing: now, as in the picture
   if (*request.shown.at < request.room->edits().durable_sequence()) {
     const auto then =
         STRATA_TRY(store.tables().sequence_when(*layer.table, model.id, *request.shown.at));
@@ -121,7 +121,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
       refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
       std::max(1, static_cast<int>(camera.height / coarser)), request.shown.at);
   if (!seen) return tl::unexpected(seen.error());
-  for (std::size_t i = request.layers.size(); i-- > 0;) {  // as they lie over each other
+  for (std::size_t i = request.layers.size(); i-- > 0;) {  // topmost first
     const Layer& layer = request.layers[i];
     const Palette& palette = palette_of(request, layer);
     std::set<double> there = (*seen)[i].values;
@@ -131,7 +131,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
       is_shown |= !marked.empty();
       there.insert(marked.begin(), marked.end());
     }
-    const bool waits = request.shown.provisional.contains(layer.id);  // also where it was erased
+    const bool waits = request.shown.provisional.contains(layer.id);  // or erased there
     if (!is_shown && !waits) continue;
     legends.push_back(figure::legend_of(layer, palette, &there, request.language));
     if (waits) {

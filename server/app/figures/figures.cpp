@@ -10,6 +10,7 @@
 #include "core/text/number_text.h"
 #include "core/uuid.h"
 #include "domain/scene/compass.h"
+#include "mesh/surface/geometry.h"
 #include "room/pictures.h"
 #include "room/surface.h"
 #include "store/tables/records.h"
@@ -18,17 +19,17 @@ namespace strata::app {
 namespace {
 
 constexpr glm::dvec2 kLabelCell_mm{1.5, 1.5};
-constexpr std::size_t kMaxPlaces = 64;  // that are tried for a label
+constexpr std::size_t kMaxPlaces = 64;  // tried per label
 constexpr std::size_t kMaxLabels = 2000;
 
-// The cells of a grid in which a key is seen, those farthest from what is another first.
+// The grid cells in which a key is seen, those farthest from other keys first.
 struct Area {
   std::size_t cells = 0;
-  std::vector<std::pair<int, int>> places;  // cells from its border, and the cell
+  std::vector<std::pair<int, int>> places;  // distance to the area's border, and the cell
 };
 std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint32_t>>& keys,
                                        int columns, int rows) {
-  // Chessboard distance, in two passes over the grid; beyond the drawing is another, too.
+  // Chessboard distance, in two passes over the grid; the area outside counts as another key.
   std::vector<int> inside(keys.size(), 0);
   const auto at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
@@ -99,7 +100,7 @@ Result<std::vector<figure::Label>> labels_of(store::Store& store, const FigureRe
     if (texts.contains(key)) by_size.emplace_back(area.cells, key);
   std::ranges::sort(by_size, std::greater());
   if (by_size.size() > kMaxLabels) by_size.resize(kMaxLabels);
-  std::vector<figure::LabelWish> wishes;
+  std::vector<figure::LabelRequest> requests;
   for (const auto& [size, key] : by_size) {
     auto& places = areas[key].places;
     const std::size_t tried = std::min(places.size(), kMaxPlaces);
@@ -107,23 +108,23 @@ Result<std::vector<figure::Label>> labels_of(store::Store& store, const FigureRe
                       places.end(), [](const auto& a, const auto& b) {
                         return a.first != b.first ? a.first > b.first : a.second < b.second;
                       });
-    figure::LabelWish label{texts.at(key), {}};
+    figure::LabelRequest label{texts.at(key), {}};
     for (std::size_t i = 0; i < tried; ++i)
       label.places.push_back(
           (glm::dvec2(places[i].second % columns, places[i].second / columns) + 0.5) * cell_mm);
-    wishes.push_back(std::move(label));
+    requests.push_back(std::move(label));
   }
-  return figure::place_labels(wishes, drawing_mm);
+  return figure::place_labels(requests, drawing_mm);
 }
 
 struct Composed {
   figure::SheetLayout layout;
   double scale;
-  double tightness;  // the scale at which all of it just fits
+  double tightness;  // the largest scale at which the drawing fits
 };
 
-// The sheet that has room for the larger scale, upright where both have, and the scale that is
-// asked for or fits.
+// Chooses the orientation with room for the larger scale, portrait if both are equal, and the
+// requested or the fitting scale.
 Composed compose(const FigureRequest& request, const std::vector<figure::Legend>& legends,
                  const glm::dvec2& size, double metres_per_unit) {
   constexpr double kMargin = 1.02;
@@ -143,7 +144,7 @@ Composed compose(const FigureRequest& request, const std::vector<figure::Legend>
   return std::move(*best);
 }
 
-// Where true north is on the paper, unless it points more out of it than along it.
+// Returns the direction of true north on the paper; nothing if it is too steep to the paper.
 std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& model) {
   const Compass compass(model);
   if (!compass.is_known) return std::nullopt;
@@ -154,8 +155,8 @@ std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& mode
   return glm::normalize(flat);
 }
 
-// Where pixels are larger than 1/600 inch each is the mean of four, so that outlines and thin paint
-// are smooth.
+// Renders pixels larger than 1/600 inch as the mean of four, so that outlines and thin paint are
+// smooth.
 Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawing,
                      Progress& progress) {
   Picture picture{drawing.width, drawing.height, {}};
@@ -166,15 +167,16 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
   fine.width *= finer;
   fine.height *= finer;
   const auto parts = figure::parts_of(fine);
-  std::vector<room::PicturePart> wanted;
+  std::vector<room::PicturePart> picture_parts;
   for (const auto& part : parts)
-    wanted.push_back(
+    picture_parts.push_back(
         {part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
-  // Where each pixel is the mean of four, a band may end between two rows of a pair.
+  // With the mean of four, a band may end between the two rows of a pair.
   std::vector<std::uint8_t> upper;
   auto drawn = request.room->pictures().draw(
-      request.shown, wanted, [&](std::size_t i, const room::PictureBand& band) -> Result<void> {
-        const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
+      request.shown, picture_parts,
+      [&](std::size_t i, const room::PictureBand& band) -> Result<void> {
+        const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are whole inches
         const int margin = parts[i].margin;
         const int columns = std::min(parts[i].width / finer, picture.width - left);
         const std::size_t stride = std::size_t{4} * static_cast<std::size_t>(band.width);
@@ -234,7 +236,8 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   const auto geometry = request.room->surface().geometry();
   const auto extent = figure::extent_of(geometry->positions, request.plane, request.section);
   if (!extent)
-    return fail(ErrorCode::invalid, "Nothing to draw", "The section cuts everything away.",
+    return fail(ErrorCode::invalid, "Nothing to draw",
+                "The section cuts the whole model away. Move or remove its planes.",
                 "camera.section");
   const glm::dvec2 size =
       request.center
@@ -260,7 +263,7 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   };
   std::vector<figure::Legend> legends;
   if (request.legend) {
-    // The drawing is largest without a legend: what is seen there is told.
+    // Without a legend the drawing is largest, so the legend lists the content of that drawing.
     auto seen = STRATA_TRY(
         legends_of(store, request, drawing_on(compose(request, {}, size, model.metres()))));
     legends = std::move(seen);

@@ -20,13 +20,12 @@
 
 namespace strata::app {
 
-// A measured figure to draw. Everything that can be wrong with the user's request is checked before
-// this is made.
+// A figure to draw. All checks of the user's request precede it.
 struct FigureRequest {
-  std::shared_ptr<room::Room> room;  // as who asks sees it
+  std::shared_ptr<room::Room> room;  // as visible to the caller
   Role role = Role::viewer;
-  room::PictureRequest shown;  // with the sequence that all of it shows
-  std::vector<Layer> layers;   // that are seen, bottom to top
+  room::PictureRequest shown;  // with the sequence that the whole figure shows
+  std::vector<Layer> layers;   // visible layers, bottom to top
   figure::Plane plane;
   std::string from;                    // "top", "view": for the file's name
   std::optional<glm::dvec3> center{};  // world
@@ -38,8 +37,8 @@ struct FigureRequest {
   figure::Format format = figure::Format::pdf;
   figure::Captions captions;
   bool legend = true;
-  std::string waiting_label;  // what the legend calls what waits for review
-  // in which it calls layers and columns that have a name in it; empty: in none
+  std::string waiting_label;  // the legend's label for unreviewed edits
+  // of the names of layers and columns in the legend, if they have one; empty: the default names
   std::string language;
   struct Labels {
     Layer layer;
@@ -48,8 +47,8 @@ struct FigureRequest {
   std::optional<Labels> labels;
 };
 
-// Draws and writes it; the file lies in `folder`. Refused (422): nothing of the model
-// is left by the section; (503): others are being made. Blocks.
+// Draws the figure and writes it to a file in `folder`. Refuses a section that removes the whole
+// model (422), or if too many figures are being made (503). Blocks.
 Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, ByteBudget& budget,
                                                          const FigureRequest& request,
                                                          const std::filesystem::path& folder,

@@ -13,7 +13,7 @@ Result<void> check_other_model(store::Store& store, const jobs::ShapeRecipe& rec
   if (other) return {};
   Error problem = other.error();
   if (problem.code == ErrorCode::not_found)
-    problem = {ErrorCode::invalid, "No such model", "There is no model \"" + recipe.model + "\".",
+    problem = {ErrorCode::invalid, "Model not found", "There is no model \"" + recipe.model + "\".",
                "compute.model"};
   return tl::unexpected(std::move(problem));
 }
@@ -28,12 +28,12 @@ Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe re
 }
 
 Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLayers& layers,
-                              const Layer& wish, const jobs::ShapeRecipe& recipe, bool has_palette,
-                              const std::string& user, Progress& progress) {
+                              const Layer& requested, const jobs::ShapeRecipe& recipe,
+                              bool has_palette, const std::string& user, Progress& progress) {
   auto computed =
       STRATA_TRY(jobs::compute_shape_layer(store, room.model(), room.surface().geometry(), recipe,
-                                           wish.type, wish.resolution, progress));
-  Layer layer = wish;
+                                           requested.type, requested.resolution, progress));
+  Layer layer = requested;
   layer.origin = LayerOrigin::shape;
   if (layer.unit.empty()) layer.unit = computed.unit;
   layer.description += (layer.description.empty() ? "" : "\n\n") + computed.description;
@@ -41,7 +41,7 @@ Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLa
   progress.report(1, "Saving");
   auto made = STRATA_TRY(
       layers.add(std::move(layer), std::move(computed.tiles), std::move(computed.recipe)));
-  // Others see it once they want to.
+  // Hidden by default; visible to its author.
   STRATA_TRY(store.personal_views().show_layer_to(user, made.model_id, made.id));
   return made;
 }

@@ -7,7 +7,7 @@
 
 #include "query/maps/flat_area.h"
 
-// What a layer has on its model, as programs for maps know it: areas, lines and points with
+// The features of a layer on its model, as GIS programs define them: areas, lines and points with
 // attributes.
 namespace strata::app {
 
@@ -15,33 +15,33 @@ using FeatureValue = std::variant<std::monostate, bool, std::int64_t, double, st
 
 struct FeatureField {
   enum class Kind { boolean, integer, real, text };
-  std::string name;  // in a table no other has it, also where case does not count
+  std::string name;  // unique in its table, without regard to case
   Kind kind = Kind::text;
 };
 
 enum class FeatureKind { areas, lines, points };
 
 struct Feature {
-  std::vector<FeatureValue> values;  // one for each field
+  std::vector<FeatureValue> values;  // one per field
   // An area: any number of polygons. A line: one polygon of one ring, which is not closed. A point:
-  // that with one place.
+  // one polygon of one ring with one point.
   std::vector<query::FlatPolygon> geometry;
 };
 
-// Features of one kind, with the same fields.
+// Features of one kind with the same fields.
 struct FeatureTable {
   FeatureKind kind = FeatureKind::areas;
-  std::string name;  // "areas", "cracks": no other table of the set has it
+  std::string name;  // "areas", "cracks": unique in the set
   std::vector<FeatureField> fields;
   std::vector<Feature> features;
 };
 
 struct FeatureSet {
-  std::string name;         // of the file, without its ending
+  std::string name;         // of the file, without the extension
   std::string description;  // "Layer Damage of Wall, along z, in mm"
   std::string unit;         // of the coordinates: "mm"
-  std::string axes;         // which of the world's they are, in their order: "xyz"
-  int epsg = 0;             // code of the coordinate system; 0: none that is known
+  std::string axes;         // the world axes of the coordinates, in their order: "xyz"
+  int epsg = 0;             // code of the coordinate system; 0: unknown
   std::vector<FeatureTable> tables;
 };
 

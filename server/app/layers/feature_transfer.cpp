@@ -45,7 +45,7 @@ Result<FeatureTransfer> bring_features_of(const Services& services, TableId tabl
       if (found.features.empty()) continue;
       features.insert(features.end(), found.features.begin(), found.features.end());
       auto value = to_json(features);
-      if (!read_features(value, column.kind == ColumnKind::line)) {  // more than a cell may hold
+      if (!read_features(value, column.kind == ColumnKind::line)) {  // exceeds the limit of a cell
         brought.lost_features += found.features.size();
         continue;
       }

@@ -24,7 +24,7 @@
 namespace strata::app {
 namespace {
 
-// A number or a condition.
+// `e`: a number or a condition.
 bool reads_records_of(const Expression& e, const std::string& layer) {
   return (e.is_column() && e.name == layer) ||
          std::ranges::any_of(e.parts,
@@ -75,7 +75,7 @@ bool is_condition(const Layer& layer) {
   return expression && expression->is_condition();
 }
 
-// Colours over most of the values; those of a condition are as they were made.
+// Fits the palette to most of the values; a condition keeps its palette.
 Result<Layer> with_colors(room::Room& room, Layer layer) {
   if (is_condition(layer)) return layer;
   const auto values = STRATA_TRY(room.queries().statistics(layer.slug, {}, {.quantiles = true}));
@@ -107,10 +107,12 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
   formula.automatic = automatic;
   for (const std::string& slug : layers_of(expression)) {
     const auto layer = std::ranges::find(layers, slug, &Layer::slug);
-    if (layer == layers.end()) continue;  // of the surface, or nothing: the binding says so
+    if (layer == layers.end()) continue;  // `check_expression` checks the other names
     if (self && layer->id == *self)
       return fail(ErrorCode::invalid, "Computed from itself",
-                  "The expression reads the very layer that it is for.", "expression");
+                  "The expression reads the layer that it computes. Remove this layer from the "
+                  "expression.",
+                  "expression");
     LayerFormula::Input input{slug, layer->id, {}};
     if (reads_records_of(expression, slug)) input.table = layer->table;
     formula.inputs.push_back(std::move(input));
@@ -125,7 +127,9 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
                             bool overwrites) {
   if (!layer.formula)
     return fail(ErrorCode::conflict, "No expression",
-                "This layer has no expression that it could be computed from.", "layer");
+                "This layer has no expression, so the server cannot compute it. Set an "
+                "expression first.",
+                "layer");
   for (const auto& input : layer.formula->inputs)
     if (!input.layer)
       return fail(ErrorCode::conflict, "Input deleted",
@@ -136,7 +140,7 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
   auto shapes =
       STRATA_TRY(shape_views(services.store, *room, expression, layer.resolution, progress));
   if (progress.cancelled()) return cancelled_problem();
-  // Before the records are read: what changes meanwhile makes the layer stale.
+  // Read before the records: a later change of the records makes the layer stale.
   const auto tables = STRATA_TRY(services.store.layers().table_sequences_of(layer.id));
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
@@ -154,7 +158,7 @@ Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<
                                 bool has_palette, Progress& progress) {
   return layers.add(std::move(layer), [&](const Layer& made) -> Result<Layer> {
     auto computed = STRATA_TRY(compute_layer(services, room, made, author, progress));
-    // Others see it once they want to.
+    // Hidden by default; visible to its author.
     STRATA_TRY(services.store.personal_views().show_layer_to(author.user, made.model_id, made.id));
     return has_palette ? Result<Layer>(std::move(computed))
                        : with_colors(*room, std::move(computed));

@@ -14,22 +14,22 @@
 
 namespace strata::app {
 
-// Layers that are computed by an expression over others (Layer::formula). All of it blocks.
+// Layers computed by an expression over other layers (Layer::formula). All functions block.
 
-// A number or a condition. Refused (422 at `expression`, with the character): what cannot be read.
+// Parses a number or a condition. Refuses a syntax error (422 at `expression`, with the character).
 Result<Expression> parse_formula(const std::string& text);
 
-// What the text reads on this model: names of layers, columns of their records, the surface.
-// `self`: the layer that it is for, where there is one; `visibility`: of that layer, whoever sees
-// which must see all that it reads. Refused (422 at `expression`, with the character): what cannot
-// be read, or names nothing.
+// Resolves the names in the text on this model: layers, columns of their records, the surface.
+// `self`: the computed layer, if it exists; `visibility`: of that layer; everybody who sees it must
+// also see its inputs. Refuses (422 at `expression`, with the character) syntax errors and unknown
+// names.
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
                                   Visibility visibility, std::optional<LayerId> self = {});
 
-// Computes the layer's content anew, as one edit of the author, and tells who looks. `overwrites`:
-// also where it was edited by hand since (409 without). Returns it as it is then. The normals, the
-// height, the slope and the curvature that an expression reads are worked out first, which takes as
-// long as their layers do.
+// Computes the layer's content again, as one edit of the author, and notifies participants.
+// `overwrites`: also if people have edited it (409 otherwise). Returns the layer afterwards.
+// Computes the normals, height, slope and curvature that the expression reads first, which takes as
+// long as making these shape layers.
 Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room::Room>& room,
                             const Layer& layer, const Author& author, Progress& progress,
                             bool overwrites = false);
@@ -37,9 +37,8 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
 // Whether the expression reads the shape of the surface, which takes long to compute.
 bool reads_shape(const room::Room& room, const Expression& expression);
 
-// Makes a layer with a formula and computes it. Without a palette of its own its colours run over
-// the values it has. Only the author sees it at first. After an error the caller takes `layers`
-// back.
+// Makes a layer with a formula and computes it. Without a palette, fits one to the values. At first
+// only the author sees the layer. After an error the caller calls `layers.take_back()`.
 Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<room::Room>& room,
                                 NewLayers& layers, Layer layer, const Author& author,
                                 bool has_palette, Progress& progress);

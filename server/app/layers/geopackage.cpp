@@ -49,7 +49,7 @@ CREATE TABLE gpkg_geometry_columns (
   CONSTRAINT fk_gc_srs FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys (srs_id));
 )";
 
-// A file that could not be written, as when the disk is full.
+// The file could not be written, for example because the disk is full.
 struct NotWritten : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -155,7 +155,7 @@ Box box_of(const Feature& feature) {
   return box;
 }
 
-// Well-known binary (ISO 13249-3): types with a z are 1000 higher.
+// Well-known binary (ISO 13249-3): types with z are 1000 higher.
 constexpr std::uint32_t kPoint = 1001, kLine = 1002, kPolygon = 1003, kMultiPolygon = 1006;
 
 void append_head(std::vector<std::uint8_t>& out, std::uint32_t type) {
@@ -295,10 +295,10 @@ Result<std::shared_ptr<const TemporaryFile>> geopackage(const FeatureSet& set,
     write(set, file->path);
   } catch (const NotWritten& error) {
     log::error(std::string("a GeoPackage could not be written: ") + error.what());
-    return fail(
-        ErrorCode::storage_full, "GeoPackage not written",
-        "The server could not write the file, as when its disk is full. Ask for GeoJSON, which needs none.",
-        "f");
+    return fail(ErrorCode::storage_full, "GeoPackage not written",
+                "The server could not write a temporary file; its disk may be full. Request "
+                "GeoJSON instead, which needs no temporary file.",
+                "f");
   }
   std::error_code ignored;
   file->bytes = fs::file_size(file->path, ignored);

@@ -11,10 +11,9 @@ namespace strata::app {
 
 inline constexpr const char* kGeoPackageType = "application/geopackage+sqlite3";
 
-// The tables as an OGC GeoPackage 1.3 (OGC 12-128r17), a table of features each, written by SQLite
-// to a file in `folder`. Geometries have a z. Without a known
-// coordinate system they are in the undefined Cartesian one (-1). An area without extent has no
-// geometry. Refused (storage_full): the
+// Writes the tables as an OGC GeoPackage 1.3 (OGC 12-128r17) with SQLite to a file in `folder`, one
+// table of features each. Geometries have z. Without a known coordinate system they are in the
+// undefined Cartesian one (-1). An area without extent has no geometry. Refused (storage_full): the
 // file could not be written.
 Result<std::shared_ptr<const TemporaryFile>> geopackage(const FeatureSet& set,
                                                         const std::filesystem::path& folder);

@@ -11,7 +11,7 @@
 namespace strata::app {
 
 struct FeatureRequest {
-  std::shared_ptr<room::Room> room;  // as who asks sees it
+  std::shared_ptr<room::Room> room;  // as visible to the caller
   Layer layer;
   room::At at;  // nothing: now
   query::OutlinePlane plane;
@@ -19,9 +19,9 @@ struct FeatureRequest {
   std::string language;  // of terms
 };
 
-// The areas of a layer's classes, and of a database layer the lines and points of its records on
-// the model, each with what it is and what its record holds in the columns that the role sees.
-// Blocks.
+// Returns the areas of a layer's classes, and for a database layer the lines and points of its
+// records on the model, each with its name and the record's values in the columns that the role
+// sees. Blocks.
 Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request);
 
 }  // namespace strata::app

@@ -13,7 +13,7 @@
 namespace strata::app {
 
 // Layers that a job makes with their content. They are hidden until they are painted, so that
-// nobody sees them half made; taken away again where that fails. Used on the job's thread; blocks.
+// nobody sees them incomplete, and removed if that fails. Used on the job's thread; blocks.
 class NewLayers {
  public:
   NewLayers(std::shared_ptr<room::Room> room, EditCounters& counters, Author author)
@@ -21,11 +21,11 @@ class NewLayers {
 
   // Makes the layer and paints it as one edit of the author. `recipe`: for its history.
   Result<Layer> add(Layer layer, TileMap tiles, nlohmann::json recipe);
-  // Makes the layer and has it filled.
+  // Makes the layer and calls `fill`.
   Result<Layer> add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill);
-  // Shows them as they were asked for. The answer is kept with the last one.
+  // Sets the requested visibility of the layers. The last update stores the answer.
   Result<void> show(const store::IdempotentResponse<Layer>& answer);
-  void take_back();  // all that were added
+  void take_back();  // removes all added layers
 
   std::vector<LayerId> ids() const;
 
@@ -34,7 +34,7 @@ class NewLayers {
 
   struct Made {
     Layer layer;
-    bool visible;  // as asked for
+    bool visible;  // as requested
   };
   std::shared_ptr<room::Room> room_;
   EditCounters& counters_;
@@ -42,7 +42,7 @@ class NewLayers {
   std::vector<Made> made_;
 };
 
-// One above the highest of the others.
+// Returns the order above all other layers.
 int order_on_top(const std::vector<Layer>& others);
 
 }  // namespace strata::app

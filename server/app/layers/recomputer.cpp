@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kMaxPause{600};
 constexpr int kMaxChecks = 10;
-// Who computes, in the layer's history: the server itself, which no lock stops.
+// The author in the layer's history: the server, which ignores locks.
 const Author kAuthor("Strata", Role::owner);
 
 }  // namespace
@@ -49,7 +49,7 @@ void Recomputer::run() {
     }
     try {
       const auto layers = services_.store.layers().to_recompute();
-      if (!layers) continue;  // the database is away
+      if (!layers) continue;  // the database is unreachable
       for (const Layer& layer : *layers) {
         if (is_stopping()) return;
         recompute(layer);

@@ -14,17 +14,16 @@
 
 namespace strata::app {
 
-// Computes automatic layers again, one after the other, after something that they read has changed:
-// an edit, a record, a layer that is computed itself. Edits of the model wait meanwhile, so it lets
-// a second pass in which nobody paints, but ten at most. Asks the database once a second, so that
-// nothing is forgotten over a restart. What fails is tried again, less and less often. Layers whose
-// surface was never counted for the database (store::Layers::to_sum), as those of older versions,
-// are counted likewise.
+// Computes automatic layers again, one after the other, when their input has changed: an edit, a
+// record, another computed layer. This blocks edits of the model, so it first waits for a second
+// without painting, at most ten times. Polls the database once a second, so that a restart loses no
+// change. Retries failures at increasing intervals. Also counts the surface of layers that were
+// never counted (store::Layers::to_sum), such as those of older versions.
 class Recomputer {
  public:
   explicit Recomputer(const Services& services);
   ~Recomputer() { stop(); }
-  void stop();  // what is being computed is cancelled; waits
+  void stop();  // cancels the current computation, and waits
 
  private:
   struct Failure {
@@ -32,12 +31,12 @@ class Recomputer {
     std::chrono::seconds pause;
   };
   struct Wait {
-    std::int64_t sequence = -1;  // of the model when it was looked at last
+    std::int64_t sequence = -1;  // sequence of the model at the last check
     int checks = 0;
   };
   void run();
   bool is_quiet(const room::Room& room, LayerId layer_id);
-  // `work` opens the room and does what is behind; what fails is told once.
+  // `work` opens the room and updates the layer; logs a failure once.
   void attempt(const Layer& layer, const char* what,
                const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work);
   void recompute(const Layer& layer);
@@ -45,7 +44,7 @@ class Recomputer {
 
   const Services services_;
   std::map<LayerId, Failure> failures_;  // by layer
-  std::map<LayerId, Wait> waits_;        // the same
+  std::map<LayerId, Wait> waits_;        // likewise
   Progress progress_;
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -21,7 +21,7 @@ Result<void> add_photo(const Services& services, const room::SurfaceImageView& i
                        query::VertexColors& colors) {
   const auto encoded = STRATA_TRY(services.store.surface_images().picture(image.surface_image_id));
   const auto info = STRATA_TRY(inspect_picture(encoded));
-  // Reading takes at most twice the memory of its pixels.
+  // Decoding takes at most twice the memory of the pixels.
   const auto bytes =
       static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height) * 8;
   const auto share = STRATA_TRY(services.rooms.memory().reserve(bytes, "a photo of the surface"));
@@ -49,7 +49,7 @@ Result<ComposedVertices> compose_vertices(const Services& services, room::Room& 
   const auto geometry = room.surface().geometry();
   const std::uint64_t bytes = images.empty() ? 0 : geometry->vertices.size() * 3;
   auto memory =
-      STRATA_TRY(services.rooms.memory().reserve(bytes, "the colours of a model's vertices"));
+      STRATA_TRY(services.rooms.memory().reserve(bytes, "the colors of a model's vertices"));
   ComposedVertices composed{query::VertexColors(geometry), std::move(memory)};
   for (const room::SurfaceImageView& image : images)
     STRATA_TRY(add_photo(services, image, composed.colors));

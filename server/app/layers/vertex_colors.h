@@ -8,10 +8,10 @@
 
 namespace strata::app {
 
-// The colours of a model's vertices with these layers over them, bottom to top, and `tiles` of
-// each. Of the photos lie below those that are visible. `memory` holds what the colours take, for
-// as long as they live. Refused: a palette by a column that the role does not see (422), a photo
-// that there is no memory for (503). Blocks.
+// Returns the colors of a model's vertices under these layers, bottom to top, with the visible
+// surface images below. `memory` is the share of the colors, held as long as they exist. Refuses a
+// palette by a column that the role does not see (422), and an image that exceeds the memory limit
+// (503). Blocks.
 struct ComposedVertices {
   query::VertexColors colors;
   MemoryLedger::Share memory;

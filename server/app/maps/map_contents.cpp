@@ -19,7 +19,7 @@ Result<MapContents> polygon_contents(const MapFiles& files, const Model& model) 
       ++polygons.count;
     }
   if (polygons.count == 0)
-    return fail(ErrorCode::invalid, "No polygons", "The map holds no polygon.", "body");
+    return fail(ErrorCode::invalid, "No polygons", "The map contains no polygon.", "body");
   polygons.columns = query::columns_of(map);
   return MapContents{files.kind(), map.crs, std::pair(low, high), std::move(polygons)};
 }
@@ -54,7 +54,7 @@ Result<MapContents> raster_contents(const MapFiles& files, const Model& model, d
   }
   MapContents contents{files.kind(), tiff ? tiff->crs : std::string(), {}, MapContents::Raster()};
   const auto world = world_of({}, files, tiff ? tiff->world : std::nullopt);
-  // a world file that is none
+  // an invalid world file
   if (!world && world.error().field != "world") return tl::unexpected(world.error());
   if (world) {
     raster.world = *world;

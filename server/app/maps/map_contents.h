@@ -13,7 +13,7 @@
 
 namespace strata::app {
 
-// What a map file holds, for a user who is going to paint it.
+// The contents of a map file, for a user who is going to paint it.
 struct MapContents {
   struct Polygons {
     std::size_t count = 0;
@@ -27,13 +27,13 @@ struct MapContents {
   };
   MapKind kind = MapKind::geojson;
   std::string crs;  // empty: the file names none
-  // least and greatest coordinates of the map; nothing: the file does not say where it lies
+  // least and greatest coordinates of the map; nothing: the file has no position
   std::optional<std::pair<glm::dvec2, glm::dvec2>> bounds;
   std::variant<Polygons, Raster> parts;
 };
 
-// Refused (invalid, unsupported, busy): what painting the map would refuse, but for a missing
-// place.
+// Refuses (invalid, unsupported, busy) the same maps as painting does, except that a missing
+// position is allowed.
 Result<MapContents> map_contents(const MapFiles& files, const Model& model, double tolerance,
                                  ByteBudget& budget);
 

@@ -45,7 +45,7 @@ std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// What a file is by itself; nothing: something that goes with another one.
+// Returns the kind of a file; nothing for a companion of another file.
 std::optional<MapKind> kind_of(const mesh::InputFiles::Entry& file, bool is_alone) {
   if (query::is_shapefile(file.bytes) && ending_of(file.name) != "shx") return MapKind::shapefile;
   if (query::is_tiff(file.bytes)) return MapKind::tiff;
@@ -56,7 +56,7 @@ std::optional<MapKind> kind_of(const mesh::InputFiles::Entry& file, bool is_alon
   if (ending == "shp") return MapKind::shapefile;
   if (ending == "geojson" || ending == "json") return MapKind::geojson;
   const bool is_part = ending == "dbf" || ending == "prj" || ending == "cpg" || ending == "shx";
-  // What has no name that says it: JSON begins with an object, after blanks and a byte order mark.
+  // Without a known extension: JSON begins with an object, after blanks and a byte order mark.
   const std::string_view text = as_text(file.bytes);
   const auto begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
   const bool may_be_json =
@@ -77,7 +77,7 @@ Result<MapFiles> MapFiles::open(const std::vector<MapFile>& files, const fs::pat
     auto mapped = MappedFile::open(file.path);
     if (file.is_ours) {
       std::error_code ignored;
-      fs::remove(file.path, ignored);  // the mapping keeps what is in it
+      fs::remove(file.path, ignored);  // the mapping stays valid
     }
     if (!mapped) {
       unreadable = mapped.error();
@@ -107,19 +107,20 @@ Result<void> MapFiles::choose_main() {
     if (kind_of(files_[i], files_.size() == 1)) maps.push_back(i);
   if (maps.empty())
     return fail(
-        ErrorCode::unsupported, "No map",
+        ErrorCode::unsupported, "No map found",
         files_.empty()
-            ? "The zip holds no map: no .shp, .geojson, .tif, .png or .jpg."
+            ? "The zip contains no map: no .shp, .geojson, .tif, .png or .jpg file."
             : std::string(last_part(files_.front().name)).substr(0, 100) +
-                  " is no map by itself. Send it with its .shp or picture; maps are GeoJSON, shapefiles, "
-                  "TIFF, PNG and JPEG. Convert a GeoPackage or KML to GeoJSON first (QGIS, ogr2ogr).",
+                  " is not a map on its own. Send it together with its .shp file or its picture. "
+                  "The server reads GeoJSON, shapefiles, TIFF, PNG and JPEG; convert a GeoPackage "
+                  "or KML to GeoJSON first (QGIS, ogr2ogr).",
         "body");
   if (maps.size() > 1) {
     std::string named;
     for (std::size_t i = 0; i < std::min(maps.size(), kMaxNamed); ++i)
       named += (i ? ", " : "") + std::string(last_part(files_[maps[i]].name)).substr(0, 100);
     return fail(ErrorCode::invalid, "More than one map",
-                "Send one map at a time; these are several: " + named +
+                "Send one map at a time. The upload contains several: " + named +
                     (maps.size() > kMaxNamed ? ", …" : "") + ".",
                 "body");
   }

@@ -17,27 +17,27 @@ enum class MapKind { geojson, shapefile, picture, tiff };
 
 struct MapFile {
   std::filesystem::path path;
-  std::string name;      // as the sender calls it; empty when they did not say
-  bool is_ours = false;  // is removed as soon as it is open
+  std::string name;      // the sender's name; may be empty
+  bool is_ours = false;  // removed as soon as it is open
 };
 
-// The files of one flat map as they were sent: the body, the files of a form, or those of a zip.
-// Told apart by their first bytes, so that a body needs no name.
+// The files of one map as they were sent: the body, the files of a form, or those of a zip. Their
+// first bytes distinguish them, so a body needs no name.
 class MapFiles {
  public:
-  // Files of a zip lie in `scratch`, without names, while this lives. Refused (malformed,
-  // too_large, unsupported, invalid): as unpack_archive refuses, several maps, no map.
+  // Extracts a zip to unnamed files in `scratch`, which live as long as this. Refuses (malformed,
+  // too_large, unsupported, invalid) as unpack_archive does, and several maps or none.
   static Result<MapFiles> open(const std::vector<MapFile>& files,
                                const std::filesystem::path& scratch);
 
   MapKind kind() const { return kind_; }
   std::span<const std::uint8_t> main() const { return files_[main_].bytes; }
   std::string_view text() const;
-  // The bytes of the file that goes with the main one and has one of these endings ("prj"); empty:
+  // Returns the bytes of the main file's companion with one of these extensions ("prj"); empty if
   // it was not sent.
   std::span<const std::uint8_t> companion(std::initializer_list<std::string_view> endings) const;
   std::string_view companion_text(std::initializer_list<std::string_view> endings) const;
-  // Sizes and hashes, for the journal: those of the body, or `files` where it is several.
+  // Returns sizes and hashes for the journal: those of the body, or `files` for several.
   nlohmann::json record() const;
 
  private:

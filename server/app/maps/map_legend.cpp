@@ -31,8 +31,8 @@ Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
     for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i)
       listed += (i ? ", " : "") + names[i].substr(0, kMaxNameLength);
     return fail(ErrorCode::forbidden, "Names not in the legend",
-                "The legend of the layer lacks: " + listed +
-                    (names.size() > kMaxNamed ? ", …" : "") + ". A curator may add them.",
+                "The legend of the layer does not contain: " + listed +
+                    (names.size() > kMaxNamed ? ", …" : "") + ". A curator can add them.",
                 "attribute");
   }
   for (const std::string& name : names)
@@ -44,7 +44,7 @@ Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
   changed.palette_of_terms = false;
   if (changed.palette.points.size() > kMaxPoints)
     return fail(ErrorCode::invalid, "Too many names",
-                "A legend holds at most " + std::to_string(kMaxPoints) + " entries.", "attribute");
+                "A legend has at most " + std::to_string(kMaxPoints) + " entries.", "attribute");
   STRATA_TRY(room.layers().update(std::move(changed)));
   return {};
 }

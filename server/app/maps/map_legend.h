@@ -8,13 +8,13 @@
 
 namespace strata::app {
 
-// The keys of a layer whose legend is categorical, for a map to add to; nothing where it has
-// another legend. `records`: keys that are not free though nothing of them is painted.
+// Returns the keys of a layer with a categorical legend, to which a map can add; nothing for other
+// legends. `records`: keys that are in use although no texel has them.
 Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer,
                                                const std::set<double>& records);
 
-// Writes what a map added into the layer's legend. Names are metadata, so only a curator adds them:
-// refused (403) for others, who may use those that are there; new colours of theirs are left out.
+// Adds a map's names to the layer's legend. Names are metadata, so only curators can add them:
+// refuses (403) new names of other users, who can use existing names; ignores their new colors.
 // Blocks.
 Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
                            const query::KeyNames& keys);

@@ -11,7 +11,8 @@ Result<MapAxis> parse_map_axis(std::string_view text) {
   const int axis = text.size() == 2 ? text[1] - 'x' : -1;
   if (axis < 0 || axis > 2 || (text[0] != '-' && text[0] != '+'))
     return fail(ErrorCode::invalid, "Unknown direction",
-                "`along` is one of -x, +x, -y, +y, -z, +z: the way that the map is looked at.",
+                "`along` must be one of -x, +x, -y, +y, -z, +z: the direction in which you "
+                "look at the map.",
                 "along");
   MapAxis made{glm::dvec3(0), axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
   made.direction[axis] = text[0] == '-' ? -1 : 1;
@@ -24,42 +25,42 @@ Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& fil
   if (const auto text = files.companion_text({"tfw", "tifw", "pgw", "jgw", "wld"}); !text.empty())
     return query::parse_world_file(text, "body");
   if (own) return *own;
-  return fail(
-      ErrorCode::invalid, "Place missing",
-      "The picture does not say where it lies. Give `world`, the six numbers of its world file, or send that file "
-      "with it.",
-      "world");
+  return fail(ErrorCode::invalid, "Position missing",
+              "The picture contains no position. Send the six numbers of its world file as "
+              "`world`, or send the world file together with the picture.",
+              "world");
 }
 
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
   if (in_degrees)
-    return fail(
-        ErrorCode::invalid, "Coordinates in degrees",
-        "The map lies in longitude and latitude. Save it in the plane coordinates of the model" +
-            (model.crs.empty() ? "." : ", " + model.crs + "."),
-        "body");
+    return fail(ErrorCode::invalid, "Coordinates in degrees",
+                "The coordinates of the map are longitude and latitude. Save the map in the "
+                "plane coordinates of the model" +
+                    (model.crs.empty() ? "." : ", " + model.crs + "."),
+                "body");
   if (!crs.empty() && !model.crs.empty() && crs != model.crs)
-    return fail(ErrorCode::invalid, "Other coordinates",
-                "The map lies in " + crs + ", the model in " + model.crs + "; save the map in " +
-                    model.crs + ".",
+    return fail(ErrorCode::invalid, "Different coordinate systems",
+                "The coordinate system of the map is " + crs + ", that of the model is " +
+                    model.crs + ". Save the map in " + model.crs + ".",
                 "body");
   return {};
 }
 
 Result<void> confirm_map_crs(const MapOptions& options, const Model& model,
                              const std::string& crs) {
-  const std::string& asked = options.crs;
+  const std::string& requested_crs = options.crs;
   for (const auto& [system, whose] : {std::pair(crs, "map"), std::pair(model.crs, "model")})
-    if (!asked.empty() && !system.empty() && asked != system)
-      return fail(ErrorCode::invalid, "Other coordinates",
-                  "`crs` says " + asked + ", but the " + whose + " lies in " + system + ".", "crs");
-  if (!asked.empty() || crs.empty() || !model.crs.empty()) return {};
+    if (!requested_crs.empty() && !system.empty() && requested_crs != system)
+      return fail(ErrorCode::invalid, "Different coordinate systems",
+                  "`crs` is " + requested_crs + ", but the " + whose + " is in " + system + ".",
+                  "crs");
+  if (!requested_crs.empty() || crs.empty() || !model.crs.empty()) return {};
   return fail(
       ErrorCode::invalid, "Model without coordinate system",
-      "The map lies in " + crs +
-          ", and the model has no coordinate system. If the model's coordinates are those of " +
+      "The coordinate system of the map is " + crs +
+          ", but the model has no coordinate system. If the coordinates of the model are in " +
           crs + ", repeat the request with `crs=" + crs +
-          "`; a curator can also give the model this system.",
+          "`. A curator can also set this coordinate system for the model.",
       "crs");
 }
 

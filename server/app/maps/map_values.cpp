@@ -12,21 +12,21 @@ namespace {
 Result<void> check_kind(const MapFiles& files, bool polygons) {
   const bool is_polygons = files.kind() == MapKind::geojson || files.kind() == MapKind::shapefile;
   if (is_polygons == polygons) return {};
-  return fail(ErrorCode::unsupported, polygons ? "No polygons" : "No picture",
-              polygons ? "Polygons come as GeoJSON or as a shapefile; pictures go to `picture`."
-                       : "Pictures are PNG, JPEG or TIFF; polygons go to `polygons`.",
+  return fail(ErrorCode::unsupported, polygons ? "No polygons" : "Not a picture",
+              polygons ? "Send polygons as GeoJSON or as a shapefile. Send pictures to `picture`."
+                       : "Send a picture as PNG, JPEG or TIFF. Send polygons to `polygons`.",
               "body");
 }
 
-// The colours with their keys, as asked for or found.
-Result<std::vector<query::ColorKey>> color_keys(const std::string& asked, const Picture& picture,
-                                                double tolerance) {
-  if (asked != "auto") return query::parse_color_keys(asked, "colors");
+// Returns the colors with their keys, as requested or found.
+Result<std::vector<query::ColorKey>> color_keys(const std::string& requested,
+                                                const Picture& picture, double tolerance) {
+  if (requested != "auto") return query::parse_color_keys(requested, "colors");
   std::vector<query::ColorKey> keys;
   for (const query::FoundColor& found : query::find_colors(picture, tolerance))
     if (!found.is_background) keys.push_back({found.color, static_cast<double>(keys.size() + 1)});
   if (keys.empty())
-    return fail(ErrorCode::invalid, "No colours", "The picture holds nothing but its background.",
+    return fail(ErrorCode::invalid, "No colors", "The picture contains only its background color.",
                 "colors");
   return keys;
 }
@@ -53,7 +53,7 @@ Result<MapValues> values_by_color(const MapOptions& options, MapPicture map,
 
 Result<MapValues> values_by_luminance(MapPicture map, const Layer& layer) {
   for (const double luminance : {0.0, 255.0})
-    STRATA_TRY(bits_of(layer, luminance, "Luminance is 0 to 255. "));
+    STRATA_TRY(bits_of(layer, luminance, "Luminance has values from 0 to 255. "));
   const auto placed = std::make_shared<query::PlacedPicture>(std::move(map.picture), map.world);
   const auto bits_at = [placed, held = map.held, type = layer.type](
                            const glm::dvec2& place) -> std::optional<std::uint32_t> {
@@ -64,8 +64,7 @@ Result<MapValues> values_by_luminance(MapPicture map, const Layer& layer) {
   return MapValues{bits_at, std::nullopt};
 }
 
-// Every number of the band must fit, wherever it lies: what is painted must not depend on the
-// shape.
+// Checks every number of the band, wherever it is: the result must not depend on the surface.
 Result<void> convert(query::BandRaster& band, const Layer& layer) {
   for (std::size_t i = 0; i < band.bits.size(); ++i) {
     if (!band.valid[i]) continue;
@@ -123,10 +122,10 @@ Result<MapValues> polygon_values(const MapOptions& options, const MapFiles& file
   choice.names = options.names;
   if (choice.attribute.empty() == !options.value)
     return fail(ErrorCode::invalid, "Parameter missing",
-                "Give exactly one of `value` and `attribute`.", "value");
+                "Send either `value` or `attribute`, but not both.", "value");
   if (!choice.names.empty() && choice.attribute.empty())
     return fail(ErrorCode::invalid, "Parameter missing",
-                "`names` are those of the numbers in `attribute`.", "names");
+                "`names` needs `attribute`: they name the numbers in that attribute.", "names");
   choice.value = options.value.value_or(0);
   const auto features = STRATA_TRY(features_of(files, target.room.model()));
   STRATA_TRY(confirm_map_crs(options, target.room.model(), features.crs));
@@ -164,7 +163,7 @@ Result<Picture> picture_of(const MapFiles& files, const std::optional<query::Map
 Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
                                               const std::optional<query::MapTiff>& tiff,
                                               ByteBudget& budget) {
-  // Twice four bytes a pixel while a TIFF is decoded.
+  // Decoding a TIFF takes twice four bytes per pixel.
   if (tiff) return budget.take(8 * pixels(tiff->width, tiff->height));
   const auto info = STRATA_TRY(inspect_picture(files.main(), kMaxMapSide));
   return budget.take(4 * pixels(info.width, info.height));
@@ -186,8 +185,8 @@ Result<MapValues> picture_values(const MapOptions& options, const MapFiles& file
                                  const MapTarget& target, ByteBudget& budget) {
   const bool by_color = options.colors.has_value();
   if (by_color && options.band)
-    return fail(ErrorCode::invalid, "Too many parameters", "Give `band` or `colors`, not both.",
-                "colors");
+    return fail(ErrorCode::invalid, "Too many parameters",
+                "Send either `band` or `colors`, but not both.", "colors");
   const auto tiff = STRATA_TRY(tiff_of(files, target.room.model()));
   if (auto confirmed =
           confirm_map_crs(options, target.room.model(), tiff ? tiff->crs : std::string());
@@ -201,7 +200,8 @@ Result<MapValues> picture_values(const MapOptions& options, const MapFiles& file
                     : values_by_luminance(std::move(map), target.layer);
   }
   if (!tiff)
-    return fail(ErrorCode::invalid, "No bands", "Only a TIFF's bands can be chosen.", "band");
+    return fail(ErrorCode::invalid, "No bands in picture",
+                "`band` works for TIFF files only. Leave it out.", "band");
   const auto world = STRATA_TRY(world_of(options, files, tiff->world));
   auto held = STRATA_TRY(budget_of(files, tiff, budget));
   return values_of_band(files, *tiff, options.band.value_or(1), world, std::move(held),

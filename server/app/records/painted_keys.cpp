@@ -39,10 +39,10 @@ Result<std::vector<PaintedLayer>> painted_layers(const Services& services, Table
   auto layers = STRATA_TRY(services.store.layers().of_table(table_id, seen_by));
   std::vector<PaintedLayer> painted;
   for (Layer& layer : layers) {
-    if (layer.sequence == 0) continue;  // nothing was ever painted there
+    if (layer.sequence == 0) continue;  // the layer was never painted
     auto room = STRATA_TRY(services.rooms.open(to_string(layer.model_id), seen_by));
     auto areas = room->queries().key_areas(layer.slug);
-    if (!areas && areas.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
+    if (!areas && areas.error().code == ErrorCode::not_found) continue;  // deleted in the meantime
     if (!areas) return tl::unexpected(areas.error());
     painted.push_back({std::move(room), std::move(layer), std::move(*areas)});
   }
@@ -75,11 +75,11 @@ Result<void> repaint_key(const Services& services, const std::vector<PaintedLaye
     if (!painted.areas.contains(key)) continue;
     STRATA_TRY(room::check_not_locked(painted.layer, author.role));
     if (to && static_cast<double>(*to) > highest_value(painted.layer.type))
-      return fail(ErrorCode::invalid, "Key too large",
-                  painted.layer.name + " of " + painted.room->model().name + " holds keys up to " +
-                      std::to_string(static_cast<std::int64_t>(highest_value(painted.layer.type))) +
-                      ".",
-                  "to");
+      return fail(
+          ErrorCode::invalid, "Key too large",
+          painted.layer.name + " of " + painted.room->model().name + " can store keys up to " +
+              std::to_string(static_cast<std::int64_t>(highest_value(painted.layer.type))) + ".",
+          "to");
   }
   for (const PaintedLayer& painted : layers) {
     if (!painted.areas.contains(key)) continue;
@@ -140,9 +140,10 @@ Result<void> check_keys(store::Store& store, const Layer& layer,
   std::string named;
   for (std::size_t i = 0; i < std::min(missing.size(), kMaxNamed); ++i)
     named += (i ? ", " : "") + std::to_string(missing[i]);
-  return fail(ErrorCode::invalid, "No record of this key",
+  return fail(ErrorCode::invalid, "No such record",
               "The table of " + layer.name + " has no record " + named +
-                  (missing.size() > kMaxNamed ? ", …" : "") + ". Make it first, then paint.",
+                  (missing.size() > kMaxNamed ? ", …" : "") +
+                  ". Create the record first, then paint.",
               "value");
 }
 

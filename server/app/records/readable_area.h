@@ -2,7 +2,7 @@
 
 #include <string>
 
-// Areas in a unit that people read, where scripts have `area_m2`.
+// Areas in readable units for people; scripts get `area_m2`.
 namespace strata::app {
 
 struct AreaUnit {
@@ -10,10 +10,10 @@ struct AreaUnit {
   double per_m2 = 1;
 };
 
-// For areas up to this one: mm² below 1 cm², cm² below 0.1 m², as the page has it.
+// Returns the unit for areas up to this one: mm² below 1 cm², cm² below 0.1 m², as on the page.
 AreaUnit readable_area(double largest_m2);
 
-// A number format of spreadsheets: four digits of the largest number, and two decimals at least.
+// Returns a spreadsheet's number format: four digits of the largest number, at least two decimals.
 std::string number_format(double largest);
 
 // "area_m2" → "area (mm²)", "model/layer area_m2" → "model/layer area (mm²)".

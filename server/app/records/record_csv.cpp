@@ -32,7 +32,7 @@ bool is_called(const Column& column, const std::string& head) {
                      [&](const auto& label) { return label.second == head; });
 }
 
-// What each cell of a row is: a column, or one of the words.
+// The meaning of each cell of a row: a column or a special word.
 struct Head {
   std::string text;
   const Column* column = nullptr;
@@ -53,11 +53,12 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
     if (!is_word && !head.column && !is_measure(head.text))
       return fail(ErrorCode::invalid, "Unknown column",
                   table.name + " has no column \"" + head.text +
-                      "\". The first row names columns by slug, name or label, and `key`.",
+                      "\". The first row must contain slugs, names or labels of columns, and may "
+                      "contain `key`.",
                   "body");
     if (!met.insert(head.column ? to_string(head.column->id) : head.text).second)
-      return fail(ErrorCode::invalid, "Column named twice",
-                  "\"" + head.text + "\" stands twice in the first row.", "body");
+      return fail(ErrorCode::invalid, "Duplicate column",
+                  "\"" + head.text + "\" appears twice in the first row.", "body");
     heads.push_back(std::move(head));
   }
   return heads;
@@ -124,7 +125,8 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
       parse_csv(text, {store::kMaxRecordsAtOnce + 1, static_cast<std::size_t>(kMaxColumns) + 3});
   if (!csv) return tl::unexpected(csv.error());
   if (csv->rows.empty())
-    return fail(ErrorCode::invalid, "Empty table", "The first row names the columns.", "body");
+    return fail(ErrorCode::invalid, "Empty table",
+                "The text is empty. Its first row must name the columns.", "body");
   auto heads = read_heads(csv->rows.front(), table);
   if (!heads) return tl::unexpected(heads.error());
   const bool comma = csv->separator == ';';
@@ -140,7 +142,7 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
       mistakes.push_back({row.line,
                           {},
                           {ErrorCode::invalid,
-                           "Cells missing or too many",
+                           "Wrong number of cells",
                            "The row has " + std::to_string(row.cells.size()) +
                                " cells, the first row " + std::to_string(heads->size()) + ".",
                            {}}});

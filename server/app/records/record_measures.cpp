@@ -20,7 +20,7 @@ Result<RecordMeasures> RecordMeasures::of_place(const Services& services, const 
   if (place.layer) {
     measures.has_area_ = true;
     measures.names_.emplace_back(kAreaMeasure);
-    if (place.layer->sequence > 0) {  // otherwise nothing was ever painted there
+    if (place.layer->sequence > 0) {  // otherwise it was never painted
       auto room = services.rooms.open(to_string(place.model->id), Role::owner);
       if (!room) return tl::unexpected(room.error());
       auto areas = STRATA_TRY((*room)->queries().key_areas(place.layer->slug));

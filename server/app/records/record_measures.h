@@ -13,18 +13,18 @@ namespace strata::app {
 
 inline constexpr const char* kAreaMeasure = "area_m2";
 
-// What a record has on the surface, beside what its columns hold: `area_m2` under a layer, the
-// surface that it has there; `length_m` of its lines and `point_count` of its points where the
-// table has such columns, under a layer those on its model, otherwise on all that are there.
+// The measures of a record on the surface: under a layer, `area_m2` of its texels there; `length_m`
+// of its lines and `point_count` of its points, if the table has such columns, under a layer those
+// on its model, otherwise those on all models.
 class RecordMeasures {
  public:
-  // `columns`: those of the records that will be asked for; a layer of the place is one that who
-  // asks sees. May open a room, and blocks.
+  // `columns`: those of the records that are passed to `of`; the place's layer must be visible to
+  // the caller. May open a room, and blocks.
   static Result<RecordMeasures> of_place(const Services& services, const RecordPlace& place,
                                          const std::vector<Column>& columns);
 
   const std::vector<std::string>& names() const { return names_; }
-  std::vector<double> of(const Record& record) const;  // one for each name
+  std::vector<double> of(const Record& record) const;  // one per name
   double area_m2(std::int64_t key) const;
 
  private:
@@ -32,10 +32,10 @@ class RecordMeasures {
   bool has_area_ = false;
   std::map<std::int64_t, query::KeyArea> areas_;
   std::vector<Column> lines_, points_;
-  std::map<ModelId, double> metres_;  // of the unit of each model whose marks count
+  std::map<ModelId, double> metres_;  // meters per unit of the models whose features count
 };
 
-// Each under its name: numbers, counts as whole ones.
+// Adds each value under its name; counts are integers.
 void add_measures(nlohmann::json& json, const std::vector<std::string>& names,
                   const std::vector<double>& values);
 

@@ -8,9 +8,9 @@
 
 namespace strata::app {
 
-// The table whose records a user works with, on its own or as the table of a layer.
+// The table of the records in a request, named directly or as the table of a layer.
 struct RecordPlace {
-  Table table;  // as the user sees it
+  Table table;  // as visible to the user
   std::optional<Model> model;
   std::optional<Layer> layer;
 };

@@ -12,7 +12,7 @@
 namespace strata::app {
 namespace {
 
-constexpr int kDeepest = 3;  // tables may be called by each other's records, round in circles
+constexpr int kDeepest = 3;  // tables may name each other's records, even in cycles
 
 std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::RecordPage& page,
                                               Role seen_by, const std::string& language,
@@ -20,7 +20,7 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
   std::map<std::int64_t, std::string> names;
   const Column* title = name_column(page.table);
   if (!title) return names;
-  std::map<std::int64_t, std::string> named;  // of the records that titles are
+  std::map<std::int64_t, std::string> named;  // names of the records that the titles refer to
   if (title->kind == ColumnKind::term && depth < kDeepest) {
     store::RecordQuery all;
     all.limit = store::kMaxRecords;
@@ -45,7 +45,7 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
 
 }  // namespace
 
-// What tells words apart when they are read again: cells lose blanks at their ends.
+// The part of a word that distinguishes it: spreadsheets drop blanks at both ends of cells.
 std::string RecordWords::bare(const std::string& word) { return std::string(trimmed(word)); }
 
 void RecordWords::add(std::int64_t key, const std::string& word) {
@@ -103,12 +103,12 @@ Result<std::int64_t> RecordWords::key_of(const std::string& word, const std::str
   if (is_all_digits(bare(word))) return parse_integer(bare(word), 0, kMaxRecordKey, field);
   const auto meant = keys_.find(bare(word));
   if (meant == keys_.end())
-    return fail(ErrorCode::invalid, "No such record",
-                table_ + " has no record called \"" + word.substr(0, 100) + "\".", field);
+    return fail(ErrorCode::invalid, "Record not found",
+                table_ + " has no record with the name \"" + word.substr(0, 100) + "\".", field);
   if (!meant->second)
     return fail(ErrorCode::invalid, "Several records",
-                table_ + " has several records called \"" + word.substr(0, 100) +
-                    "\". Name one by its code or key.",
+                table_ + " has several records with the name \"" + word.substr(0, 100) +
+                    "\". Use the code or the key of the record instead.",
                 field);
   return *meant->second;
 }

@@ -12,23 +12,21 @@
 
 namespace strata::app {
 
-// What the records of a table are called, and which record a word means: terms by their labels or
-// codes, other records by their title. Words and what they mean belong together: what `word` says,
-// `key_of` finds again.
+// Translates between the keys of a table's records and words: terms have labels and codes, other
+// records a title. The two directions agree: `key_of` finds the key of every result of `word`.
 class RecordWords {
  public:
-  // `language`: of terms, the one whose labels are said ("es-mx"); those of all languages are
-  // understood. Blocks.
+  // `language`: of the labels that `word` returns ("es-mx"); `key_of` accepts those of all
+  // languages. Blocks.
   static Result<RecordWords> load(store::Store& store, TableId table_id, Role seen_by,
                                   const std::string& language);
 
-  // Its label or title where that means no other record, then its code, then its key. Of a record
-  // that is not there its key.
+  // Returns the record's label or title if it is unique, otherwise its code, otherwise its key. For
+  // a missing record, its key.
   std::string word(std::int64_t key) const;
-  // What it is called, also where others are called the same; empty where it has no name.
+  // Returns the record's name, which may not be unique; empty if it has none.
   std::string name(std::int64_t key) const;
-  // Digits are a key. Refused (422): a word that no record has, or that several have. `field` names
-  // the cell.
+  // Digits are a key. Refuses (422) a word of no record or of several. `field` names the cell.
   Result<std::int64_t> key_of(const std::string& word, const std::string& field) const;
 
  private:
@@ -37,11 +35,11 @@ class RecordWords {
 
   std::string table_;
   std::map<std::int64_t, std::string> names_, codes_;
-  std::map<std::string, std::optional<std::int64_t>> keys_;  // by word; nothing: several have it
+  std::map<std::string, std::optional<std::int64_t>> keys_;  // by word; nothing: ambiguous
 };
 
-// The words of all tables that the columns of kind `term` name, by table; one table may be named by
-// several.
+// The words of all tables that the columns of kind `term` refer to, by table; several columns may
+// refer to one table.
 using WordsOfTables = std::map<TableId, RecordWords>;
 Result<WordsOfTables> words_of(store::Store& store, const std::vector<Column>& columns,
                                Role seen_by, const std::string& language);

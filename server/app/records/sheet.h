@@ -10,28 +10,28 @@
 #include "core/error.h"
 #include "core/temporary_file.h"
 
-// Tables that people take into a spreadsheet.
+// Tables for spreadsheets.
 namespace strata::app {
 
 using SheetCell = std::variant<std::monostate, double, std::string>;
 
 struct Sheet {
-  std::string name;  // of the file, without its ending
+  std::string name;  // of the file, without the extension
   std::vector<std::string> heads;
-  std::vector<std::vector<SheetCell>> rows;  // of as many cells
-  // of XLSX, by column; may be shorter, or empty where spreadsheets choose
+  std::vector<std::vector<SheetCell>> rows;  // all rows have the same number of cells
+  // for XLSX, by column; may be shorter or empty: the spreadsheet chooses
   std::vector<std::string> number_formats{};
 };
 
-// Columns whose heads end with `area_m2` stay as scripts know them; behind all others they come
-// again in the unit that suits the largest value of each.
+// Keeps the columns whose heads end with `area_m2`, for scripts, and appends each of them again in
+// the unit that suits its largest value.
 void add_readable_areas(Sheet& sheet);
 
-// With a byte order mark, as spreadsheets want it; a text that one would run as a formula is
-// guarded.
+// Writes CSV with a byte order mark, which spreadsheets need; escapes a text that one would run as
+// a formula.
 std::string csv_text(const Sheet& sheet, char separator);
-// XLSX in a file in `folder`. The filters of its head leave the last row out, which is one of
-// totals. Refused (storage_full): the disk had no room.
+// Writes XLSX to a file in `folder`. The filters of its head exclude the last row, which has
+// totals. Refused (storage_full): the disk is full.
 Result<std::shared_ptr<const TemporaryFile>> write_workbook(const Sheet& sheet,
                                                             const std::filesystem::path& folder);
 

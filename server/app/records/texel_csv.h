@@ -10,9 +10,9 @@
 
 namespace strata::app {
 
-// Texels as lines of CSV: `x,y,z,area_m2,value` and columns of the record behind the key. Places
-// are rounded to a tenth of a micrometre; areas and values read back as the single-precision
-// numbers that they are, of cells as double ones.
+// Texels as lines of CSV: `x,y,z,area_m2,value` and columns of the key's record. Coordinates are
+// rounded to a tenth of a micrometer; areas and values keep single precision, numbers in cells
+// double precision.
 class TexelCsv {
  public:
   TexelCsv(Unit unit, char separator)
@@ -21,7 +21,7 @@ class TexelCsv {
                                      : 4),
         separator_(separator) {}
 
-  // Keys that are not among the records have empty cells.
+  // Keys without a record have empty cells.
   void add_records(const std::vector<Record>& records, const std::vector<Column>& columns);
   std::string head() const;
   void append(std::string& text, const query::TexelSample& sample, bool is_cell) const;
@@ -33,8 +33,8 @@ class TexelCsv {
   int decimals_;
   char separator_;
   std::vector<std::string> columns_;
-  std::string no_record_;                                     // what a line ends with
-  std::unordered_map<std::uint32_t, std::string> of_record_;  // the same, by key
+  std::string no_record_;                                     // end of a line without a record
+  std::unordered_map<std::uint32_t, std::string> of_record_;  // end of a line, by key
 };
 
 }  // namespace strata::app

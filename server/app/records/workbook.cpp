@@ -19,22 +19,22 @@ namespace {
 constexpr std::size_t kMaxCellLength = 32'767;  // UTF-16 units
 constexpr std::size_t kMaxSheetNameLength = 31;
 
-// Length in bytes of the UTF-8 character at the beginning of a text that is UTF-8.
+// Returns the length in bytes of the first UTF-8 character of a valid text.
 std::size_t character_bytes(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
   return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
 }
 
-// Whether the first character of a text stands in the file as an escape: those that XML cannot
-// hold, and CR.
+// Whether the file holds the first character of a text as an escape: characters that XML does not
+// allow, and CR.
 bool is_escaped(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
   return (first < 0x20 && first != '\t' && first != '\n') || text.starts_with("\ufffe") ||
          text.starts_with("\uffff");
 }
 
-// Whether the text begins with what Excel takes for an escape, `_x` with four hexadecimal digits
-// and `_`, in the file.
+// Whether the text begins with an escape of Excel in the file: `_x`, four hexadecimal digits and
+// `_`.
 bool begins_escape(std::string_view text) {
   return text.size() >= 7 && text.starts_with("_x") &&
          (text[6] == '_' || is_escaped(text.substr(6))) &&
@@ -42,8 +42,8 @@ bool begins_escape(std::string_view text) {
                              [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
-// The first character of a text as a cell holds it (ECMA-376 Part 1, 22.9.2.19, ST_Xstring). The
-// library itself escapes control characters.
+// Returns the first character of a text as a cell holds it (ECMA-376 Part 1, 22.9.2.19,
+// ST_Xstring). The library escapes control characters itself.
 std::string escaped(std::string_view text, std::string_view character) {
   if (begins_escape(text)) return "_x005F_";
   if (character == "\ufffe") return "_xFFFE_";
@@ -51,7 +51,7 @@ std::string escaped(std::string_view text, std::string_view character) {
   return std::string(character);
 }
 
-// The library counts escapes as what they are written with, Excel as one character: both hold.
+// The library counts the characters of an escape, Excel counts one: both limits apply.
 std::string cell_text(std::string_view text) {
   std::string out;
   std::size_t units = 0, written = 0, before_last = 0;
@@ -105,10 +105,10 @@ BookCell book_cell(const Record& record, const Column& column) {
 
 struct Workbook::Impl {
   std::shared_ptr<TemporaryFile> file;
-  lxw_workbook* book = nullptr;  // ended by workbook_close alone
+  lxw_workbook* book = nullptr;  // freed only by workbook_close
   lxw_worksheet* sheet = nullptr;
   lxw_format *bold = nullptr, *date = nullptr, *time = nullptr;
-  std::vector<lxw_format*> numbers;  // by column; null: as Excel shows them
+  std::vector<lxw_format*> numbers;  // by column; null: Excel's default
   lxw_row_t rows = 1;
   bool is_filtered = false;
   lxw_error error = LXW_NO_ERROR;
@@ -179,7 +179,7 @@ void Workbook::add_row(const std::vector<BookCell>& cells) {
   ++book.rows;
 }
 
-// At once: the library takes no row before the one that is being written.
+// Writes the filter at once: the library accepts no row before the current one.
 void Workbook::end_filter() {
   Impl& book = *impl_;
   if (book.is_filtered || !book.sheet || book.numbers.empty()) return;
@@ -195,10 +195,10 @@ Result<std::shared_ptr<const TemporaryFile>> Workbook::finish(const std::string&
   book.book = nullptr;
   if (book.error != LXW_NO_ERROR) {
     log::error(std::string("a workbook could not be written: ") + lxw_strerror(book.error));
-    return fail(
-        ErrorCode::storage_full, "Workbook not written",
-        "The server could not write the file, as when its disk is full. Ask for CSV, which needs none.",
-        "f");
+    return fail(ErrorCode::storage_full, "Workbook not written",
+                "The server could not write a temporary file; its disk may be full. Request "
+                "CSV instead, which needs no temporary file.",
+                "f");
   }
   std::error_code ignored;
   book.file->bytes = fs::file_size(book.file->path, ignored);

@@ -11,7 +11,7 @@
 
 namespace strata::app {
 
-// A tool of the site, ready to paint with.
+// A tool of the site with its mask, ready for painting.
 struct FoundTool {
   ToolId id = 0;
   std::shared_ptr<const ShapeTexture> shape;
@@ -19,8 +19,7 @@ struct FoundTool {
 // by id or slug; may block
 using FindTool = std::function<Result<FoundTool>(const std::string& ref)>;
 
-// The tools of the site as strokes ask for them. Their shapes are kept ready once they were asked
-// for: they never change. Blocks, thread-safe.
+// Loads the tools of the site and keeps their shapes, which never change. Blocks, thread-safe.
 class BrushShapeCache {
  public:
   explicit BrushShapeCache(store::Store& store) : store_(store) {}

@@ -16,7 +16,8 @@ Result<void> RecordEditLocks::begin(ProjectId project_id, const Record& record,
       held_, [&](const auto& entry) { return entry.second.editor.session == editor.session; });
   if (static_cast<std::size_t>(own) >= kMaxOfSession)
     return fail(ErrorCode::invalid, "Too many records",
-                "A connection edits at most " + std::to_string(kMaxOfSession) + " records at once.",
+                "A connection can edit at most " + std::to_string(kMaxOfSession) +
+                    " records at the same time. Finish editing another record first.",
                 "key");
   held_[record] = {project_id, editor};
   tell(project_id, {{record, editor}});

@@ -15,9 +15,8 @@
 
 namespace strata::app {
 
-// Who is writing into which record just now. Advice for people, one editor a record, kept while the
-// connection is there and never stored: what keeps them from overwriting each other is the record's
-// version. Thread-safe; does not block.
+// The people who are editing records. One editor per record; advisory, bound to the connection and
+// never stored: the record's version prevents lost updates. Thread-safe; does not block.
 class RecordEditLocks {
  public:
   static constexpr std::size_t kMaxOfSession = 100;  // records
@@ -33,20 +32,20 @@ class RecordEditLocks {
   };
   struct Entry {
     Record record;
-    std::optional<Editor> editor;  // nothing: nobody any more
+    std::optional<Editor> editor;  // nothing: no longer edited
   };
-  // Hears what changed, or what there is, of a project. Called with the book locked, so that all
-  // hear it in one order: it must return at once and not call the book.
+  // Receives the changed entries, or all entries, of a project. Called with the mutex locked, so
+  // that all receive them in one order: it must return at once and not call this object.
   using Tell = std::function<void(ProjectId project_id, const std::vector<Entry>& entries)>;
 
-  // The editor has the record now, unless somebody else has it and is not to be relieved: then
-  // nothing changes. Refused (422, `key`): more than `kMaxOfSession`.
+  // Makes the editor the one of the record. If another one has it and `take_over` is false, changes
+  // nothing. Refuses (422, `key`) more than `kMaxOfSession`.
   Result<void> begin(ProjectId project_id, const Record& record, const Editor& editor,
                      bool take_over, const Tell& tell);
-  // where it is this session's
+  // does nothing if another session has it
   void end(const Record& record, const Uuid& session, const Tell& tell);
-  void leave(const Uuid& session, const Tell& tell);  // the connection is gone
-  // not called where there is none
+  void leave(const Uuid& session, const Tell& tell);  // the connection is closed
+  // makes no call if there are no entries
   void list(ProjectId project_id, const Tell& tell) const;
 
  private:

@@ -35,10 +35,10 @@ Result<void> StrokeTracker::begin(const Owner& owner, const Uuid& stroke, Stroke
   forget_old(now);
   if (Stroke* known = find(owner, stroke)) {
     if (!(known->tool == tool))
-      return fail(
-          ErrorCode::conflict, "Stroke known",
-          "A stroke with this id was begun with another layer, value, camera or brush; take a new id.",
-          "stroke");
+      return fail(ErrorCode::conflict, "Stroke id already used",
+                  "This connection began a stroke with this id, but with another layer, value, "
+                  "camera or brush. Use a new id.",
+                  "stroke");
     known->ended = false;
     known->touched = now;
     return {};
@@ -76,36 +76,38 @@ Result<StrokeTracker::Batch> StrokeTracker::extend(const Owner& owner, const Uui
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known)
-    return fail(ErrorCode::not_found, "Unknown stroke", "Send stroke.begin for this stroke first.",
-                "stroke");
-  // The first batch after a restart may have any number: what came before it is in the journal.
+    return fail(ErrorCode::not_found, "Unknown stroke",
+                "The server does not know this stroke. Send stroke.begin first.", "stroke");
+  // The first batch after a restart may have any number: the earlier ones are in the journal.
   if (known->batches.empty() && !known->last) known->first_n = n;
   const int next = known->first_n + static_cast<int>(known->batches.size());
   if (n > next)
     return fail(ErrorCode::conflict, "Batch out of order",
-                "The next batch of this stroke is number " + std::to_string(next) + ".", "n");
+                "The next batch of this stroke must have the number " + std::to_string(next) + ".",
+                "n");
   if (n < known->first_n)
     return fail(ErrorCode::conflict, "Batch too old",
                 "Batches before number " + std::to_string(known->first_n) +
-                    " of this stroke can no longer be repeated.",
+                    " of this stroke cannot be repeated any more.",
                 "n");
   const bool is_new = n == next;
   if (is_new && known->ended)
-    return fail(ErrorCode::conflict, "Stroke ended", "This stroke was ended; begin a new one.",
+    return fail(ErrorCode::conflict, "Stroke ended", "This stroke has ended. Begin a new one.",
                 "stroke");
   if (!is_new && known->batches[static_cast<std::size_t>(n - known->first_n)].id != id)
-    return fail(ErrorCode::conflict, "Batch number taken",
-                "This number of the stroke was sent with another id.", "n");
+    return fail(ErrorCode::conflict, "Batch number already used",
+                "Another batch of this stroke has this number. Use the next number.", "n");
 
   const std::optional<End> start =
       is_new ? known->last : known->batches[static_cast<std::size_t>(n - known->first_n)].start;
   if (path.empty() || path.size() + (start ? 1 : 0) > kMaxPath)
     return fail(ErrorCode::invalid, "Path too long",
-                "A batch has 1 to " + std::to_string(kMaxPath - 1) + " points; send more batches.",
+                "A batch has 1 to " + std::to_string(kMaxPath - 1) +
+                    " points. Send a longer path in several batches.",
                 "path");
   if (!widths.empty() && widths.size() != path.size())
-    return fail(ErrorCode::invalid, "Widths do not fit",
-                "Give one width for each point of the path, or none.", "widths");
+    return fail(ErrorCode::invalid, "Wrong number of widths",
+                "Send one width for each point of the path, or no widths.", "widths");
   known->touched = now;
   if (is_new) {
     known->batches.push_back({id, start});
@@ -138,8 +140,8 @@ Result<void> StrokeTracker::end(const Owner& owner, const Uuid& stroke) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known)
-    return fail(ErrorCode::not_found, "Unknown stroke", "There is no stroke with this id to end.",
-                "stroke");
+    return fail(ErrorCode::not_found, "Unknown stroke",
+                "The server does not know a stroke with this id, so it cannot end it.", "stroke");
   known->ended = true;
   return {};
 }

@@ -10,11 +10,11 @@ namespace {
 std::string encoded(std::span<const std::uint8_t> bytes, int variant) {
   std::string text(sodium_base64_encoded_len(bytes.size(), variant), '\0');
   sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), variant);
-  text.pop_back();  // the NUL that ends it
+  text.pop_back();  // the terminating NUL
   return text;
 }
 
-// Sodium demands that the bits after the last whole byte are zero.
+// Sodium requires that the bits after the last whole byte are zero.
 void clear_bits_left_over(std::string& text) {
   static constexpr std::string_view kAlphabet =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";

@@ -32,8 +32,8 @@ class Reader {
 
   Result<CsvText> read() {
     if (rest_.starts_with("\xff\xfe") || rest_.starts_with("\xfe\xff"))
-      return fail(ErrorCode::invalid, "Not UTF-8", "The text is UTF-16. Save it as \"CSV UTF-8\".",
-                  "body");
+      return fail(ErrorCode::invalid, "Not UTF-8",
+                  "The text is encoded as UTF-16. Save it as \"CSV UTF-8\".", "body");
     if (rest_.starts_with(kUtf8Mark)) rest_.remove_prefix(kUtf8Mark.size());
     if (rest_.size() >= 5 && rest_.starts_with("sep=") &&
         (rest_.size() == 5 || ends_row(rest_[5]))) {
@@ -44,7 +44,7 @@ class Reader {
       out_.separator = guess_separator(rest_);
     }
     if (std::find(kSeparators.begin(), kSeparators.end(), out_.separator) == kSeparators.end())
-      return refuse("Cells are separated by comma, semicolon or tab");
+      return refuse("The separator must be a comma, a semicolon or a tab");
     while (!rest_.empty()) STRATA_TRY(read_row());
     return std::move(out_);
   }
@@ -68,8 +68,9 @@ class Reader {
       if (row.cells.size() == limits_.columns)
         return refuse("A row has at most " + std::to_string(limits_.columns) + " cells");
       auto cell = STRATA_TRY(rest_.starts_with('"') ? quoted_cell() : bare_cell());
-      if (!is_utf8(cell)) return refuse("A cell is not UTF-8; save the text as \"CSV UTF-8\"");
-      if (cell.find('\0') != std::string::npos) return refuse("A cell holds U+0000");
+      if (!is_utf8(cell))
+        return refuse("A cell is not encoded as UTF-8; save the text as \"CSV UTF-8\"");
+      if (cell.find('\0') != std::string::npos) return refuse("A cell contains U+0000");
       row.cells.push_back(std::move(cell));
       more = rest_.starts_with(out_.separator);
       if (more) rest_.remove_prefix(1);
@@ -97,7 +98,7 @@ class Reader {
     rest_.remove_prefix(1);
     for (;;) {
       const std::size_t quote = rest_.find('"');
-      if (quote == std::string_view::npos) return refuse("A quoted cell does not end");
+      if (quote == std::string_view::npos) return refuse("A quoted cell has no closing quote");
       const std::string_view part = rest_.substr(0, quote);
       for (std::size_t i = 0; i < part.size(); ++i)
         line_ +=
@@ -109,7 +110,7 @@ class Reader {
       rest_.remove_prefix(1);
     }
     if (!rest_.empty() && rest_[0] != out_.separator && !ends_row(rest_[0]))
-      return refuse("Text follows the end of a quoted cell; a quote within one is written twice");
+      return refuse("Text follows the closing quote of a cell; write a quote inside a cell twice");
     return cell;
   }
 
@@ -119,26 +120,26 @@ class Reader {
   CsvText out_;
 };
 
-// A reader that takes another separator, or none of the quotes, begins a cell behind any of these.
+// A reader with another separator, or without quoting, begins a cell after any of these.
 constexpr std::string_view kCellEnds = ",;\t\r\n";
 constexpr std::array<std::string_view, 8> kFormulaBegins = {"=",      "+",      "-",      "@",
                                                             "\uff1d", "\uff0b", "\uff0d", "\uff20"};
 
-// Apostrophes and quotes may stand before it: a reader takes the quotes away.
+// Ignores leading apostrophes and quotes: a reader removes the quotes.
 bool begins_formula(std::string_view cell) {
   cell.remove_prefix(std::min(cell.find_first_not_of("'\""), cell.size()));
   return std::ranges::any_of(kFormulaBegins,
                              [&](std::string_view begin) { return cell.starts_with(begin); });
 }
 
-// A tab or CR that leads the whole text is taken away by some readers, and what follows is run.
+// Some readers remove a tab or CR at the begin of the text and run the rest.
 bool begins_formula(std::string_view text, std::size_t at) {
   if (begins_formula(text.substr(at))) return true;
   const std::size_t first = at == 0 ? text.find_first_not_of("'\"") : std::string_view::npos;
   return first != std::string_view::npos && (text[first] == '\t' || text[first] == '\r');
 }
 
-// Calls `visit` for the begin of the text and of each part that another reader may take for a cell.
+// Calls `visit` at the begin of the text and of each part that another reader may read as a cell.
 template <class Visit>
 void for_each_cell_begin(std::string_view text, Visit visit) {
   for (std::size_t at = 0;; ++at) {
@@ -148,8 +149,8 @@ void for_each_cell_begin(std::string_view text, Visit visit) {
   }
 }
 
-// Any separator counts, not the row's own one alone: some readers take several. A number with a
-// decimal comma stays bare, as some readers take what is quoted for text.
+// Quotes for any separator, since some readers accept several. A number with a decimal comma stays
+// unquoted, since some readers treat quoted numbers as text.
 bool needs_quotes(std::string_view cell, char separator) {
   if (cell.find_first_of("\"\r\n") != std::string_view::npos ||
       cell.find(separator) != std::string_view::npos)
@@ -179,7 +180,7 @@ void append_csv_cell(std::string& line, std::string_view cell, char separator) {
 }
 
 std::string csv_line(const std::vector<std::string>& cells, char separator) {
-  // readers leave out what would be an empty row
+  // readers ignore a row that looks empty
   if (cells.size() == 1 && cells.front().empty()) return "\"\"\r\n";
   std::string line;
   for (const std::string& cell : cells) {

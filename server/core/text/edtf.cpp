@@ -23,10 +23,10 @@ std::optional<std::int64_t> number_of(std::string_view digits) {
 }
 
 struct Span {
-  std::int64_t first = 0, last = 0;  // both within
+  std::int64_t first = 0, last = 0;  // both inclusive
 };
 
-// Years of `156X`: as many digits as are there, unknown ones from the right. At least one is known.
+// Returns the years of `156X`: the missing digits at the right are unknown; at least one is known.
 std::optional<Span> years_of(std::string_view digits, bool negative) {
   std::size_t known = digits.find('X');
   if (known == std::string_view::npos) known = digits.size();
@@ -46,14 +46,14 @@ Span days_of_month(std::int64_t year, int month) {
   return {day_number(year, month, 1), day_number(year, month, days_in_month(year, month))};
 }
 
-// Three months from `month` on; those of winter end in the next year.
+// Returns three months from `month`; winter ends in the next year.
 Span days_of_season(std::int64_t year, int month) {
   const bool turns = month > 10;
   return {day_number(year, month, 1),
           days_of_month(year + (turns ? 1 : 0), turns ? month - 10 : month + 2).last};
 }
 
-// The days of a date without its qualifier.
+// Returns the days of a date without its qualifier.
 std::optional<Span> days_of_date(std::string_view text) {
   const bool many_digits = text.starts_with('Y');
   if (many_digits) text.remove_prefix(1);
@@ -123,11 +123,11 @@ int days_in_month(std::int64_t year, int month) {
 
 Result<Period> parse_edtf(std::string_view text) {
   const auto refuse = [&] {
-    return fail(
-        ErrorCode::invalid, "Not a period",
-        "\"" + mended_utf8(text.substr(0, kMaxPeriod)) +
-            "\" is no date of EDTF such as 1560, 1560~, 156X, 1560-04-12, -0043, 1560/1580 or 1560/..",
-        {});
+    return fail(ErrorCode::invalid, "Invalid date",
+                "\"" + mended_utf8(text.substr(0, kMaxPeriod)) +
+                    "\" is not a date in EDTF. Write for example 1560, 1560~, 156X, 1560-04-12, "
+                    "-0043, 1560/1580 or 1560/..",
+                {});
   };
   if (text.empty() || text.size() > kMaxPeriod) return refuse();
   Period period;

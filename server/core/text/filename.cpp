@@ -5,8 +5,8 @@
 namespace strata {
 namespace {
 
-// C1 controls; spaces of no width and marks of direction; line and paragraph separators, embeddings
-// and overrides; isolates; the mark of byte order. `text` is UTF-8.
+// Removes C1 controls, zero-width spaces and direction marks, line and paragraph separators,
+// embeddings and overrides, isolates, and the byte order mark. `text` is UTF-8.
 std::string without_unseen(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
@@ -36,7 +36,7 @@ std::string base_filename(std::string_view path) {
   out = without_unseen(mended_utf8(out));
   if (out == "." || out == "..") out.clear();
   if (out.size() <= kMaxFilenameLength) return out;
-  std::size_t cut = out.size() - kMaxFilenameLength;  // the end holds the extension
+  std::size_t cut = out.size() - kMaxFilenameLength;  // the end has the extension
   while (!is_utf8(std::string_view(out).substr(cut))) ++cut;
   return out.substr(cut);
 }

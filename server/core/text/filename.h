@@ -7,10 +7,10 @@ namespace strata {
 
 constexpr std::size_t kMaxFilenameLength = 255;  // bytes
 
-// The last part of a user's path, which may come from any system, as UTF-8 and without what is not
-// to be seen: control characters, characters of no width, and those that turn the direction of what
-// follows (`exe.gpj` that reads `jpg.exe`). Its end where it is longer than kMaxFilenameLength.
-// Empty where nothing is left.
+// Returns the last part of a user's path, which may come from any system, as UTF-8 without
+// invisible characters: control characters, zero-width characters, and those that reverse the
+// following text (`exe.gpj` that reads `jpg.exe`). Only its end if it is longer than
+// kMaxFilenameLength. Empty if nothing remains.
 std::string base_filename(std::string_view path);
 
 }  // namespace strata

@@ -6,10 +6,10 @@
 
 namespace strata {
 
-// Two lower-case digits for each byte.
+// Writes two lower-case digits per byte.
 std::string to_hex(std::span<const std::uint8_t> bytes);
 
-// The value of a digit of either case; -1 for what is not one.
+// Returns the value of a digit of either case; -1 for other characters.
 int hex_digit_value(char c);
 
 }  // namespace strata

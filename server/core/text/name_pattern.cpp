@@ -17,8 +17,8 @@ bool stands_at(std::string_view name, std::size_t at, std::string_view text) {
 
 Result<NamePattern> NamePattern::parse(std::string_view text, const std::string& field) {
   const auto wrong = [&](const std::string& what) {
-    return fail(ErrorCode::invalid, "Bad pattern",
-                what + " A pattern is like {code}_{view}_{n}.jpg.", field);
+    return fail(ErrorCode::invalid, "Invalid pattern",
+                what + " Write a pattern such as {code}_{view}_{n}.jpg.", field);
   };
   NamePattern pattern;
   std::size_t words = 0;
@@ -27,22 +27,23 @@ Result<NamePattern> NamePattern::parse(std::string_view text, const std::string&
     const std::size_t end =
         is_word ? text.find('}') : std::min(text.find_first_of("{}"), text.size());
     if (end == std::string_view::npos || (!is_word && end == 0))
-      return wrong("The braces do not fit.");
+      return wrong("The braces do not match.");
     const std::string part(text.substr(is_word ? 1 : 0, is_word ? end - 1 : end));
     text.remove_prefix(end + (is_word ? 1 : 0));
     if (is_word) {
       if (part.empty() || part.find('{') != std::string::npos)
-        return wrong("Between braces stands a word.");
-      if (pattern.has(part)) return wrong("`{" + part + "}` stands in it twice.");
+        return wrong("The pattern needs a word between braces.");
+      if (pattern.has(part)) return wrong("`{" + part + "}` appears in the pattern twice.");
       if (!pattern.parts_.empty() && pattern.parts_.back().is_word)
-        return wrong("Something must stand between `{" + pattern.parts_.back().text + "}` and `{" +
-                     part + "}`.");
+        return wrong("The pattern needs text between `{" + pattern.parts_.back().text +
+                     "}` and `{" + part + "}`.");
       ++words;
     }
     pattern.parts_.push_back({is_word, part});
   }
-  if (words == 0) return wrong("It has no word.");
-  if (words > kMaxWords) return wrong("It has more than " + std::to_string(kMaxWords) + " words.");
+  if (words == 0) return wrong("The pattern contains no word in braces.");
+  if (words > kMaxWords)
+    return wrong("The pattern has more than " + std::to_string(kMaxWords) + " words.");
   return pattern;
 }
 
@@ -56,7 +57,7 @@ std::vector<std::vector<bool>> NamePattern::fits(std::string_view name, std::siz
   std::vector<std::vector<bool>> can(parts_.size() + 1, std::vector<bool>(name.size() + 1, false));
   can[last][name.size()] = true;
   for (std::size_t p = last; p-- > first;) {
-    bool later = false;  // the rest fits behind here
+    bool later = false;  // the remaining parts fit at a later place
     for (std::size_t at = name.size() + 1; at-- > 0;) {
       can[p][at] = parts_[p].is_word ? later
                                      : stands_at(name, at, parts_[p].text) &&
@@ -72,7 +73,7 @@ std::vector<bool> NamePattern::reached(std::string_view name, std::size_t last) 
   ends[0] = true;
   for (std::size_t p = 0; p < last; ++p) {
     std::vector<bool> next(name.size() + 1, false);
-    bool earlier = false;  // what is before fits before here
+    bool earlier = false;  // the earlier parts fit at an earlier place
     for (std::size_t at = 0; at <= name.size(); ++at) {
       if (parts_[p].is_word)
         next[at] = earlier;

@@ -17,7 +17,7 @@ Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std:
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
     return fail(ErrorCode::invalid, "Number out of range",
-                "'" + field + "' is a whole number from " + std::to_string(low) + " to " +
+                "'" + field + "' must be a whole number from " + std::to_string(low) + " to " +
                     std::to_string(high) + ".",
                 field);
   return value;

@@ -5,14 +5,14 @@
 namespace strata {
 namespace {
 
-// The byte that the escape at the beginning of `text` stands for; -1 when there is none.
+// Returns the byte of the escape at the beginning of `text`; -1 if no escape is there.
 int escaped_byte(std::string_view text) {
   if (text.size() < 3 || text[0] != '%') return -1;
   const int high = hex_digit_value(text[1]), low = hex_digit_value(text[2]);
   return high < 0 || low < 0 ? -1 : high * 16 + low;
 }
 
-// `wrong` is set where a percent sign begins no escape; it is kept.
+// Sets `wrong` if a percent sign begins no escape, and keeps the percent sign.
 std::string decoded(std::string_view text, bool& wrong) {
   std::string out;
   out.reserve(text.size());

@@ -6,13 +6,13 @@
 
 namespace strata {
 
-// RFC 3986: all but letters, digits and -._~ becomes %XX.
+// RFC 3986: encodes all characters except letters, digits and -._~ as %XX.
 std::string percent_encode(std::string_view text);
 
-// Nothing for a text with an escape that is not one, or with a NUL.
+// Returns nothing for a text with an invalid escape or with a NUL.
 std::optional<std::string> percent_decode(std::string_view text);
 
-// Leaves as they are the escapes that are none: for names in files that others wrote.
+// Keeps invalid escapes: for names in files of other programs.
 std::string percent_decode_leniently(std::string_view text);
 
 }  // namespace strata

@@ -5,9 +5,9 @@
 
 namespace strata {
 
-// A text as people search for it: upper and lower case, accents and compatibility forms make no
-// difference ("Depósito" → "deposito"; Unicode case folding and compatibility decomposition, by
-// utf8proc). What is not UTF-8 stays as it is.
+// Normalizes a text for searches, without regard to case, accents and compatibility forms
+// ("Depósito" → "deposito"; Unicode case folding and compatibility decomposition, by utf8proc).
+// Invalid UTF-8 stays unchanged.
 std::string search_text(std::string_view text);
 
 }  // namespace strata

@@ -8,13 +8,13 @@
 
 namespace strata {
 
-// The number (edtf.h) of YYYY-MM-DD from year 1 on: what calendars of databases and spreadsheets
-// have in common. Earlier days are periods.
+// Returns the day number (edtf.h) of YYYY-MM-DD from year 1 on, the common range of databases and
+// spreadsheets. Earlier days are periods.
 std::optional<std::int64_t> day_of(std::string_view text);
 
-// RFC 3339 (also with a space for the T, without seconds, and a mere day, which is its midnight in
-// UTC) in UTC; milliseconds are kept. Without a zone it is UTC. Nothing where it leaves the years 1
-// to 9999.
+// Converts RFC 3339 to UTC with milliseconds. Accepts a space instead of the T, absent seconds, and
+// a day alone, which means its midnight in UTC. Without a zone the time is UTC. Returns nothing
+// outside the years 1 to 9999.
 std::optional<std::string> utc_timestamp(std::string_view text);
 
 // RFC 3339 in UTC, with milliseconds.

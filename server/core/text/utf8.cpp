@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";
 
-// Of the character that the text begins with; 0: it begins with none.
+// Returns the length of the text's first character; 0 if it is invalid.
 std::size_t character_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -17,7 +17,7 @@ std::size_t character_bytes(std::string_view text) {
                             : first >= 0xf0 && first <= 0xf4 ? 4
                                                              : 0;
   if (bytes == 0 || text.size() < bytes) return 0;
-  // Neither longer than need be, nor half of a surrogate pair, nor beyond U+10FFFF.
+  // Refuses overlong forms, surrogates and code points above U+10FFFF.
   const unsigned char low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
   const unsigned char high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
   if (byte(1) < low || byte(1) > high) return 0;

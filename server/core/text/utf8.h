@@ -6,15 +6,14 @@
 
 namespace strata {
 
-// Names come from files and systems of any encoding; what is stored, and what goes into JSON, is
-// UTF-8 (RFC 3629).
+// Names come from files and systems of any encoding; stored text and JSON are UTF-8 (RFC 3629).
 
 bool is_utf8(std::string_view text);
 
-// Each byte that belongs to no character becomes U+FFFD.
+// Replaces each byte that belongs to no character by U+FFFD.
 std::string mended_utf8(std::string_view text);
 
-// As many of its first bytes as are wanted, without a part of a character at their end.
+// Returns at most `most` first bytes, without a partial character at the end.
 std::string_view first_bytes(std::string_view text, std::size_t most);
 
 }  // namespace strata

@@ -13,12 +13,12 @@ std::vector<NumberClass> classify(std::span<const double> numbers, ClassMethod m
   const auto n = static_cast<std::size_t>(count);
   for (std::size_t i = 1; i < n; ++i) {
     const double share = static_cast<double>(i) / count;
-    // Of two far numbers the difference may not be a number.
+    // The difference of two distant numbers may overflow.
     const double limit = method == ClassMethod::equal
                              ? sorted.front() * (1 - share) + sorted.back() * share
                              : sorted[i * sorted.size() / n];
     if (limit > limits.back() && limit < sorted.back()) limits.push_back(limit);
-    // Where the largest number is frequent it makes the last class.
+    // If the largest number is frequent, it forms the last class.
     if (method == ClassMethod::quantile && limit == sorted.back() && limit > limits.back())
       limits.push_back(limit);
   }

@@ -55,7 +55,7 @@ Palette highlighted_colors(const Palette& by_key, std::span<const std::uint32_t>
   for (const std::uint32_t key : keys) {
     const Palette::Point* point = point_of(by_key, key);
     Rgba color = color_of(by_key, key);
-    color[3] = 255;  // what is looked for is not to be overlooked
+    color[3] = 255;  // a highlighted record must be visible
     made.points.push_back(drawn_as(point ? *point : Palette::Point{}, key, color));
   }
   return made;

@@ -10,19 +10,19 @@
 
 namespace strata {
 
-// What a column says of the record with a key, as text.
+// The text in a column of the record with a key.
 struct KeyText {
   std::uint32_t key = 0;
   std::string text;
 };
 
-// Palettes by key, made from palettes that colour by what records hold (Palette::column). Records
-// that have no value there are in none of the lists, and get the colour of the others.
+// Convert palettes that color by a column of the records (Palette::column) to palettes by key.
+// Records without a value in the column are in no list and get the color of the others.
 Palette colors_of_numbers(const Palette& palette, std::span<const KeyNumber> numbers);
 Palette colors_of_texts(const Palette& palette, std::span<const KeyText> texts);
 
-// A palette by key in which some keys (ascending) are to be seen before all others: they keep their
-// colours, the others turn grey, or with `isolate` are not drawn.
+// Returns a palette by key that highlights some keys (ascending): they keep their colors; the
+// others turn gray or, with `isolate`, are not drawn.
 Palette highlighted_colors(const Palette& by_key, std::span<const std::uint32_t> keys,
                            bool isolate);
 

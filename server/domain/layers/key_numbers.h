@@ -4,7 +4,7 @@
 
 namespace strata {
 
-// What an expression over the columns of records says of the record with a key; truths are 1 or 0.
+// The result of an expression over the columns of the record with a key; true is 1, false is 0.
 struct KeyNumber {
   std::uint32_t key = 0;
   double number = 0;

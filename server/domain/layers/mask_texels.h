@@ -6,7 +6,7 @@
 
 namespace strata {
 
-// Calls visit(texel) for each one set, in ascending order.
+// Calls visit(texel) for each texel of the mask, in ascending order.
 template <class Visit>
 void for_each_texel(const TileMask& mask, Visit&& visit) {
   for (int w = 0; w < kMaskWords; ++w)

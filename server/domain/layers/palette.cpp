@@ -18,34 +18,35 @@ constexpr const char* kPatterns[] = {"solid", "hatch", "dots", "outline"};
 Result<void> read_pattern(const nlohmann::json& item, PaletteMode mode, const std::string& field,
                           Palette::Point& point) {
   auto wrong = [&](const char* member, std::string detail) {
-    return fail(ErrorCode::invalid, "Palette not usable", std::move(detail), field + "." + member);
+    return fail(ErrorCode::invalid, "Invalid palette", std::move(detail), field + "." + member);
   };
-  if (const auto asked = item.find("pattern"); asked != item.end()) {
+  if (const auto pattern = item.find("pattern"); pattern != item.end()) {
     const auto known =
-        std::ranges::find_if(kPatterns, [&](const char* name) { return *asked == name; });
+        std::ranges::find_if(kPatterns, [&](const char* name) { return *pattern == name; });
     if (known == std::end(kPatterns))
-      return wrong("pattern", "A pattern is solid, hatch, dots or outline.");
+      return wrong("pattern", "The pattern must be solid, hatch, dots or outline.");
     point.pattern = static_cast<Pattern>(known - std::begin(kPatterns));
     if (mode == PaletteMode::linear && point.pattern != Pattern::solid)
-      return wrong(
-          "pattern",
-          "Colours that run into each other have no patterns: use a step or a categorical palette.");
+      return wrong("pattern",
+                   "A palette with continuous colors cannot have patterns. Use a step or a "
+                   "categorical palette.");
   }
-  if (const auto asked = item.find("angle"); asked != item.end()) {
-    if (!asked->is_number() || asked->get<double>() < 0 || asked->get<double>() > 180)
-      return wrong("angle", "The angle of lines is 0 to 180 degrees.");
-    point.angle = asked->get<double>();
+  if (const auto angle = item.find("angle"); angle != item.end()) {
+    if (!angle->is_number() || angle->get<double>() < 0 || angle->get<double>() > 180)
+      return wrong("angle", "The angle of lines must be from 0 to 180 degrees.");
+    point.angle = angle->get<double>();
   }
-  if (const auto asked = item.find("spacing_mm"); asked != item.end()) {
-    if (!asked->is_number() || asked->get<double>() < 0 || asked->get<double>() > kWidestSpacing_mm)
-      return wrong("spacing_mm", "Lines and dots are up to 60000 mm apart.");
-    point.spacing_mm = asked->get<double>();
+  if (const auto spacing = item.find("spacing_mm"); spacing != item.end()) {
+    if (!spacing->is_number() || spacing->get<double>() < 0 ||
+        spacing->get<double>() > kWidestSpacing_mm)
+      return wrong("spacing_mm", "The distance between lines or dots must be 60000 mm or less.");
+    point.spacing_mm = spacing->get<double>();
   }
   return {};
 }
 
 Palette linear_palette(double min, double max) {
-  // Viridis at nine stops: perceptually even, readable with every colour vision and in greyscale.
+  // Viridis at nine stops: perceptually uniform, readable with every color vision and in grayscale.
   static constexpr Rgba kStops[] = {{68, 1, 84, 255},    {71, 45, 123, 255},  {59, 82, 139, 255},
                                     {44, 114, 142, 255}, {33, 145, 140, 255}, {40, 174, 128, 255},
                                     {94, 201, 98, 255},  {173, 220, 48, 255}, {253, 231, 37, 255}};
@@ -69,8 +70,8 @@ std::string rgb_text(const Rgba& color) { return "#" + to_hex(std::span(color).f
 
 Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
   auto wrong = [&] {
-    return fail(ErrorCode::invalid, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".",
-                field);
+    return fail(ErrorCode::invalid, "Invalid color",
+                "Write a color as \"#rrggbb\" or \"#rrggbbaa\".", field);
   };
   if (!json.is_string()) return wrong();
   const auto& text = json.get_ref<const std::string&>();
@@ -86,10 +87,10 @@ Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
 
 Result<Palette> palette_from_json(const nlohmann::json& json, const std::string& field) {
   auto wrong = [&](const char* member, std::string detail) {
-    return fail(ErrorCode::invalid, "Palette not usable", std::move(detail), field + "." + member);
+    return fail(ErrorCode::invalid, "Invalid palette", std::move(detail), field + "." + member);
   };
   if (!json.is_object())
-    return fail(ErrorCode::invalid, "Palette not usable", "A palette is an object.", field);
+    return fail(ErrorCode::invalid, "Invalid palette", "A palette must be a JSON object.", field);
   Palette palette;
   const std::string mode = json.value("mode", std::string("linear"));
   if (mode == "linear")
@@ -99,23 +100,24 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
   else if (mode == "categorical")
     palette.mode = PaletteMode::categorical;
   else
-    return wrong("mode", "The mode is linear, step or categorical.");
+    return wrong("mode", "The mode must be linear, step or categorical.");
 
   const auto points = json.find("points");
   if (points != json.end()) {
     if (!points->is_array() || points->size() > kMaxPoints)
-      return wrong("points", "Points are a list of up to 4096.");
+      return wrong("points", "The points must be a list of at most 4096 elements.");
     for (std::size_t i = 0; i < points->size(); ++i) {
       const auto& item = (*points)[i];
       const std::string at_field = "points[" + std::to_string(i) + "]";
       if (!item.is_object() || !item.contains("at") || !item["at"].is_number() ||
           !item.contains("color"))
-        return wrong(at_field.c_str(), "A point has a number `at` and a `color`.");
+        return wrong(at_field.c_str(), "Each point needs a number `at` and a `color`.");
       auto color = STRATA_TRY(parse_color(item["color"], field + "." + at_field + ".color"));
       const double at = item["at"].get<double>();
       if (!palette.points.empty() && at <= palette.points.back().at)
         return wrong(at_field.c_str(),
-                     "Points go upward: each `at` is larger than the one before.");
+                     "The points must be in ascending order: each `at` must be larger than the one "
+                     "before it.");
       Palette::Point point{at, color, item.value("label", std::string()),
                            item.value("value", std::string())};
       STRATA_TRY(read_pattern(item, palette.mode, field + "." + at_field, point));
@@ -123,12 +125,13 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
     }
   }
   if (palette.points.empty() && palette.mode != PaletteMode::categorical)
-    return wrong("points", "A linear or step palette has at least one point.");
+    return wrong("points", "A linear or step palette needs at least one point.");
   const bool has_points = !palette.points.empty();
   palette.min = json.value("min", has_points ? palette.points.front().at : 0.0);
   palette.max = json.value("max", has_points ? palette.points.back().at : 1.0);
   if (!std::isfinite(palette.min) || !std::isfinite(palette.max) || palette.max < palette.min)
-    return wrong("max", "The upper limit is a number that is not below the lower limit.");
+    return wrong("max",
+                 "The upper limit must be a number that is not smaller than the lower limit.");
   palette.column = json.value("column", std::string());
   if (const auto others = json.find("others"); others != json.end()) {
     auto color = STRATA_TRY(parse_color(*others, field + ".others"));

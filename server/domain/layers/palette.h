@@ -15,15 +15,15 @@ using Rgba = std::array<std::uint8_t, 4>;
 
 enum class PaletteMode { linear, step, categorical };
 
-// How the colour is laid on, so that what lies below stays legible, also in greyscale. Lines and
-// dots stay where they are on the picture's plane; an outline has nothing inside.
+// How a color is drawn, so that the content below stays visible, also in grayscale. Lines and dots
+// have fixed positions in the picture; an outline is empty inside.
 enum class Pattern { solid, hatch, dots, outline };
 
-// Control points that turn values into colours. `linear` interpolates between points, `step` holds
-// the colour of the last point at or below the value, `categorical` gives listed values their
-// colour and others a generated one. Values outside [min,max] take the colour of the nearer end.
-// With a `column`, values are those of the record behind a key: numbers, or texts that points name
-// by `value` (categorical only; `at` then only orders them).
+// Control points that map values to colors. `linear` interpolates between points, `step` holds the
+// color of the last point at or below the value, `categorical` gives listed values their color and
+// others a generated one. Values outside [min,max] take the color of the nearer end. With a
+// `column`, values are those of the key's record: numbers, or texts that points name by `value`
+// (categorical only; `at` then only orders them).
 struct Palette {
   struct Point {
     double at = 0;
@@ -31,43 +31,43 @@ struct Palette {
     std::string label{};
     std::string value{};
     Pattern pattern = Pattern::solid;  // step and categorical
-    double angle = 45;                 // degrees, of lines: 0 runs to the right, 90 up
-    // of lines and dots, at the distance of the model's middle; 0: as a legend has them, in pixels
+    double angle = 45;                 // degrees, of lines: 0 is to the right, 90 up
+    // of lines and dots, at the distance of the model's center; 0: in pixels, as in a legend
     double spacing_mm = 0;
   };
   PaletteMode mode = PaletteMode::linear;
   double min = 0;
   double max = 1;
-  std::vector<Point> points;  // ascending `at`, 1…4096 of them (categorical: may be none)
-  std::string column;         // database layers: column of the table that colours (empty: the key)
-  // categorical: of what no point lists. With a column: of records that have no value there, too
+  std::vector<Point> points;  // ascending `at`, 1…4096 points (categorical: may be empty)
+  std::string column;         // database layers: the coloring column (empty: the key)
+  // categorical: color of unlisted values and, with a column, of records without a value
   std::optional<Rgba> others{};
 };
 
-// Whether its points are a legend of the values themselves, and not of what records hold.
+// Whether its points list the layer's own values instead of those of records.
 inline bool lists_values(const Palette& palette) {
   return palette.mode == PaletteMode::categorical && palette.column.empty();
 }
 
 constexpr double kWidestSpacing_mm = 60'000;  // of a pattern
-// Of records that have no value in the column that colours, where the palette says nothing.
+// Default for records without a value in the coloring column.
 constexpr Rgba kNoValueColor{154, 154, 154, 128};
 
-// `#rrggbb`, without the opacity.
+// Returns `#rrggbb`, without the opacity.
 std::string rgb_text(const Rgba& color);
-// Either `#rrggbb` or `#rrggbbaa`.
+// Accepts `#rrggbb` and `#rrggbbaa`.
 Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field);
 Result<Palette> palette_from_json(const nlohmann::json& json, const std::string& field = "palette");
 nlohmann::json to_json(const Palette& palette);
 
-// Colour-blind-safe: viridis for measurements, Okabe-Ito colours for classes and keys.
+// Safe for color-blind people: viridis for measurements, Okabe-Ito colors for classes and keys.
 Palette default_palette(ValueType type, bool categorical);
 
-// The colour of a value that a categorical palette does not list; the shader computes the same.
+// Returns the color of a value that a categorical palette does not list, as the shader does.
 Rgba generated_color(std::uint32_t key);
 Rgba color_of(const Palette& palette, double value);
-// The point whose colour a value has in a step or categorical palette; null: none, and in a linear
-// palette.
+// Returns the point with a value's color in a step or categorical palette; null if no point has it,
+// and for a linear palette.
 const Palette::Point* point_of(const Palette& palette, double value);
 
 }  // namespace strata

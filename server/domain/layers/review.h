@@ -5,22 +5,22 @@
 
 namespace strata {
 
-// Where an edit stands on a layer whose edits wait for review.
+// The review state of an edit on a layer with review.
 enum class Review {
-  none,      // it never waited for anybody
+  none,      // never needed a review
   pending,   // provisional: in force and marked, until a curator decides
-  accepted,  // as if it had never waited
+  accepted,  // in force, as without review
   rejected,  // not in force
 };
-// Nothing for a name of none of them.
+// Returns nothing for another name.
 std::optional<Review> parse_review(std::string_view name);
 std::string_view name(Review review);
 
-// What a curator makes of edits.
+// A curator's decision on edits.
 enum class Decision {
   accept,
   reject,
-  reopen,  // what was accepted or rejected waits again
+  reopen,  // accepted or rejected edits wait again
 };
 std::optional<Decision> parse_decision(std::string_view name);
 std::string_view name(Decision decision);

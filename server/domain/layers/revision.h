@@ -8,9 +8,9 @@
 
 namespace strata {
 
-// What one edit did to one tile: the texels it wrote (also where the value did not change) and the
-// bitwise difference of the content before and after. XOR makes it its own inverse: `apply` goes
-// forward and backward in history.
+// The effect of one edit on one tile: the texels it wrote (also those with an unchanged value) and
+// the bitwise difference of the content before and after. XOR makes it its own inverse: `apply`
+// works forward and backward in history.
 struct TileRevision {
   TileAddress address;
   TileMask written;

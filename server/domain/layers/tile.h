@@ -52,10 +52,10 @@ struct TileData {
   int texel_bytes() const { return static_cast<int>(values.size() / kTexelsPerTile); }
 };
 
-// The same bits in texels of another type, that has room for them (widens_to).
+// Returns the same bits in texels of another type that is wide enough (widens_to).
 TileData widened(const TileData& tile, ValueType type);
 
-// Copies the texels of `mask`, of tiles of one type.
+// Copies the texels of `mask` between tiles of one type.
 void copy_texels(const TileData& from, const TileMask& mask, TileData& to);
 
 }  // namespace strata

@@ -12,9 +12,9 @@ namespace strata {
 
 using TileMap = std::unordered_map<TileAddress, std::shared_ptr<const TileData>>;
 
-// What one layer holds, on the CPU: the tiles that have a valid texel, and the sequence of the last
-// edit in them. Tiles are immutable once put in, so a snapshot is a consistent state that costs no
-// texel copy. Thread-safe.
+// The content of one layer in main memory: the tiles with a valid texel, and the sequence of the
+// last edit in them. Stored tiles are immutable, so a snapshot is a consistent state without a copy
+// of texels. Thread-safe.
 class TileMirror {
  public:
   TileMirror(ValueType type, int resolution) : type_(type), resolution_(resolution) {}
@@ -27,20 +27,19 @@ class TileMirror {
     std::int64_t sequence = 0;
   };
   Snapshot snapshot() const;
-  // null when nothing in it is valid
+  // null if none of its texels is valid
   std::shared_ptr<const TileData> tile(TileAddress address) const;
   std::int64_t sequence() const;
   std::size_t bytes() const;
-  bool empty() const;  // nothing is valid
+  bool empty() const;  // no texel is valid
 
-  // Replaces tiles in one step; a null or empty tile is dropped. Called in sequence order.
+  // Replaces tiles in one step; drops null and empty tiles. Call in the order of the sequence.
   void put(const TileMap& tiles, std::int64_t sequence);
   // Replaces everything.
   void assign(TileMap tiles, std::int64_t sequence);
 
-  // Taken before an edit is given to the GPU and given back once `put` has brought what it did, or
-  // it was refused: meanwhile the GPU may hold what the mirror does not. The hold may outlive the
-  // mirror.
+  // Acquire before an edit is passed to the GPU, and release once `put` has stored its result or it
+  // was refused: between these times the GPU may be ahead of the mirror. May outlive the mirror.
   std::shared_ptr<const void> hold() const;
   bool held() const { return *holds_ > 0; }
 

@@ -55,20 +55,21 @@ std::optional<ValueType> parse_value_type(std::string_view name) {
 Result<std::uint32_t> encode_value(ValueType type, double value) {
   const Traits& t = traits(type);
   if (!std::isfinite(value))
-    return fail(ErrorCode::invalid, "Value not finite", "A value must be a finite number.",
+    return fail(ErrorCode::invalid, "Value is not finite", "A value must be a finite number.",
                 "value");
   if (value < t.lowest || value > t.highest)
-    return fail(ErrorCode::invalid, "Value out of range",
-                "This layer holds values of type " + std::string(t.name) + ", from " +
-                    std::to_string(t.lowest) + " to " + std::to_string(t.highest) + "." +
-                    (widens_to(type, ValueType::u32) && value > 0
-                         ? " It can get a wider type (PATCH {\"type\": \"u32\"})."
-                         : ""),
-                "value");
+    return fail(
+        ErrorCode::invalid, "Value out of range",
+        "This layer holds values of type " + std::string(t.name) + ", from " +
+            std::to_string(t.lowest) + " to " + std::to_string(t.highest) + "." +
+            (widens_to(type, ValueType::u32) && value > 0
+                 ? " To store larger values, change the type of the layer (PATCH {\"type\": \"u32\"})."
+                 : ""),
+        "value");
   if (!t.floating && value != std::floor(value))
-    return fail(ErrorCode::invalid, "Value not a whole number",
+    return fail(ErrorCode::invalid, "Not a whole number",
                 "This layer holds whole numbers (" + std::string(t.name) +
-                    "); give one without a fraction.",
+                    "). Send a value without a fraction.",
                 "value");
   switch (type) {
     case ValueType::f32: return std::bit_cast<std::uint32_t>(static_cast<float>(value));

@@ -56,9 +56,9 @@ void Question::check() {
   if (has_deadline_ && Clock::now() - begin_ > limits_.time)
     end({ErrorCode::timed_out,
          "Question takes too long",
-         "An answer may take " + std::to_string(limits_.time.count() / 1000) +
-             " seconds, for which others may have been served meanwhile. Ask of a smaller area, of a coarser layer or with a shorter "
-             "condition, or again when fewer ask.",
+         "The server stops a question after " + std::to_string(limits_.time.count() / 1000) +
+             " seconds. This includes the time in which it answered others. Choose a "
+             "smaller area, a coarser layer or a shorter condition, or try again later.",
          {}});
   if (turns_) turns_->check(place_);
   if (ended_) throw_ended();
@@ -70,9 +70,9 @@ void Question::spend(std::uint64_t steps) {
   end({ErrorCode::invalid,
        "Question too large",
        "This takes " + in_millions(all) +
-           " million steps, a step being a part of the condition at a texel; a question may take " +
+           " million steps (one step is one part of the condition at one texel). The limit is " +
            in_millions(limits_.steps) +
-           " million. Ask of a smaller area (`within`), of a coarser layer, or with a shorter condition.",
+           " million. Choose a smaller area (`within`), a coarser layer or a shorter condition.",
        {}});
   throw_ended();
 }
@@ -83,9 +83,9 @@ void Question::hold(std::int64_t bytes) {
   bytes_ -= bytes;
   end({ErrorCode::invalid,
        "Question too large",
-       "The answer takes " + in_millions(static_cast<std::uint64_t>(held)) +
-           " MB of main memory while it is made; a question may take " +
-           in_millions(limits_.bytes) + " MB. Ask of a coarser layer, or for less at once.",
+       "The answer needs " + in_millions(static_cast<std::uint64_t>(held)) +
+           " MB of main memory. The limit is " + in_millions(limits_.bytes) +
+           " MB. Choose a coarser layer, or request less at once.",
        {}});
   throw_ended();
 }

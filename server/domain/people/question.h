@@ -15,17 +15,17 @@
 
 namespace strata {
 
-// What one question may cost.
+// The limits of one question.
 struct QuestionLimits {
-  std::chrono::milliseconds time{0};  // from its beginning to its answer; 0: any
-  std::uint64_t steps = 0;            // texels times the steps of a formula at each of them; 0: any
-  // of main memory that its answer takes while it is made; 0: any
+  std::chrono::milliseconds time{0};  // from begin to answer; 0: no limit
+  std::uint64_t steps = 0;            // texels times formula steps per texel; 0: no limit
+  // of main memory while the answer is made; 0: no limit
   std::uint64_t bytes = 0;
 };
 
 QuestionLimits limits_of(Role role);
 
-// Work that stops because its question is over: thrown by what computes, caught where the question
+// Stops the work of a question that has ended: thrown by computations, caught where the question
 // was begun.
 class QuestionEnded : public std::exception {
  public:
@@ -37,43 +37,42 @@ class QuestionEnded : public std::exception {
   const Error problem_;
 };
 
-// A question that somebody asks, for as long as it is worked on: whose it is, what it may still
-// cost, and whether its answer is still wanted. Long loops over texels ask it at every tile
-// (`QuestionTurn`, `mesh::parallel_for`): they stop when it is over, and wait where the processors
-// are another person's turn. Thread-safe, but for Scope and QuestionTurn, which belong to a thread.
+// A question while it is being worked on: its user, its remaining limits, and whether its answer is
+// still needed. Long loops over texels check it at every tile (`QuestionTurn`,
+// `mesh::parallel_for`): they stop when it has ended, and wait while another person's questions
+// have the processors. Thread-safe, except Scope and QuestionTurn, which belong to a thread.
 class Question : public std::enable_shared_from_this<Question> {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Persons share `turns` fairly; null: there is nobody to share with.
+  // People share `turns` fairly; null: without sharing.
   Question(std::string asker, QuestionLimits limits, std::shared_ptr<QuestionTurns> turns);
 
   const std::string& asker() const { return asker_; }
-  // Its answer is not wanted any more, or cannot be given. The first reason counts.
+  // Ends it: its answer is no longer needed, or cannot be given. The first reason counts.
   void end(Error why);
   bool ended() const { return ended_; }
-  std::optional<Error> why() const;  // it ended; nothing: it did not
-  // From now on it may take any time: its answer is on its way to a client who reads it as quickly
-  // as they can.
+  std::optional<Error> why() const;  // nothing: it has not ended
+  // Removes the time limit: the answer is being sent, as fast as the client reads it.
   void let_take_time() { has_deadline_ = false; }
 
-  // From now on it waits for no turn: what others do waits for it.
+  // Stops waiting for turns: others wait for this question.
   void skip_turns() { takes_turns_ = false; }
 
-  // Throws QuestionEnded where it is over; waits where it is another's turn.
+  // Throws QuestionEnded if it has ended; waits during another person's turn.
   void check();
-  // So many steps are about to be taken: refused as a whole (QuestionEnded, `invalid`) where that
-  // is more than it may.
+  // Call before taking this number of steps: refuses all of them (QuestionEnded, `invalid`) if they
+  // exceed the limit.
   void spend(std::uint64_t steps);
-  // Steps that were taken, for those who count what the server does.
+  // Counts the steps taken, for the server's metrics.
   void took(std::uint64_t steps) {
     if (turns_) turns_->took(steps);
   }
-  // Refused (QuestionEnded, `invalid`) where what it holds is more than it may. Given back with
-  // `bytes` below 0.
+  // Refuses (QuestionEnded, `invalid`) if the held memory exceeds the limit. Negative `bytes`
+  // release memory.
   void hold(std::int64_t bytes);
 
-  // The question that this thread works on; null: none, and nothing limits the work.
+  // The question that this thread works on; null: the work has no limits.
   static Question* current();
   class Scope {
    public:
@@ -86,7 +85,7 @@ class Question : public std::enable_shared_from_this<Question> {
     const std::shared_ptr<Question> question_;
     Question* const before_;
   };
-  // A thread that helps for a while with what another one works on, which waits for it.
+  // A thread that helps another one, which waits for it, with a question.
   class Helper {
    public:
     explicit Helper(Question* question);
@@ -94,7 +93,7 @@ class Question : public std::enable_shared_from_this<Question> {
     Helper(const Helper&) = delete;
     Helper& operator=(const Helper&) = delete;
   };
-  // Work that others wait for, too, is nobody's question.
+  // For work that others also wait for: it belongs to no question.
   class Aside : public Scope {
    public:
     Aside() : Scope(nullptr) {}
@@ -113,11 +112,11 @@ class Question : public std::enable_shared_from_this<Question> {
   std::atomic<std::int64_t> bytes_{0};
   mutable std::mutex mutex_;
   Error why_;
-  std::atomic<int> turns_held_{0};  // by the thread that works on it, and its helpers meanwhile
+  std::atomic<int> turns_held_{0};  // by the thread that works on it, and its helpers
   QuestionTurns::Place place_;
 };
 
-// The processors, for one stretch of the current question's work. Does nothing where there is none.
+// A turn for one part of the current question's work. Does nothing without a question.
 class QuestionTurn {
  public:
   QuestionTurn();
@@ -139,13 +138,13 @@ class QuestionTurn {
   const bool has_turn_;
 };
 
-// Whether the current question goes on (Question::check), for what is no work of its own: rows that
-// a client waits for.
+// Checks the current question (Question::check), during work that needs no turn: rows that a client
+// waits for.
 inline void check_question() {
   if (Question* question = Question::current()) question->check();
 }
 
-// Memory that the current question holds, while this lives.
+// Counts memory for the current question as long as this exists.
 class QuestionMemory {
  public:
   explicit QuestionMemory(std::uint64_t bytes);

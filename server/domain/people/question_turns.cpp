@@ -22,8 +22,8 @@ void QuestionTurns::leave(Place& place) {
   place.state = Place::State::away;
   place.paused = false;
   --askers_.at(place.asker).places;
-  // One who asks again at once has not been away: what they were served beyond the others is kept
-  // until the others have had as much.
+  // Keeps the time of an asker who was served more than the others, so that asking again at once
+  // resets nothing, until the others have had as much.
   std::erase_if(askers_, [&](const auto& each) {
     return each.second.places == 0 && each.second.served <= now_;
   });
@@ -32,7 +32,7 @@ void QuestionTurns::leave(Place& place) {
 
 void QuestionTurns::check(Place& place) {
   if (!place.paused) {
-    // `since` is written before `paused` is false, by who holds the lock.
+    // The owner of the lock writes `since` before it sets `paused` to false.
     const std::lock_guard lock(mutex_);
     if (place.state != Place::State::running) return;
     const auto now = Clock::now();

@@ -11,19 +11,19 @@
 
 namespace strata {
 
-// Ascending: each may do what the ones before may. A guest sees nothing of any project.
+// Ascending: each role includes the rights of the previous ones. A guest sees no project.
 enum class Role { guest, viewer, annotator, curator, administrator, owner };
 std::optional<Role> parse_role(std::string_view name);
 std::string_view name(Role role);
 
-// Who asks for something or changes it. Neither part has a default, so that whoever asks says both.
+// The author of a request or change. Neither part has a default, so that callers state both.
 struct Author {
   Author(std::string name, Role may) : user(std::move(name)), role(may) {}
   std::string user;
   Role role;
 };
 
-// What somebody may do.
+// A user's roles.
 struct Roles {
   Role everywhere = Role::guest;
   std::map<ProjectId, Role> in_projects{};  // by the project's id

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// Who sees a layer, a column or an attachment of those who see its project. Ascending: each is seen
-// by fewer than the one before. Who does not see it gets the answers of what is not there.
+// Which users of a project see a layer, column or attachment. Ascending: each level is visible to
+// fewer users. Others get the same answers as for a missing entity.
 enum class Visibility {
   everyone,  // "public"
   team,      // annotators and above
@@ -17,12 +17,12 @@ enum class Visibility {
 std::optional<Visibility> parse_visibility(std::string_view name);
 std::string_view name(Visibility visibility);
 
-// The one rule. `role`: what they may do in the project.
+// The only rule. `role`: the role in the project.
 bool sees(Role role, Visibility visibility);
-// The least role that sees it: what is made of things for all who see the one may read only what
-// that role sees.
+// Returns the least role that sees it: content computed for everybody with this visibility may only
+// read data that this role sees.
 Role least_role(Visibility visibility);
-// The least seen of what the role sees. Who sees the same gets the same.
+// Returns the most restricted visibility that the role sees, which defines all that it sees.
 Visibility sight_of(Role role);
 
 }  // namespace strata

@@ -4,7 +4,7 @@
 
 namespace strata {
 
-// What a picture has behind the model: a gradient from its top row to its lowest.
+// The background of a picture: a gradient from its top row to its bottom row.
 struct Background {
   Rgba top{242, 240, 236, 255};
   Rgba bottom{214, 211, 205, 255};

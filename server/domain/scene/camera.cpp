@@ -18,8 +18,7 @@ bool is_finite(const glm::dmat4& m) {
 
 constexpr double kMinNormalLength = 1e-100;
 
-// A determinant alone says little of a matrix in small or large units; what is needed is a usable
-// inverse.
+// Requires a usable inverse: the determinant alone says little in small or large units.
 bool is_invertible(const glm::dmat4& m) {
   const double det = glm::determinant(m);
   if (!std::isfinite(det) || det == 0) return false;
@@ -32,7 +31,8 @@ Result<void> validate(const Camera& camera, const std::string& field) {
   auto size = [&](int value, const char* side) -> Result<void> {
     if (value < 1 || value > kMaxViewSize)
       return fail(ErrorCode::invalid, "Size out of range",
-                  "A camera's window is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
+                  "The window of a camera must be 1 to " + std::to_string(kMaxViewSize) +
+                      " pixels on each side.",
                   field + "." + side);
     return {};
   };
@@ -40,11 +40,13 @@ Result<void> validate(const Camera& camera, const std::string& field) {
   STRATA_TRY(size(camera.height, "height"));
   auto matrix = [&](const glm::dmat4& m, const char* name) -> Result<void> {
     if (!is_finite(m))
-      return fail(ErrorCode::invalid, "Matrix not finite", "Every element must be a finite number.",
-                  field + "." + name);
+      return fail(ErrorCode::invalid, "Matrix not finite",
+                  "Every element of the matrix must be a finite number.", field + "." + name);
     if (!is_invertible(m))
-      return fail(ErrorCode::invalid, "Matrix is singular",
-                  "The matrix has no inverse, so nothing can be seen with it.", field + "." + name);
+      return fail(
+          ErrorCode::invalid, "Matrix has no inverse",
+          "The matrix has no inverse, so the camera shows nothing. Send an invertible matrix.",
+          field + "." + name);
     return {};
   };
   STRATA_TRY(matrix(camera.view, "view"));
@@ -58,7 +60,8 @@ Result<void> validate(const Camera& camera, const std::string& field) {
     const double length = glm::length(glm::dvec3(plane));
     if (!std::isfinite(length) || !std::isfinite(plane.w) || !(length > kMinNormalLength))
       return fail(ErrorCode::invalid, "Plane without a direction",
-                  "A plane is [a, b, c, d] with finite numbers and a, b, c not all 0.",
+                  "A plane must be [a, b, c, d] with finite numbers. At least one of a, b, c "
+                  "must not be 0.",
                   field + ".section[" + std::to_string(i) + "]");
   }
   return {};
@@ -106,7 +109,7 @@ bool eye_is_cut_away(const Camera& camera) {
                              [&](const glm::dvec4& plane) { return glm::dot(plane, eye) < 0; });
 }
 
-RaySpan kept_span(const Camera& camera, const Ray& ray) {
+RaySpan uncut_span(const Camera& camera, const Ray& ray) {
   RaySpan span{0, std::numeric_limits<double>::infinity()};
   for (const glm::dvec4& plane : camera.section) {
     const double at_origin = glm::dot(plane, glm::dvec4(ray.origin, 1));

@@ -8,23 +8,23 @@
 
 namespace strata {
 
-constexpr int kMaxViewSize = 8192;            // pixels a side of a camera's window
+constexpr int kMaxViewSize = 8192;            // pixels per side of a camera's window
 constexpr std::size_t kMaxSectionPlanes = 6;  // a box
 
-// OpenGL clip space, world coordinates in double. Pixels: origin top left, y down, centres at +0.5.
+// OpenGL clip space, world coordinates in double. Pixels: origin top left, y down, centers at +0.5.
 struct Camera {
   glm::dmat4 view{1.0};
   glm::dmat4 projection{1.0};
   int width = 0;
   int height = 0;
-  // Planes in world coordinates that cut the model open, kMaxSectionPlanes at most: what has a x +
-  // b y + c z + d below 0 for one of them is neither seen nor painted.
+  // Planes in world coordinates that cut the model open, at most kMaxSectionPlanes: points with a x
+  // + b y + c z + d < 0 for one of them are neither seen nor painted.
   std::vector<glm::dvec4> section{};
   bool operator==(const Camera&) const = default;
 };
 
-// Refuses sizes out of 1…kMaxViewSize, non-finite and singular matrices, planes without a direction
-// and too many of them; `field` prefixes the named field.
+// Refuses sizes outside 1…kMaxViewSize, non-finite and singular matrices, planes without a
+// direction and too many planes; `field` prefixes the named field.
 Result<void> validate(const Camera& camera, const std::string& field = "camera");
 
 bool is_orthographic(const Camera& camera);
@@ -33,17 +33,16 @@ glm::dvec3 eye_in_world(const Camera& camera);
 // Float matrix from model space (world minus origin) to clip space, multiplied in double.
 glm::mat4 clip_from_model(const Camera& camera, const glm::dvec3& origin);
 
-// The section in model space, its normals of unit length; planes that are not there keep
-// everything.
+// The section in model space, with unit normals; absent planes keep everything.
 using SectionPlanes = std::array<glm::vec4, kMaxSectionPlanes>;
 SectionPlanes section_in_model(const Camera& camera, const glm::dvec3& origin);
 
-// Then the back of a surface that is seen is a solid's inside. (Without perspective the eye is
-// infinitely far away.)
+// If true, a visible back of a surface is a solid's inside. (Without perspective the eye is
+// infinitely far.)
 bool eye_is_cut_away(const Camera& camera);
 
-// The camera of some rows of its window, from the top: what it sees there, it sees as the whole one
-// does. `rows` above 0.
+// Returns the camera of some rows of the window, from the top: it shows the same there as the whole
+// camera. `rows` above 0.
 Camera camera_of_rows(const Camera& camera, int top, int rows);
 
 struct Ray {
@@ -52,10 +51,10 @@ struct Ray {
 };
 Ray ray_through_pixel(const Camera& camera, double x, double y);
 
-// The part of a ray that the section keeps, as distances from its origin; empty where begin > end.
+// The part of a ray that the section keeps, as distances from its origin; empty if begin > end.
 struct RaySpan {
   double begin = 0, end = 0;
 };
-RaySpan kept_span(const Camera& camera, const Ray& ray);
+RaySpan uncut_span(const Camera& camera, const Ray& ray);
 
 }  // namespace strata

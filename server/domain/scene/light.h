@@ -7,17 +7,17 @@
 namespace strata {
 
 // museum: a soft key light with fill and sky; headlight: from the eye; raking: from one side, which
-// shows relief; unlit: the colours as they are.
+// shows relief; unlit: the colors without light.
 enum class LightMode { museum, headlight, raking, unlit };
 
 struct Light {
   LightMode mode = LightMode::museum;
-  // Of raking light: towards the light, in the eye's axes (x right, y up, z towards the viewer).
+  // Raking light: direction to the light, in the eye's axes (x right, y up, z to the viewer).
   glm::dvec3 direction{-0.85, 0.40, 0.35};
   bool operator==(const Light&) const = default;
 };
 
-// Refuses a direction that is none.
+// Refuses a direction without length.
 Result<void> validate(const Light& light, const std::string& field = "light");
 
 }  // namespace strata

@@ -19,7 +19,7 @@ struct Project {
   std::string slug;
   std::string description;
   std::int64_t version = 1;
-  // what has a version is changed only by who names the one that they read
+  // a change of an entity with a version must name the version in If-Match
   bool require_if_match = false;
 };
 
@@ -28,14 +28,14 @@ double metres_per(Unit unit);
 std::string_view name(Unit unit);
 std::optional<Unit> parse_unit(std::string_view name);
 
-// What `atlas` reports of a model (GET /models/{model}).
+// The atlas's facts in the answer of GET /models/{model}.
 struct AtlasReport {
-  // How much surface one texel of a layer holds: the precision of what is painted.
+  // Surface per texel of a layer: the precision of painting.
   struct TexelSize {
     int resolution = 0;
     double area_mean = 0, area_max = 0;  // unit²
   };
-  // Why less than 60 % of the texels are used; `code` is stable, `text` says it in words.
+  // Reasons why less than 60 % of the texels are used; `code` is stable, `text` is for people.
   struct Limit {
     std::string code;  // "long_triangles", "many_charts", "hollow_charts", "file_coordinates"
     std::string text;
@@ -43,37 +43,37 @@ struct AtlasReport {
   std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
   int lowest_resolution = 2048;
   int charts = 0;
-  double coverage = 0;  // share of texels that lie on the surface, at lowest_resolution
-  // share of covered texels with more than one owner, at lowest_resolution
+  double coverage = 0;  // share of texels on the surface, at lowest_resolution
+  // share of covered texels with several owners, at lowest_resolution
   double overlap = 0;
   double stretch_mean = 0;  // area-weighted surface area per uv area, relative to the mean
   double stretch_p99 = 0;
   // unit², largest surface area of one texel at lowest_resolution
   double texel_area_max = 0;
-  // from lowest_resolution up; empty in models of before it was measured
+  // from lowest_resolution up; empty in models that are older than the measurement
   std::vector<TexelSize> texel_sizes;
-  // empty where 60 % and more are used, and in models of before it was said
+  // empty with 60 % or more, and in older models
   std::vector<Limit> limits{};
 };
 
-// Why a unit or an up direction is proposed.
+// The reason for a proposed unit or up direction.
 enum class ScaleReason { given, format, comment, coordinates, size, shape };
 std::string_view name(ScaleReason reason);
 std::optional<ScaleReason> parse_scale_reason(std::string_view name);
 
-// Which unit and up direction the file states or lets one guess (mesh/repair/scale_proposal.h).
+// The unit and up direction that a file states or implies (mesh/repair/scale_proposal.h).
 struct ScaleProposal {
   Unit unit = Unit::m;
   ScaleReason unit_reason = ScaleReason::size;
   double unit_confidence = 1;  // 0…1
-  std::string unit_comment;    // that names it
+  std::string unit_comment;    // that names the unit
   std::string up = "z";        // of kUpDirections
   ScaleReason up_reason = ScaleReason::shape;
   double up_confidence = 1;
   std::string up_comment;
 };
 nlohmann::json to_json(const ScaleProposal& proposal);
-// of our own stored form
+// reads the stored form
 std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json);
 
 struct Repair {
@@ -81,8 +81,8 @@ struct Repair {
   std::uint64_t count = 0;
 };
 
-// Where the surface ends: loops of edges that belong to one triangle only, which are the rims of
-// holes and of what was scanned in part. A closed surface has none.
+// The borders of the surface: loops of edges of one triangle only, which are rims of holes and of
+// parts that were not scanned. A closed surface has none.
 struct OpenEdges {
   static constexpr std::size_t kMaxListed = 16;
   std::uint64_t loops = 0;
@@ -90,7 +90,7 @@ struct OpenEdges {
   std::vector<double> longest;  // unit, of single loops, longest first, at most kMaxListed
 };
 nlohmann::json to_json(const OpenEdges& edges, double metres_per_unit);
-// of our own stored form, which has metres_per_unit = 1
+// reads the stored form, which has metres_per_unit = 1
 std::optional<OpenEdges> open_edges_from_json(const nlohmann::json& json);
 
 struct SourceFile {
@@ -108,9 +108,9 @@ struct Model {
   bool unit_assumed = true;
   bool scale_verified = false;
   std::string up = "z";  // of kUpDirections (domain/scene/up.h)
-  // none for models that were imported before there were any
+  // nothing for models that are older than proposals
   std::optional<ScaleProposal> proposal;
-  std::string north;     // free: degrees from +y, or empty
+  std::string north;     // free text: degrees from +y, or empty
   std::string crs;       // "EPSG:n" or empty
   glm::dvec3 origin{0};  // model space is world minus origin
   std::uint64_t triangles = 0;
@@ -120,10 +120,10 @@ struct Model {
   double area = 0;  // unit²
   AtlasReport atlas;
   std::vector<Repair> repairs;
-  // none for models that were imported before they were measured
+  // nothing for models that are older than the measurement
   std::optional<OpenEdges> open_edges;
   std::vector<SourceFile> source_files;
-  // the least that gets them, and what is as good as they are
+  // the least role that gets the source files or equivalent data
   Role source_download = Role::annotator;
   int default_resolution = 2048;  // of new layers
   std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri,
@@ -138,6 +138,6 @@ struct Model {
 nlohmann::json to_json(const Project& project);
 nlohmann::json to_json(const Model& model, const std::string& project_slug);
 nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit);
-AtlasReport atlas_from_json(const nlohmann::json& json);  // of our own stored form, see store
+AtlasReport atlas_from_json(const nlohmann::json& json);  // reads the stored form, see store
 
 }  // namespace strata

@@ -8,8 +8,8 @@
 
 namespace strata {
 
-// A picture of the model's surface on its texture coordinates (uv origin bottom left: the picture's
-// top row is v = 1).
+// A picture on the surface, in texture coordinates (uv origin bottom left: the picture's top row is
+// v = 1).
 struct SurfaceImage {
   SurfaceImageId id = 0;
   ModelId model_id = 0;
@@ -19,7 +19,7 @@ struct SurfaceImage {
   std::string media_type;  // "image/jpeg" or "image/png"
   int width = 0, height = 0;
   std::uint64_t bytes = 0;  // of the encoded picture
-  std::string sha256;       // of it, lower-case hex
+  std::string sha256;       // of the encoded picture, lower-case hex
   double opacity = 1;
   bool visible = true;
   int order = 0;  // blended ascending: higher is on top

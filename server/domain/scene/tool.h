@@ -8,13 +8,13 @@
 
 namespace strata {
 
-// A shape for the brush, of the whole site (media/shape_texture.h). Its shape never changes, so
-// that a stroke's record means the same for ever; a deleted tool is no longer listed or found by
-// its slug, but its id still names its shape.
+// A brush shape of the site (media/shape_texture.h). Its shape never changes, so that stroke
+// records stay valid permanently; a deleted tool is not listed or found by its slug, but its id
+// still selects its shape.
 struct Tool {
   ToolId id = 0;
   std::string name;
-  // unique among those that are not deleted; neither all digits nor `disc` nor `square`
+  // unique among existing tools; neither all digits nor `disc` nor `square`
   std::string slug;
   bool deleted = false;
   std::int64_t version = 1;

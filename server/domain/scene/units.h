@@ -4,7 +4,7 @@
 
 namespace strata {
 
-// Millimetres on the object in the model's unit.
+// Converts millimeters on the object to the model's unit.
 inline double in_model_units(double millimetres, Unit unit) {
   return millimetres * 0.001 / metres_per(unit);
 }

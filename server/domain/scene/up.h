@@ -6,18 +6,17 @@
 
 namespace strata {
 
-// The directions that can be up in a model: its axes and their opposites, as `Model::up` names
-// them.
+// The possible up directions of a model: its axes and their opposites, as `Model::up` names them.
 inline constexpr std::array<std::string_view, 6> kUpDirections{"x", "y", "z", "-x", "-y", "-z"};
 
 bool is_up(std::string_view name);
 
-// The axes of the front view, unit vectors in the world with right × into = up: `into` away from
-// who looks, and north on the map that is the view from above. As the page has them
-// (web-client/src/core/camera.ts). That of an axis' opposite is turned about `right` by 180°.
+// The axes of the front view, unit vectors in the world with right × into = up: `into` points away
+// from the viewer, and to the north of the map in the view from above. As in the web client
+// (web-client/src/math/camera.ts). The frame of an opposite axis is turned about `right` by 180°.
 struct UpFrame {
   glm::dvec3 right{1, 0, 0}, into{0, 1, 0}, up{0, 0, 1};
 };
-UpFrame up_frame(std::string_view up);  // z for a name that is none
+UpFrame up_frame(std::string_view up);  // z for another name
 
 }  // namespace strata

@@ -10,23 +10,22 @@
 
 namespace strata {
 
-// A file that records of a table have. Its content never changes.
+// A file of records of a table. Its content never changes.
 struct Attachment {
   AttachmentId id = 0;
   TableId table_id = 0;
-  std::string name;        // a file's, without folders
-  std::string media_type;  // by its bytes
+  std::string name;        // a file name without folders
+  std::string media_type;  // determined from its bytes
   std::uint64_t bytes = 0;
   std::string sha256;  // hexadecimal
-  // of pictures that can be read, before they are turned as Exif says
+  // of readable pictures, before the rotation in Exif
   std::optional<int> width, height;
   std::string user;
   std::chrono::system_clock::time_point time;
   Visibility visibility = Visibility::everyone;
 };
 
-// By its visibility (domain/people/visibility.h). Annotators also see the files that they attached
-// themselves.
+// By its visibility (domain/people/visibility.h). Annotators also see the files that they attached.
 inline bool sees(const Author& who, const Attachment& attachment) {
   return sees(who.role, attachment.visibility) ||
          (who.role >= Role::annotator && who.user == attachment.user);

@@ -8,13 +8,13 @@
 
 namespace strata {
 
-// The cells of a row, or the properties of a column, by name. One that is not there is a cell
-// without a value, as is null.
+// The cells of a row, or the properties of a column, by name. An absent cell has no value, like
+// null.
 using Cells = std::map<std::string, nlohmann::json>;
 
-// What one edit did to one row: the cells it wrote, also where the value stayed, before and after.
-// `writer` and `in_force` are as in domain/layers/history.h: undo and redo move content but are
-// nobody's writing.
+// The effect of one edit on one row: the cells it wrote, also those with an unchanged value, before
+// and after. `writer` and `in_force` are as in domain/layers/history.h: undo and redo move content
+// but write nothing new.
 struct PastCells {
   std::int64_t sequence = 0;
   bool writer = true;
@@ -22,23 +22,23 @@ struct PastCells {
   Cells before, after;  // of the same names
 };
 
-// The rule of undo and redo for rows, as for texels (domain/layers/history.h): a cell shows what
-// the newest edit in force that wrote it left there, or what was there before all of them.
-// Recomputes `names` of one row, after the caller flipped an edit's `in_force`, from what was done
-// to the row, which comes one by one.
+// The rule of undo and redo for rows, as for texels (domain/layers/history.h): a cell shows the
+// result of the newest edit in force that wrote it, otherwise the content before all edits.
+// Recomputes `names` of one row, after the caller changed an edit's `in_force`. The entries of the
+// row are passed one by one.
 class CellResolver {
  public:
   explicit CellResolver(std::set<std::string> names) : open_(std::move(names)) {}
 
-  // False when older entries change nothing more.
+  // False when older entries cannot change the result.
   bool is_open() const { return !open_.empty(); }
-  // The newest entry first, then the one before it, and so on.
+  // Call with the newest entry first, then the one before it, and so on.
   void add(const PastCells& entry);
-  // After the oldest entry, or when nothing is open. Cells that no entry wrote are not among them.
+  // Call after the oldest entry, or when `is_open` is false. Excludes cells that no entry wrote.
   Cells finish() &&;
 
  private:
-  std::set<std::string> open_;  // whose author is not found yet
+  std::set<std::string> open_;  // cells whose author is still unknown
   Cells result_, past_;
 };
 

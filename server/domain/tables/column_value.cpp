@@ -19,7 +19,7 @@ using nlohmann::json;
 
 tl::unexpected<Error> refuse(const Column& column, const std::string& what,
                              const std::string& field) {
-  return fail(ErrorCode::invalid, "Bad value", "\"" + column.name + "\" holds " + what + ".",
+  return fail(ErrorCode::invalid, "Invalid value", "\"" + column.name + "\" holds " + what + ".",
               field);
 }
 
@@ -32,15 +32,17 @@ Result<json> check_limits(const Column& column, double number, json value,
                           const std::string& field) {
   if (column.minimum && number < *column.minimum)
     return fail(ErrorCode::invalid, "Value out of range",
-                "\"" + column.name + "\" is at least " + number_text(*column.minimum) + ".", field);
+                "\"" + column.name + "\" must be at least " + number_text(*column.minimum) + ".",
+                field);
   if (column.maximum && number > *column.maximum)
     return fail(ErrorCode::invalid, "Value out of range",
-                "\"" + column.name + "\" is at most " + number_text(*column.maximum) + ".", field);
+                "\"" + column.name + "\" must be at most " + number_text(*column.maximum) + ".",
+                field);
   return value;
 }
 
 Result<json> check_integer(const Column& column, const json& value, const std::string& field) {
-  // A whole number written as 3.0 or 1e3 is one.
+  // A whole number may be written as 3.0 or 1e3.
   const double number = value.is_number() ? value.get<double>() : NAN;
   if (!(std::abs(number) <= static_cast<double>(kGreatestInteger)) || std::trunc(number) != number)
     return refuse(column, "whole numbers of at most 2^53", field);
@@ -50,7 +52,7 @@ Result<json> check_integer(const Column& column, const json& value, const std::s
 Result<json> check_numeric(const Column& column, const json& value, const std::string& field) {
   const double number = value.is_number() ? value.get<double>() : NAN;
   if (!std::isfinite(number)) return refuse(column, "finite numbers", field);
-  // no -0, which is 0 in a text
+  // no -0, which is 0 as text
   return check_limits(column, number, number == 0 ? 0.0 : number, field);
 }
 
@@ -66,7 +68,7 @@ Result<std::string> check_text(const Column& column, const json& value, const ch
 }
 
 Result<json> check_url(const Column& column, const std::string& text, const std::string& field) {
-  // Only what a browser opens without running it.
+  // Only schemes that a browser opens without running code.
   const bool known = text.starts_with("https://") || text.starts_with("http://") ||
                      text.starts_with("mailto:") || text.starts_with("urn:") ||
                      text.starts_with("doi:");
@@ -238,7 +240,7 @@ Result<json> check_value(const Column& column, const json& value, const std::str
   Result<json> checked =
       value.is_null() ? Result<json>(json()) : check_present(column, value, field);
   if (checked && checked->is_null() && column.required)
-    return fail(ErrorCode::invalid, "Value missing", "\"" + column.name + "\" must have a value.",
+    return fail(ErrorCode::invalid, "Value missing", "\"" + column.name + "\" needs a value.",
                 field);
   return checked;
 }
@@ -307,7 +309,7 @@ Result<json> convert_value(const Column& from, const Column& to, const json& val
   if (from.kind == ColumnKind::timestamp &&
       (to.kind == ColumnKind::date || to.kind == ColumnKind::period))
     return check_value(to, value.get_ref<const std::string&>().substr(0, 10), field);
-  // The keys of one table mean nothing in another.
+  // A key of one table is invalid in another.
   const bool from_keys = from.target.has_value(), to_keys = to.target.has_value();
   if (from_keys && to_keys && from.target != to.target)
     return refuse(to, "keys of another table than \"" + from.name + "\"", field);

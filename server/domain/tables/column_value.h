@@ -11,28 +11,28 @@ namespace strata {
 inline constexpr std::size_t kMaxTextLength = 100'000;  // bytes of a text
 inline constexpr std::size_t kMaxRelated = 10'000;      // keys of a relation
 inline constexpr std::size_t kMaxAttached = 1000;       // files in one cell
-// what every reader of JSON keeps exactly
+// the range that every JSON parser represents exactly
 inline constexpr std::int64_t kGreatestInteger = 1ll << 53;
 
-// `value` as the column keeps it, or an Error (invalid) that names `field`: another type of JSON, a
-// date that is none, a number outside of the column's limits, what is no choice. Null is no value,
-// which only a required column refuses. Forms are made one: timestamps come out in UTC, keys of a
-// relation ascending and once, attachments once. Whether keys have records, and ids attachments, is
-// the store's to say.
+// Returns `value` in the column's stored form, or an Error (invalid) that names `field`: another
+// JSON type, an invalid date, a number outside the column's limits, an unknown choice. Only a
+// required column refuses null, which means no value. Normalizes: timestamps to UTC, keys of a
+// relation ascending without repetitions, attachments without repetitions. The store checks that
+// keys and attachments exist.
 Result<nlohmann::json> check_value(const Column& column, const nlohmann::json& value,
                                    const std::string& field);
 
-// The value that a text means, as cells of CSV have it: empty is none, keys of a relation stand
-// with spaces or semicolons between them, booleans are true/false, yes/no or 1/0. With
-// `decimal_comma`, as where semicolons separate the cells, 3,5 is a number, too.
+// Parses a cell of CSV: an empty one is null, keys of a relation are separated by spaces or
+// semicolons, booleans are true/false, yes/no or 1/0. With `decimal_comma`, as for cells separated
+// by semicolons, 3,5 is a number, too.
 Result<nlohmann::json> parse_value(const Column& column, std::string_view text, bool decimal_comma,
                                    const std::string& field);
 
-// The cell of CSV for a value that check_value gave; parse_value makes the same value of it.
+// Returns the CSV cell of a value from check_value; parse_value restores the value.
 std::string print_value(const Column& column, const nlohmann::json& value);
 
-// The value of a column in another kind's column: by its text, except where one has less to say
-// (timestamp to date, whole numbers). An Error where it cannot be kept.
+// Converts a value to another kind of column: through its text, except if the new kind holds less
+// (timestamp to date, whole numbers). Error: the value cannot be kept.
 Result<nlohmann::json> convert_value(const Column& from, const Column& to,
                                      const nlohmann::json& value, const std::string& field);
 

@@ -6,10 +6,10 @@
 
 namespace strata {
 
-// The label in a language, or else in the one that it is a kind of ("es" for "es-MX"); null: there
-// is none. Tags are compared without regard to case.
+// Returns the label in a language or its base language ("es" for "es-MX"); null if there is no
+// label. Tags are compared without regard to case.
 const std::string* find_label(const Labels& labels, std::string_view language);
-// The same, or the name that needs no language.
+// The same, with the language-independent name as default.
 const std::string& label_or(const Labels& labels, std::string_view language,
                             const std::string& name);
 

@@ -33,7 +33,7 @@ bool fits(const std::vector<SurfaceFeature>& features, bool lines) {
   return features.size() <= kMaxFeatures && places <= kMaxFeaturePlaces;
 }
 
-// Reads what print_features writes, with spaces wherever they may stand.
+// Parses the output of print_features, with additional spaces.
 class FeatureReader {
  public:
   FeatureReader(std::string_view text, bool lines) : rest_(text), lines_(lines) {}
@@ -69,19 +69,19 @@ class FeatureReader {
                               rest_.front() == '\n' || rest_.front() == '\r'))
       rest_.remove_prefix(1);
   }
-  bool sign(char wanted) {
+  bool sign(char expected) {
     skip_blank();
-    if (rest_.empty() || rest_.front() != wanted) return false;
+    if (rest_.empty() || rest_.front() != expected) return false;
     rest_.remove_prefix(1);
     skip_blank();
     return true;
   }
-  bool word(std::string_view wanted) {
+  bool word(std::string_view expected) {
     skip_blank();
-    if (rest_.size() < wanted.size()) return false;
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      if ((rest_[i] & ~0x20) != wanted[i]) return false;
-    rest_.remove_prefix(wanted.size());
+    if (rest_.size() < expected.size()) return false;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      if ((rest_[i] & ~0x20) != expected[i]) return false;
+    rest_.remove_prefix(expected.size());
     return true;
   }
   template <class Number>

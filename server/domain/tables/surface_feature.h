@@ -14,13 +14,13 @@
 
 namespace strata {
 
-// What a record has on a model besides texels: a line (a crack, which is paid by the metre) or a
-// point (a sample). Columns of kind `line` and `point` hold lists of them: `[{"model": 3,
-// "coordinates": [[x, y, z], …]}]`. Places are world coordinates in the model's unit, those of a
-// line as near to each other as the surface between them is straight.
+// A feature of a record on a model, in addition to texels: a line (a crack, which is paid by the
+// meter) or a point (a sample). Columns of kind `line` and `point` hold lists of them: `[{"model":
+// 3, "coordinates": [[x, y, z], …]}]`. Coordinates are world coordinates in the model's unit; those
+// of a line are so dense that the surface between them is straight.
 struct SurfaceFeature {
   ModelId model = 0;
-  std::vector<glm::dvec3> places;  // of a point one, of a line two or more
+  std::vector<glm::dvec3> places;  // one for a point, two or more for a line
   bool operator==(const SurfaceFeature&) const = default;
 };
 
@@ -34,17 +34,17 @@ inline constexpr std::size_t kMaxFeatures = 1000;         // of a cell
 inline constexpr std::size_t kMaxFeaturePlaces = 10'000;  // of a cell
 inline constexpr double kMaxFeatureCoordinate = 1e12;
 
-// The marks of a cell's value; nothing where it is not one of this kind, within these bounds.
+// Reads the features of a cell's value; nothing for another kind or beyond these limits.
 std::optional<std::vector<SurfaceFeature>> read_features(const nlohmann::json& value, bool lines);
 nlohmann::json to_json(std::span<const SurfaceFeature> features);
-// Of a record in a column of lines or points; none where it has no value.
+// The features of a record in a column of lines or points; empty without a value.
 std::vector<SurfaceFeature> features_of(const Record& record, const Column& column);
 
-// As cells of CSV have them: `3 LINESTRING Z (0 0 1, 2.5 0 1); 3 POINT Z (1 2 3)`, the model's id
+// In the form of CSV cells: `3 LINESTRING Z (0 0 1, 2.5 0 1); 3 POINT Z (1 2 3)`, the model's id
 // before well-known text (ISO 13249-3).
 std::string print_features(std::span<const SurfaceFeature> features, bool lines);
 std::optional<std::vector<SurfaceFeature>> parse_features(std::string_view text, bool lines);
 
-double length_of(const SurfaceFeature& feature);  // in the model's unit; of a point 0
+double length_of(const SurfaceFeature& feature);  // in the model's unit; 0 for a point
 
 }  // namespace strata

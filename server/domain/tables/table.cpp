@@ -36,7 +36,7 @@ bool is_language_tag(std::string_view tag) {
 Result<void> check_short(const std::string& text, const std::string& field,
                          std::size_t longest = kMaxColumnTextLength) {
   if (text.size() <= longest && is_utf8(text) && text.find('\0') == std::string::npos) return {};
-  return fail(ErrorCode::invalid, "Bad text",
+  return fail(ErrorCode::invalid, "Invalid text",
               "`" + field + "` must be UTF-8 of at most " + std::to_string(longest) +
                   " bytes, without U+0000.",
               field);
@@ -46,17 +46,19 @@ Result<void> check_choices(const Column& column) {
   if (column.kind != ColumnKind::enumeration) {
     if (column.choices.empty()) return {};
     return fail(ErrorCode::invalid, "Choices without enumeration",
-                "Only columns of kind `enumeration` have choices.", "choices");
+                "Only columns of kind `enumeration` can have choices.", "choices");
   }
   if (column.choices.empty() || column.choices.size() > kMaxChoices)
-    return fail(ErrorCode::invalid, "Bad choices",
+    return fail(ErrorCode::invalid, "Invalid choices",
                 "An enumeration has 1 to " + std::to_string(kMaxChoices) + " choices.", "choices");
   std::set<std::string> known;
   for (const std::string& choice : column.choices) {
     STRATA_TRY(check_short(choice, "choices"));
     if (choice.empty() || !known.insert(choice).second)
-      return fail(ErrorCode::invalid, "Bad choices",
-                  "Choices must not be empty and must differ: \"" + choice + "\".", "choices");
+      return fail(
+          ErrorCode::invalid, "Invalid choices",
+          "Choices must not be empty, and each choice must be different: \"" + choice + "\".",
+          "choices");
   }
   return {};
 }
@@ -64,18 +66,19 @@ Result<void> check_choices(const Column& column) {
 Result<void> check_limits(const Column& column) {
   if (!is_number(column.kind)) {
     if (!column.unit.empty())
-      return fail(ErrorCode::invalid, "Unit without number", "Only numbers have a unit.", "unit");
+      return fail(ErrorCode::invalid, "Unit without number",
+                  "Only columns of numbers can have a unit.", "unit");
     if (column.minimum)
-      return fail(ErrorCode::invalid, "Limit without number", "Only numbers have a minimum.",
-                  "minimum");
+      return fail(ErrorCode::invalid, "Limit without number",
+                  "Only columns of numbers can have a minimum.", "minimum");
     if (column.maximum)
-      return fail(ErrorCode::invalid, "Limit without number", "Only numbers have a maximum.",
-                  "maximum");
+      return fail(ErrorCode::invalid, "Limit without number",
+                  "Only columns of numbers can have a maximum.", "maximum");
     return {};
   }
   if (column.minimum && column.maximum && *column.minimum > *column.maximum)
-    return fail(ErrorCode::invalid, "Limits cross", "`minimum` must not be greater than `maximum`.",
-                "minimum");
+    return fail(ErrorCode::invalid, "Minimum above maximum",
+                "`minimum` must not be greater than `maximum`.", "minimum");
   return {};
 }
 
@@ -83,23 +86,25 @@ Result<void> check_kind(const Column& column) {
   if (names_records(column.kind) != column.target.has_value())
     return names_records(column.kind)
                ? fail(ErrorCode::invalid, "Target missing",
-                      "A column of this kind names a table of the project as `target`.", "target")
+                      "A column of this kind needs a table of the project as `target`.", "target")
                : fail(ErrorCode::invalid, "Target without relation",
-                      "Only columns of kind `term` or `relation` have a target.", "target");
+                      "Only columns of kind `term` or `relation` can have a target.", "target");
   if ((holds_attachments(column.kind) || holds_features(column.kind)) &&
       !column.default_value.is_null())
-    return fail(ErrorCode::invalid, "No default",
-                holds_features(column.kind) ? "Lines and points are drawn for single records."
-                                            : "Files are attached to single records.",
-                "default");
+    return fail(
+        ErrorCode::invalid, "Default not possible",
+        holds_features(column.kind)
+            ? "Columns of lines and points cannot have a default: people draw them for each record."
+            : "Columns of files cannot have a default: people attach files to each record.",
+        "default");
   if (column.unique && (column.kind == ColumnKind::boolean || holds_lists(column.kind)))
     return fail(ErrorCode::invalid, "Cannot be unique",
                 "Columns of kind `" + std::string(name(column.kind)) +
-                    "` hold the same value in many records.",
+                    "` cannot be unique: many records have the same value.",
                 "unique");
   if (column.unique && !column.default_value.is_null())
-    return fail(ErrorCode::invalid, "Default of a unique column",
-                "A second record could not have the default, too.", "default");
+    return fail(ErrorCode::invalid, "Unique column with default",
+                "A unique column cannot have a default: only one record could have it.", "default");
   return {};
 }
 
@@ -120,12 +125,13 @@ Result<void> check_labels(const Labels& labels, const std::string& field) {
 Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
                                      const std::string& field) {
   if (texts.size() > 100)
-    return fail(ErrorCode::invalid, "Too many labels", "A thing has at most 100 labels.", field);
+    return fail(ErrorCode::invalid, "Too many labels", "Send at most 100 labels.", field);
   for (const auto& [tag, text] : texts) {
     if (!is_language_tag(tag))
-      return fail(ErrorCode::invalid, "Bad language",
-                  "\"" + mended_utf8(tag) + "\" is no language tag such as `es` or `pt-BR`.",
-                  field);
+      return fail(
+          ErrorCode::invalid, "Invalid language",
+          "\"" + mended_utf8(tag) + "\" is not a language tag. Send a tag such as `es` or `pt-BR`.",
+          field);
     STRATA_TRY(check_short(text, field + "." + tag, longest));
   }
   return {};
@@ -133,9 +139,10 @@ Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
 
 Result<void> check_column(Column& column) {
   if (column.name.empty())
-    return fail(ErrorCode::invalid, "Bad name",
-                "A column has a name of 1 to " + std::to_string(kMaxColumnTextLength) + " bytes.",
-                "name");
+    return fail(
+        ErrorCode::invalid, "Invalid name",
+        "The name of a column must have 1 to " + std::to_string(kMaxColumnTextLength) + " bytes.",
+        "name");
   STRATA_TRY(check_short(column.name, "name"));
   STRATA_TRY(check_short(column.unit, "unit"));
   STRATA_TRY(check_short(column.comment, "comment"));
@@ -143,13 +150,13 @@ Result<void> check_column(Column& column) {
   STRATA_TRY(check_choices(column));
   STRATA_TRY(check_limits(column));
   STRATA_TRY(check_kind(column));
-  // Who writes records must be able to.
+  // Annotators, who write records, must be able to fill a required column.
   if (column.required && column.visibility == Visibility::curators &&
       column.default_value.is_null())
-    return fail(
-        ErrorCode::invalid, "Required and private",
-        "Who does not see the column could make no records: give it a default, or let it be empty.",
-        "visibility");
+    return fail(ErrorCode::invalid, "Required but private column",
+                "People who cannot see this column could not create records. Set a default, or "
+                "allow empty values.",
+                "visibility");
   if (column.default_value.is_null()) return {};
   auto value = STRATA_TRY(check_value(column, column.default_value, "default"));
   column.default_value = std::move(value);
@@ -190,7 +197,7 @@ nlohmann::json to_json(const Table& table) {
                       {"columns", std::move(columns)},
                       {"records", table.records},
                       {"sequence", table.sequence}};
-  // One that is not seen, or was dropped, is not told.
+  // Omits a column that is invisible or was dropped.
   if (table.title_column &&
       std::ranges::find(table.columns, *table.title_column, &Column::id) != table.columns.end())
     json["title_column"] = *table.title_column;
@@ -225,7 +232,7 @@ const Column* name_column(const Table& table) {
       first([&](const Column& c) { return is_text(c) && c.required && c.unique; });
   if (!found)
     found = first([&](const Column& c) { return is_text(c) && (c.required || c.unique); });
-  // What an observation is of, and not who made it.
+  // A first column of terms names the object of an observation, not its author.
   if (!found && !columns.empty() && columns.front().kind == ColumnKind::term)
     found = &columns.front();
   if (!found) found = first(is_text);

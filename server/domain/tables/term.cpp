@@ -38,17 +38,20 @@ std::optional<std::string> clean_color(std::string_view text) {
 
 Result<void> check_term(Term& term) {
   if (term.code.empty() || term.code.size() > kMaxCodeLength)
-    return fail(ErrorCode::invalid, "Bad code",
-                "A term has a code of 1 to " + std::to_string(kMaxCodeLength) + " bytes.", "code");
+    return fail(ErrorCode::invalid, "Invalid code",
+                "The code of a term must have 1 to " + std::to_string(kMaxCodeLength) + " bytes.",
+                "code");
   if (!term.color.empty()) {
     const auto color = clean_color(term.color);
-    if (!color) return fail(ErrorCode::invalid, "Bad colour", "A colour is like #c04020.", "color");
+    if (!color)
+      return fail(ErrorCode::invalid, "Invalid color",
+                  "Write a color as #rrggbb, for example #c04020.", "color");
     term.color = *color;
   }
   if (!term.pattern.empty() && std::find(std::begin(kTermPatterns), std::end(kTermPatterns),
                                          term.pattern) == std::end(kTermPatterns))
-    return fail(ErrorCode::invalid, "Bad pattern", "A pattern is solid, hatch, dots or outline.",
-                "pattern");
+    return fail(ErrorCode::invalid, "Invalid pattern",
+                "The pattern must be solid, hatch, dots or outline.", "pattern");
   return {};
 }
 

@@ -15,8 +15,8 @@ constexpr int kTerms = 6;  // 1, x, y, x²/2, xy, y²/2
 using Normals = std::array<std::array<double, kTerms>, kTerms>;
 using Terms = std::array<double, kTerms>;
 
-// Solves the normal equations in place (lower triangle) by Cholesky; false where they are as good
-// as singular.
+// Solves the normal equations in place (lower triangle) by Cholesky. Returns false where they are
+// as good as singular.
 bool solve(Normals& a, Terms& b) {
   for (int i = 0; i < kTerms; ++i)
     for (int j = 0; j <= i; ++j) {
@@ -53,8 +53,8 @@ std::optional<Curvature> curvature_at(const SurfaceSamples& samples, const glm::
     const SurfaceSamples::Sample* sample;
     double weight;
   };
-  // Kept by each thread from one point to the next: to look for neighbours takes longer than to use
-  // them.
+  // Each thread keeps this array from one point to the next: the search for neighbors takes longer
+  // than their use.
   thread_local std::vector<Weighted> neighbours;
   neighbours.clear();
   glm::dvec3 mean_normal(0);
@@ -80,8 +80,8 @@ std::optional<Curvature> curvature_at(const SurfaceSamples& samples, const glm::
     }
   }
   if (!solve(a, b)) return std::nullopt;
-  // The fundamental forms of z = f(x, y) at x = y = 0; heights fall away from a bulge, hence the
-  // minus.
+  // The fundamental forms of z = f(x, y) at x = y = 0. The sign is negative because heights
+  // decrease away from a bulge.
   const double fx = b[1], fy = b[2], root = std::sqrt(1 + fx * fx + fy * fy);
   const double e = 1 + fx * fx, f = fx * fy, g = 1 + fy * fy;
   const double l = -b[3] / root, m = -b[4] / root, n = -b[5] / root;
@@ -115,7 +115,7 @@ std::optional<double> roughness_at(const SurfaceSamples& samples, const glm::vec
                xz = products[2] / area - mean.x * mean.z, yy = products[3] / area - mean.y * mean.y,
                yz = products[4] / area - mean.y * mean.z, zz = products[5] / area - mean.z * mean.z;
   // The direction of least variance: the smallest root of the characteristic polynomial in closed
-  // form, and the longest cross product of two rows of what is left.
+  // form, then the longest cross product of two rows of the remaining matrix.
   const double third = (xx + yy + zz) / 3;
   const double off = xy * xy + xz * xz + yz * yz;
   const double dx = xx - third, dy = yy - third, dz = zz - third;

@@ -15,16 +15,16 @@ struct Curvature {
   double gaussian() const { return max * min; }  // 1/unit²
 };
 
-// From the quadric that fits the samples within the radius best (weighted by area and nearness), as
-// a height over the plane across their mean normal. Noise finer than the radius is evened out,
-// details finer than it are, too. Nothing where the neighbourhood does not determine a quadric:
-// fewer than eight samples, or all in a line.
+// Fits a quadric to the samples within the radius (weighted by area and nearness), as a height over
+// the plane across their mean normal. Noise and details finer than the radius are averaged out.
+// Returns nothing where the neighborhood does not determine a quadric: fewer than eight samples, or
+// all in a line.
 std::optional<Curvature> curvature_at(const SurfaceSamples& samples, const glm::vec3& point,
                                       const glm::vec3& normal);
 
-// Distance from `point` to the plane that fits the samples within the radius best (least squares,
-// weighted by area), ≥ 0. Nothing where they do not determine a plane: fewer than three samples, or
-// all in a line.
+// Distance (≥ 0) from `point` to the plane that fits the samples within the radius best (least
+// squares, weighted by area). Returns nothing where they do not determine a plane: fewer than three
+// samples, or all in a line.
 std::optional<double> roughness_at(const SurfaceSamples& samples, const glm::vec3& point,
                                    const glm::vec3& normal);
 

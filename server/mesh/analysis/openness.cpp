@@ -21,8 +21,8 @@ struct ReleaseScene {
 using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
 using Scene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 
-// Even over the hemisphere with the density of a cosine: a golden-angle spiral on the disc, lifted
-// (Malley's method).
+// Evenly distributed over the hemisphere with the density of a cosine: a golden-angle spiral on the
+// disc, lifted (Malley's method).
 std::vector<glm::vec3> cosine_directions(int count) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   std::vector<glm::vec3> directions(count);
@@ -34,7 +34,7 @@ std::vector<glm::vec3> cosine_directions(int count) {
   return directions;
 }
 
-// 0…1, the same for the same place.
+// 0…1, always the same for the same position.
 float turn_of(const glm::vec3& p) {
   std::uint32_t h = 2166136261u;
   for (int k = 0; k < 3; ++k) h = (h ^ std::bit_cast<std::uint32_t>(p[k])) * 16777619u;
@@ -52,7 +52,7 @@ class RayOpenness final : public Openness {
         device_(std::move(device)),
         scene_(std::move(scene)),
         distance_(distance),
-        // Above the rounding of float coordinates, below what anyone measures.
+        // Above the rounding of float coordinates, below any measured length.
         lift_(glm::length(geometry_->box_max - geometry_->box_min) * 2e-6f),
         directions_(cosine_directions(rays)) {}
 
@@ -88,7 +88,7 @@ class RayOpenness final : public Openness {
 
 constexpr const char* kPreparing = "Preparing rays";
 
-// What the ray tracer asks while it makes its tree.
+// The ray tracer calls this while it builds its tree; false cancels.
 bool goes_on(void* progress, double done) {
   auto& watched = *static_cast<Progress*>(progress);
   watched.report(done, kPreparing);
@@ -101,7 +101,8 @@ Result<std::unique_ptr<Openness>> Openness::make(std::shared_ptr<const Geometry>
                                                  float distance, int rays, Progress& progress) {
   const auto refused = [] {
     return fail(ErrorCode::out_of_memory, "Not enough memory",
-                "The ray tracer could not be set up for a model of this size.");
+                "The server does not have enough memory for the ray tracer on a model of this "
+                "size. Import a smaller mesh.");
   };
   Device device(rtcNewDevice(nullptr));
   if (!device) return refused();

@@ -27,7 +27,7 @@ int cuts_of(float edge, float spacing) { return static_cast<int>(std::ceil(edge 
 int points_of(int cuts) { return (cuts + 1) * (cuts + 2) / 2; }
 
 // Long triangles are cut evenly, so slivers cost more than their area: the spacing is widened until
-// the sum fits.
+// the total fits.
 float fitting_spacing(const std::vector<float>& edges, float spacing) {
   for (;; spacing *= 1.5f) {
     double points = 0;
@@ -61,7 +61,7 @@ Result<SampledField> SampledField::make(std::shared_ptr<const Geometry> source,
   for (std::size_t t = 0; t < edges.size(); ++t) edges[t] = longest_edge(geometry, t);
   spacing = fitting_spacing(edges, spacing);
 
-  // Only what a small triangle stands on is worked out at vertices.
+  // Only the vertices of small triangles are evaluated.
   std::vector<glm::vec3> position_of(geometry.positions.size());
   std::vector<std::uint8_t> is_used(geometry.positions.size(), 0);
   std::vector<std::uint32_t> gridded;

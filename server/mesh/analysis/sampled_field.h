@@ -14,23 +14,23 @@
 
 namespace strata::mesh {
 
-// A value at a point of a surface, from its place and normal in model space; NaN: none. Called on
-// several threads at once.
+// Value at a point of a surface, from its position and normal in model space; NaN for no value.
+// Called on several threads at once.
 using PointFunction = std::function<float(const glm::vec3& position, const glm::vec3& normal)>;
 
-// A function of points, worked out at the vertices of a mesh and interpolated between them.
-// Triangles with an edge longer than `spacing` get a grid of points of their own, so that a coarse
-// mesh loses nothing. Immutable once made; thread-safe.
+// A function of points, evaluated at the vertices of a mesh and interpolated between them. A
+// triangle with an edge longer than `spacing` gets its own grid of points, so that a coarse mesh
+// loses nothing. Immutable after construction; thread-safe.
 class SampledField {
  public:
-  // Refused when cancelled. `spacing` > 0; it is widened where the grids would have more than four
-  // million points.
+  // `spacing` > 0; it is widened where the grids would have more than four million points. Refused
+  // when cancelled.
   static Result<SampledField> make(std::shared_ptr<const Geometry> geometry,
                                    const SurfaceNormals& normals, float spacing,
                                    const PointFunction& function, Progress& progress,
                                    int threads = background_threads());
 
-  // Corners without a value are left out of the mean; NaN where none has one.
+  // The mean leaves out corners without a value; NaN where no corner has one.
   float at(std::uint32_t triangle, const glm::vec3& weights) const;
 
  private:
@@ -42,7 +42,7 @@ class SampledField {
   float grid_at(const Grid& grid, const glm::vec3& weights) const;
 
   std::shared_ptr<const Geometry> geometry_;
-  std::vector<float> vertex_values_;               // of welded positions
+  std::vector<float> vertex_values_;               // for each welded position
   std::unordered_map<std::uint32_t, Grid> grids_;  // by triangle
   std::vector<float> grid_values_;
 };

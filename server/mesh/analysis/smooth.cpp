@@ -17,8 +17,8 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
   std::vector<bool> is_fixed(positions.size(), false);
   for (std::size_t v = 0; v < stays.size(); ++v)
     if (stays[v]) is_fixed[v] = true;
-  // A vertex goes no farther than a share of its shortest edge: the long edges of slivers would
-  // pull it through its neighbours.
+  // A vertex moves no farther than a share of its shortest edge: the long edges of slivers would
+  // pull it past its neighbors.
   std::vector<float> shortest(positions.size(), std::numeric_limits<float>::max());
   for (const auto edge : connectivity.edges()) {
     const auto side = connectivity.halfedge_handle(edge, 0);
@@ -33,7 +33,7 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
     std::fill(sum.begin(), sum.end(), glm::vec3(0));
     std::fill(weight.begin(), weight.end(), 0.f);
     // Every edge counts once for each of its triangles, in their order: sums of floats depend on
-    // it, and so would the atlas.
+    // the order, and so would the atlas.
     for (std::size_t c = 0; c < triangles.size(); ++c) {
       const std::uint32_t a = triangles[c], b = triangles[c % 3 == 2 ? c - 2 : c + 1];
       if (!is_fixed[a]) sum[a] += smoothed[b], weight[a] += 1;

@@ -9,9 +9,9 @@
 
 namespace strata::mesh {
 
-// Moves each vertex `iterations` times 60 % of the way to the mean of its neighbours; vertices on a
-// boundary stay, so that an open mesh does not shrink from its rim, and those that `stays` marks
-// (one a vertex; empty: none). `connectivity`: of the triangles.
+// Moves each vertex `iterations` times 60 % of the way to the mean of its neighbors. Vertices on a
+// boundary do not move, so that an open mesh does not shrink from its rim, nor do those marked in
+// `stays` (one entry a vertex; empty: none). `connectivity` is that of the triangles.
 std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangles,
                                           const Connectivity& connectivity,
                                           std::span<const glm::vec3> positions, int iterations,

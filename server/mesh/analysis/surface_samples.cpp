@@ -13,20 +13,21 @@ namespace {
 
 constexpr int kCellsPerRadius = 5;
 constexpr double kMaxPieces = 2e7;
-// Cells of a group have 20 bits an axis.
+// The cells of a group have 20 bits an axis.
 constexpr double kMaxCells = 1 << 20;
 constexpr int kMaxBands = 64;
-// Triangles of more cuts are asked which of their pieces may lie in a band before these are made.
+// For triangles with more cuts, the pieces that may lie in a band are selected before they are
+// made.
 constexpr int kManyCuts = 8;
 constexpr const char* kSampling = "Sampling the surface";
 
 struct Piece {
-  std::uint64_t group;  // fine cell and the way it faces
+  std::uint64_t group;  // fine cell and facing direction
   glm::vec3 position, normal;
   float area;
 };
 
-// Which of the six axis directions a normal is nearest to.
+// Returns the axis direction, of six, that is nearest to a normal.
 std::uint64_t facing(const glm::vec3& n) {
   const glm::vec3 size = glm::abs(n);
   const int axis = longest_axis(size);
@@ -35,8 +36,8 @@ std::uint64_t facing(const glm::vec3& n) {
 
 }  // namespace
 
-// The pieces are made, grouped and forgotten in bands across the model's longest axis, always the
-// same ones.
+// Makes, groups and drops the pieces in bands across the model's longest axis. The bands are always
+// the same ones.
 class SampleBands {
  public:
   SampleBands(const Geometry& geometry, SurfaceSamples& samples)
@@ -51,7 +52,7 @@ class SampleBands {
 
   int count() const { return static_cast<int>(bands_.size()); }
 
-  // Threads may work on several bands at once.
+  // Several threads may work on different bands at once.
   void sample(int which) {
     Band& band = bands_[which];
     const int first_cell = first_cell_of(which), end_cell = first_cell_of(which + 1);
@@ -91,7 +92,7 @@ class SampleBands {
     }
   }
 
-  // Brings together what bands hold of the same cell. After all of them.
+  // Merges the samples that several bands have of the same cell. Call it after all bands.
   void gather() {
     auto& cells = samples_.cells_;
     std::uint32_t total = 0;
@@ -118,7 +119,7 @@ class SampleBands {
   }
 
  private:
-  struct Run {  // of samples of one cell
+  struct Run {  // samples of one cell
     std::uint64_t cell;
     std::uint32_t count;
   };
@@ -130,7 +131,7 @@ class SampleBands {
   int first_cell_of(int band) const {
     return static_cast<int>(static_cast<std::int64_t>(cells_) * band / count());
   }
-  // Of places beside the box, too.
+  // Also accepts cells outside the box.
   int band_of(int cell) const {
     const auto inside = static_cast<std::int64_t>(std::clamp(cell, 0, cells_ - 1));
     return static_cast<int>(((inside + 1) * count() - 1) / cells_);
@@ -142,7 +143,7 @@ class SampleBands {
   Buckets triangles_by_band() const {
     return {count(), static_cast<std::uint32_t>(geometry_.triangle_count()), [&](std::uint32_t t) {
               const float a = corner(t, 0)[axis_], b = corner(t, 1)[axis_], c = corner(t, 2)[axis_];
-              // A cell wider, for what rounding moves.
+              // One cell wider, to allow for rounding.
               const auto cell_at = [&](float at) {
                 return static_cast<int>(std::floor((at - samples_.low_[axis_]) / cell_));
               };
@@ -177,12 +178,12 @@ class SampleBands {
     for (int i = 0; i < cuts; ++i) {
       int j_begin = 0, j_end = cuts - i;
       if (cuts > kManyCuts) {
-        // Where the row enters and leaves the band, a cell and a piece wider.
+        // The places where the row enters and leaves the band, widened by a cell and a piece.
         const double at = (a[axis_] + double{ab[axis_]} * i / cuts - samples_.low_[axis_]) / cell_;
         const double step = double{ac[axis_]} / cuts / cell_;
         const double low = (first - 2 - at) / step, high = (end + 2 - at) / step;
         if (!std::isnan(low) && !std::isnan(high)) {
-          // infinite for a row along the band: in it or not
+          // infinite for a row along the band: inside it or not
           j_begin = static_cast<int>(std::clamp(std::min(low, high) - 1, 0.0, double(j_end)));
           j_end = static_cast<int>(std::clamp(std::max(low, high) + 2, 0.0, double(j_end)));
         }

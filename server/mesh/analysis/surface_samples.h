@@ -12,11 +12,10 @@
 
 namespace strata::mesh {
 
-// A surface as points that each stand for a piece of it, about evenly spaced whatever the triangles
-// are like: all triangle pieces within a cell of radius / 5 that face the same way are one sample.
-// So a neighbourhood has some 80 samples in a scan of any density, noise finer than the cells is
-// averaged, and the two faces of a thin wall stay apart. Model space. Immutable once made;
-// thread-safe.
+// A surface as about evenly spaced points, independent of the shapes of its triangles: all triangle
+// pieces within a cell of radius / 5 that face the same way are one sample. So a neighborhood has
+// some 80 samples in a scan of any density, noise finer than the cells is averaged, and the two
+// faces of a thin wall stay apart. Model space. Immutable after construction; thread-safe.
 class SurfaceSamples {
  public:
   struct Sample {
@@ -24,21 +23,21 @@ class SurfaceSamples {
     float area;
   };
 
-  // The smallest radius that can be had of a mesh of that area (unit²) and box: below it there
-  // would be tens of millions of samples.
+  // The smallest radius allowed for a mesh of this area (unit²) and box: a smaller one would need
+  // tens of millions of samples.
   static double least_radius(double area, const glm::dvec3& extent);
 
   // radius ≥ least_radius. Refused when cancelled. The result does not depend on the number of
-  // threads; beside it some 60 bytes a piece of the bands that are worked on are needed, and 4 a
-  // triangle.
+  // threads. In addition to the result it needs some 60 bytes a piece of the bands in progress, and
+  // 4 a triangle.
   static Result<SurfaceSamples> make(const Geometry& geometry, float radius, Progress& progress,
                                      int threads = background_threads());
 
   float radius() const { return radius_; }
   std::size_t size() const { return samples_.size(); }
 
-  // visit(sample, squared distance) for each sample within the radius of `point` that faces within
-  // 80° of `normal`.
+  // Calls visit(sample, squared distance) for each sample within the radius of `point` that faces
+  // within 80° of `normal`.
   template <class Visit>
   void near(const glm::vec3& point, const glm::vec3& normal, Visit&& visit) const {
     constexpr float kMinCos = 0.17f;
@@ -70,7 +69,7 @@ class SurfaceSamples {
 
   float radius_;
   glm::vec3 low_;
-  std::vector<Sample> samples_;  // those of a cell of the radius's size together
+  std::vector<Sample> samples_;  // the samples of one cell of the radius's size are adjacent
   static constexpr std::uint32_t kUnplaced = 0xffffffffu;
   struct Range {
     std::uint32_t first = kUnplaced, count = 0;

@@ -21,30 +21,30 @@ namespace {
 
 constexpr int kThreads = 2;
 constexpr double kExpectedCoverage = 0.66;
-// A narrow cone stretches least. Rugged surfaces fall into many small charts by it, whose margins
-// fill the atlas: where less than kGoodCoverage is used, a wider cone is tried and the denser of
-// the two atlases taken.
+// A narrow cone stretches least. On rugged surfaces it makes many small charts, whose margins fill
+// the atlas: where the atlas uses less than kGoodCoverage, a wider cone is tried and the denser of
+// the two atlases is used.
 constexpr std::array<float, 2> kCones{55, 65};
-constexpr double kGoodCoverage = 0.61, kWantedCoverage = 0.72;
-// Texels between charts: the gutter rings of neighbours (2 texels each) stay apart at the lowest
-// resolution by the wide one.
+constexpr double kGoodCoverage = 0.61, kTargetCoverage = 0.72;
+// Texels between charts: with the wide gap, the gutter rings of neighbors (2 texels each) stay
+// apart at the lowest resolution.
 constexpr int kWideGap = 4, kNarrowGap = 2;
-// Hollow charts are cut from so many triangles on: smaller meshes have texels enough, and rather as
-// few seams as possible.
+// Hollow charts are cut in meshes of at least this many triangles: smaller ones have enough texels,
+// and fewer seams are better for them.
 constexpr std::size_t kCutsFrom = 5000;
-constexpr double kMinHollow = 0.003;  // box of a chart worth cutting, of the atlas
-// Faces that keep less than 1 / kMaxStretch of their area get charts of their own, if they are
-// worth as many texels; the footprint of faces in those charts is at least kStraightFootprint. None
-// has kNoFootprint: each is a chart then.
+constexpr double kMinHollow = 0.003;  // smallest box of a chart worth cutting, share of the atlas
+// Faces that keep less than 1 / kMaxStretch of their area get their own charts, if they are worth
+// as many texels. The footprint of faces in those charts is at least kStraightFootprint. No face
+// has kNoFootprint, which makes each face a chart.
 constexpr float kMaxStretch = 2.6f, kStraightFootprint = 0.45f, kNoFootprint = 2;
 constexpr double kMinSqueezed = 0.1;
-// Laplacian rounds: scanner noise is gone after two, and more would only add stretch.
+// Laplacian rounds: two remove scanner noise; more would only add stretch.
 constexpr int kSmoothing = 2;
-// No texel has two owners at the lowest resolution, nor at twice and four times that: layers are
-// usually so fine.
+// No texel has two owners at the lowest resolution, nor at twice and four times that, the usual
+// resolutions of layers.
 constexpr int kVerifiedResolutions = 3;
 constexpr int kMaxMendingRounds = 20;
-// Density is lowered by this factor, so often, before a new one is searched for.
+// The density is lowered by this factor, this many times, before a new one is searched for.
 constexpr double kRepackingStep = 0.995;
 constexpr int kMaxRepackings = 8;
 constexpr int kMaxResolution = 16384;
@@ -52,12 +52,12 @@ constexpr int kMaxResolution = 16384;
 // UVs hold it exactly and every GPU snaps the same vertex to the same place.
 constexpr double kUvSteps = 8192;
 
-// What unwrapping makes of a surface on the way to an atlas.
+// The intermediate results of unwrapping a surface.
 struct Unwrap {
   std::vector<Chart> charts;
   std::vector<glm::vec2> plane;  // of each corner, in its chart's plane
   std::vector<Outline> outlines;
-  // side of a chart, in units of the plane: longer ones are squeezed; 0: none are
+  // longest side of a chart, in units of the plane: longer charts are squeezed; 0: no limit
   float longest = 0;
   int gap = kWideGap;  // texels between charts
   PackingStart start;
@@ -91,16 +91,16 @@ std::vector<int> verified_resolutions(int lowest_resolution) {
 }
 
 tl::unexpected<Error> no_room(std::size_t charts, int resolution) {
-  return fail(
-      ErrorCode::invalid, "Cannot unwrap",
-      "The surface falls into " + std::to_string(charts) + " separate pieces, more than " +
-          std::to_string(resolution) + " × " + std::to_string(resolution) +
-          " texels can hold apart. Weld or clean the mesh, or import it with a higher lowest resolution.",
-      "lowest_resolution");
+  return fail(ErrorCode::invalid, "Cannot unwrap the surface",
+              "The surface consists of " + std::to_string(charts) + " separate pieces, more than " +
+                  std::to_string(resolution) + " × " + std::to_string(resolution) +
+                  " texels can keep apart. Weld or clean the mesh, or import it with a higher "
+                  "minimum resolution.",
+              "lowest_resolution");
 }
 
-// The surface of a face over its area in the plane: how much more a texel there holds than
-// elsewhere.
+// The area of a face on the surface divided by its area in the plane: how much more surface a texel
+// holds there than elsewhere.
 float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane,
                  std::uint32_t face) {
   const glm::vec2* p = &plane[3 * std::size_t{face}];
@@ -109,7 +109,7 @@ float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane,
   return area > 0 ? surface.original_frames.areas[face] / area : 0;
 }
 
-// By which a chart may be made shorter so that no texel of it holds too much.
+// The factor by which a chart may be made shorter so that no texel of it holds too much.
 float least_scale(const ChartSurface& surface, const Unwrap& unwrap, const Chart& chart) {
   float most = 1;
   for (const auto face : chart.faces)
@@ -154,7 +154,7 @@ Result<void> begin_pack(int resolution, const Progress& progress, Unwrap& unwrap
   return {};
 }
 
-// The narrow gap where the charts do not fit with the wide one.
+// Uses the narrow gap where the charts do not fit with the wide one.
 Result<void> begin_pack_somehow(int resolution, const Progress& progress, Unwrap& unwrap) {
   auto begun = begin_pack(resolution, progress, unwrap);
   if (begun || progress.cancelled() || unwrap.gap == kNarrowGap) return begun;
@@ -180,7 +180,7 @@ ChartOptions chart_options(const ChartSurface& surface, int lowest_resolution) {
   return options;
 }
 
-// Gives the faces charts of their own and flattens these.
+// Gives the faces their own charts and flattens these.
 Result<void> split(const ChartSurface& surface, std::span<const std::uint32_t> faces,
                    float smallest_footprint, int lowest_resolution, const Progress& progress,
                    Unwrap& unwrap) {
@@ -219,7 +219,7 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
   return unwrap;
 }
 
-// Takes `changed` where it is denser.
+// Replaces `unwrap` by `changed` where that is denser.
 Result<void> take_denser(int lowest_resolution, const Progress& progress, Unwrap changed,
                          Unwrap& unwrap) {
   auto begun = begin_pack(lowest_resolution, progress, changed);
@@ -228,24 +228,23 @@ Result<void> take_denser(int lowest_resolution, const Progress& progress, Unwrap
   return {};
 }
 
-// Squeezes the charts that are longer than the atlas would be if as much of it were used as is
-// wanted.
+// Squeezes the charts that are longer than the side of an atlas with the target coverage.
 void squeeze_long(const ChartSurface& surface, int lowest_resolution, Unwrap& unwrap) {
-  // What is squeezed is smaller, so that a little more must be.
+  // Squeezed charts have less area, so each round must squeeze a little more.
   for (int round = 0; round < 3; ++round) {
     unwrap.longest = static_cast<float>((1 - 2.0 * kWideGap / lowest_resolution) *
-                                        std::sqrt(area_in_planes(unwrap) / kWantedCoverage));
+                                        std::sqrt(area_in_planes(unwrap) / kTargetCoverage));
     outline(surface, unwrap);
   }
 }
 
-// Where little of the atlas is used: charts whose length keeps all others small are squeezed,
-// hollow ones cut, and the gaps made narrow, until enough is used.
+// Raises a low coverage: squeezes the charts whose length keeps all others small, cuts hollow ones,
+// and makes the gaps narrow, until the coverage is good enough.
 Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const Progress& progress,
                       Unwrap& unwrap) {
   const auto is_poor = [&] { return unwrap.expected_coverage < kGoodCoverage; };
   const double area = area_in_planes(unwrap);
-  const double longest = std::sqrt(area / kWantedCoverage);
+  const double longest = std::sqrt(area / kTargetCoverage);
   const bool is_long = std::any_of(
       unwrap.outlines.begin(), unwrap.outlines.end(),
       [&](const auto& some) { return double{std::max(some.size.x, some.size.y)} > longest; });
@@ -257,7 +256,7 @@ Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const 
   if (is_poor() && surface.mesh.triangle_count() >= kCutsFrom) {
     Unwrap cut = unwrap;
     if (cut_hollow_charts(surface, cut.plane,
-                          static_cast<float>(kMinHollow * area / kWantedCoverage), cut.charts)) {
+                          static_cast<float>(kMinHollow * area / kTargetCoverage), cut.charts)) {
       cut.longest = 0;
       outline(surface, cut);
       squeeze_long(surface, lowest_resolution, cut);
@@ -272,7 +271,7 @@ Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const 
   return {};
 }
 
-// Packs again what has a few small charts more: it usually fits as it is, or nearly.
+// Packs again after a few small charts were added: they usually fit at the same density, or nearly.
 Result<void> pack_again(int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
   for (int attempt = 0; attempt < kMaxRepackings; ++attempt) {
     const double density = unwrap.packing.texels_per_unit * std::pow(kRepackingStep, attempt);
@@ -291,8 +290,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
   const UnitMesh unit = to_unit_mesh(mesh);
   const ChartSurface surface = make_chart_surface(unit, kSmoothing);
   if (surface.original_frames.total_area <= 0)
-    return fail(ErrorCode::invalid, "Cannot unwrap", "No triangle of the mesh has an area.",
-                "file");
+    return fail(ErrorCode::invalid, "Cannot unwrap the surface",
+                "All triangles of the mesh have an area of 0. Check the file.", "file");
   if (progress.cancelled()) return cancelled_problem();
 
   std::optional<Unwrap> best;
@@ -311,8 +310,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
 
   Atlas atlas;
   const auto resolutions = verified_resolutions(lowest_resolution);
-  // Each round sends the later of two faces that share a texel to a chart of its own, so two or
-  // three rounds end it; should one ever not, the report says what overlaps.
+  // Each round moves the later of two faces that share a texel to its own chart, so two or three
+  // rounds are enough; if not, the report lists the overlap.
   for (int round = 0; round < kMaxMendingRounds; ++round) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(0.85, "Checking that nothing overlaps");

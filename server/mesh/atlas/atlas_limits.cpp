@@ -6,7 +6,7 @@
 namespace strata::mesh {
 namespace {
 
-// of the side of the atlas: a chart so long keeps the others small
+// share of the side of the atlas: a chart at least this long keeps the others small
 constexpr double kNearlyAll = 0.9;
 constexpr double kThin = 0.25;  // width over length
 constexpr double kMuch = 0.15;  // of the atlas

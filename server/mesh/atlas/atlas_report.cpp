@@ -22,8 +22,8 @@ struct Stretch {
   float area;
 };
 
-// Stretch beyond this factor of the mean counts as this factor: a sliver's ratio says nothing about
-// the atlas.
+// A stretch beyond this factor of the mean counts as this factor: the ratio of a sliver says
+// nothing about the atlas.
 constexpr double kMaxStretch = 50;
 constexpr int kMaxMeasured = 8192;                         // finer grids would take seconds
 constexpr std::size_t kBandTexels = std::size_t{1} << 22;  // measured at a time
@@ -47,8 +47,8 @@ void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasM
   }
 }
 
-// What areas are multiplied with so that the mean triangle has 1: nanometre and megametre models
-// stay inside float.
+// The factor that scales the mean triangle to an area of 1: nanometer and megameter models stay in
+// the range of float.
 double scale_of(const TriangleMesh& mesh, double area) {
   return area > 0 ? static_cast<double>(mesh.triangle_count()) / area : 1;
 }
@@ -80,7 +80,7 @@ double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> u
                           int resolution) {
   const auto side = static_cast<std::size_t>(resolution);
   const double scale = scale_of(mesh, surface_area(mesh));
-  // Band by band: the whole atlas at 8192² would take 268 MB.
+  // In bands: the whole atlas at 8192² would take 268 MB.
   const int rows = static_cast<int>(std::max<std::size_t>(1, kBandTexels / side));
   std::vector<float> texel_areas(side * static_cast<std::size_t>(rows));
   float largest = 0;
@@ -158,7 +158,7 @@ AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> uvs
     report.texel_sizes.push_back({resolution, texels > 0 ? measure.area / texels : 0, 0});
   }
   const int count = static_cast<int>(report.texel_sizes.size());
-  parallel_for(2, count, [&](int i) {  // the longest first
+  parallel_for(2, count, [&](int i) {  // starts with the largest resolution
     auto& size = report.texel_sizes[count - 1 - i];
     size.area_max = largest_texel_area(mesh, uvs, size.resolution);
   });

@@ -24,8 +24,8 @@ int longest_run(const ChartMask& mask, int row) {
   return length;
 }
 
-// The row with the longest run, then rows far apart, then those between them: a place that is not
-// free shows it soon.
+// Orders the row with the longest run first, then rows far apart, then those between them: this
+// order finds early that a place is not free.
 void order_rows(const ChartMask& mask, std::vector<std::uint16_t>& order) {
   order.clear();
   int longest = 0, length = 0;
@@ -62,17 +62,17 @@ void Canvas::block(const ChartMask& mask, int row, int y) {
     const int level = std::bit_width(static_cast<unsigned>(length)) - 1;
     const Word* line = words(level, y + row);
     const int second = run.end - (1 << level);
-    std::size_t kept = 0;
+    std::size_t kept_words = 0;
     words_touched_ += open_.size();
     for (const auto word : open_) {
       const Word now =
           blocked_[word] | shifted(line, word, run.begin) | shifted(line, word, second);
       blocked_[word] = now;
-      open_[kept] = word;
-      kept += now != kAll;
+      open_[kept_words] = word;
+      kept_words += now != kAll;
     }
-    open_.resize(kept);
-    if (kept == 0) return;
+    open_.resize(kept_words);
+    if (kept_words == 0) return;
   }
 }
 
@@ -82,7 +82,7 @@ int Canvas::longest_free(int y) {
   words_touched_ += static_cast<std::uint64_t>(word_count_);
   int longest = 0, free_since = kEdgeMargin;
   for (int word = 0; word < word_count_; ++word) {
-    // From each free run's end to the next one's begin.
+    // From each free run's end to the next one's beginning.
     Word taken = line[word];
     while (taken != 0) {
       const int begin = std::countr_zero(taken), length = std::countr_one(taken >> begin);
@@ -95,27 +95,27 @@ int Canvas::longest_free(int y) {
 }
 
 Canvas::Spot Canvas::find(const ChartMask& mask, int lowest, int highest) {
-  const int first = kEdgeMargin, last = width_ - kEdgeMargin - mask.width;  // places of x
+  const int first = kEdgeMargin, last = width_ - kEdgeMargin - mask.width;  // possible values of x
   highest = std::min(highest, height_ - kEdgeMargin - mask.height + 1);
   if (last < first) return {};
   order_rows(mask, row_order_);
-  // The rows that are asked first whether they have a run of free texels that is long enough: most
-  // of a filled atlas has not.
-  struct Asked {
+  // The rows that are first checked for a long enough run of free texels: most rows of a filled
+  // atlas have none.
+  struct RowRun {
     int row, run;
   };
-  std::array<Asked, 5> asked;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
+  std::array<RowRun, 5> samples;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     const int row = i == 0 ? row_order_.front()
-                           : static_cast<int>(i) * mask.height / static_cast<int>(asked.size());
-    asked[i] = {row, longest_run(mask, row)};
+                           : static_cast<int>(i) * mask.height / static_cast<int>(samples.size());
+    samples[i] = {row, longest_run(mask, row)};
   }
-  std::sort(asked.begin(), asked.end(),
-            [](const Asked& a, const Asked& b) { return a.run > b.run; });
+  std::sort(samples.begin(), samples.end(),
+            [](const RowRun& a, const RowRun& b) { return a.run > b.run; });
   for (int y = std::max(lowest, kEdgeMargin); y < highest; ++y) {
     ++words_touched_;
-    if (std::any_of(asked.begin(), asked.end(),
-                    [&](const Asked& a) { return longest_free(y + a.row) < a.run; }))
+    if (std::any_of(samples.begin(), samples.end(),
+                    [&](const RowRun& a) { return longest_free(y + a.row) < a.run; }))
       continue;
     open_.clear();
     for (int word = first / 64; word <= last / 64; ++word) {

@@ -7,8 +7,8 @@
 
 namespace strata::mesh {
 
-// The texels of an atlas that are taken, as bits, with what is needed to find the lowest free place
-// of a chart's exact shape quickly: charts lie in each other's bays and holes.
+// The occupied texels of an atlas as bits, with the data for a fast search of the lowest free place
+// of a chart's exact shape: charts lie in each other's bays and holes.
 class Canvas {
  public:
   Canvas(int side, int gap) : Canvas(side, side, gap) {}
@@ -17,14 +17,14 @@ class Canvas {
   struct Spot {
     int x = -1, y = 0;
   };
-  // The lowest place from row `lowest` on, of those the leftmost, whose texels are all free, with y
-  // below `highest`; x < 0 where there is none.
+  // Returns the lowest place from row `lowest` on, and of those the leftmost, whose texels are all
+  // free, with y below `highest`; x < 0 where no such place exists.
   Spot find(const ChartMask& mask, int lowest, int highest);
 
-  // Takes the texels of the mask, and all within `gap` texels of them.
+  // Occupies the texels of the mask, and all within `gap` texels of them.
   void put(const ChartMask& mask, Spot spot);
 
-  // How many words of bits were read and written so far: the work, whatever the machine.
+  // How many words of bits were read and written: the amount of work, the same on every machine.
   std::uint64_t words_touched() const { return words_touched_; }
 
  private:
@@ -38,16 +38,16 @@ class Canvas {
   int longest_free(int y);
 
   const int width_, height_, gap_, word_count_, stride_;
-  // Bit x of a row of level j: whether any of texels x … x + 2^j - 1 is taken. Rows have words more
-  // than they need, so that reading beyond the end is reading free texels.
+  // Bit x of a row of level j: whether any of texels x … x + 2^j - 1 is occupied. Rows have extra
+  // words, which are free texels for reads beyond the end.
   std::vector<std::vector<Word>> levels_;
-  // Of each row: the longest run of free texels between the margins. Measured when it is asked for;
-  // less than 0: not yet.
+  // For each row: the longest run of free texels between the margins, measured on demand; less than
+  // 0: not measured yet.
   std::vector<std::int32_t> longest_free_;
   std::uint64_t words_touched_ = 0;
-  // of the row that is searched: places where the chart does not fit
+  // in the searched row: places where the chart does not fit
   std::vector<Word> blocked_;
-  std::vector<std::uint16_t> open_;       // words of it that are not yet all ones
+  std::vector<std::uint16_t> open_;       // its words with a free place
   std::vector<std::uint16_t> row_order_;  // of the mask: those that block most first
 };
 

@@ -10,8 +10,8 @@
 namespace strata::mesh {
 namespace {
 
-constexpr float kMinFill = 0.45f;     // of its box by a chart that stays whole
-constexpr float kJoinedFill = 0.65f;  // of its box by what a few faces are joined to
+constexpr float kMinFill = 0.45f;     // share of its box that an uncut chart fills
+constexpr float kJoinedFill = 0.65f;  // share of its box that joined faces must fill
 constexpr std::size_t kFewFaces = 64;
 constexpr int kMaxRounds = 8;
 
@@ -25,7 +25,8 @@ float area_in_plane(std::span<const glm::vec2> plane, const Chart& chart) {
   return sum;
 }
 
-// Many faces: those with their middles on either side of the middle of the longer side of the box.
+// For many faces: two halves, by the sides of the middle of the box's longer side on which their
+// middles lie.
 std::vector<Chart> halves_of(const Chart& chart, const Outline& outline,
                              std::span<const glm::vec2> plane) {
   std::vector<Chart> halves{chart, chart};
@@ -39,8 +40,8 @@ std::vector<Chart> halves_of(const Chart& chart, const Outline& outline,
   return halves;
 }
 
-// A few faces, such as the eight of a frame, which no straight line cuts into its bars: joined
-// again, one by one, to what fills its box best.
+// For a few faces, such as the eight of a frame, which no straight line cuts into its bars: joins
+// single faces, one by one, into the parts that fill their boxes best.
 class Joiner {
  public:
   Joiner(const ChartSurface& surface, std::span<const glm::vec2> plane, const Chart& chart)
@@ -90,9 +91,9 @@ class Joiner {
   const ChartSurface& surface_;
   std::span<const glm::vec2> plane_;
   std::vector<Chart> parts_;
-  std::vector<std::size_t> part_of_;  // of the faces of the chart
+  std::vector<std::size_t> part_of_;  // for each face of the chart
   std::map<std::uint32_t, std::size_t> number_of_;
-  // of joined parts, each told by its first face and its size
+  // key: first face and number of faces of both parts
   std::map<std::array<std::size_t, 4>, float> fills_;
 };
 

@@ -10,9 +10,9 @@
 
 namespace strata::mesh {
 
-// Texels between the rim of a chart's box and the chart: a texel counts as touched by all that
-// comes as near. Rounding, the steps of UVs and a GPU's grid move a point by less, so that what a
-// mask does not hold stays empty in every quarter turn.
+// Texels between the rim of a chart's box and the chart: a texel counts as touched by everything
+// that is as near. Rounding, the steps of UVs and a GPU's grid move a point by less, so texels
+// outside a mask stay empty in every quarter turn.
 constexpr double kNear = 1.0 / 256;
 
 // The texels that a chart touches, row by row as runs.
@@ -22,8 +22,8 @@ struct ChartMask {
     bool operator==(const Run&) const = default;
   };
   int width = 0, height = 0;
-  std::vector<std::uint32_t> first_run;  // of each row, and one more
-  std::vector<Run> runs;                 // of a row: apart, from left to right
+  std::vector<std::uint32_t> first_run;  // of each row, and the end
+  std::vector<Run> runs;                 // of a row: disjoint, from left to right
 
   std::span<const Run> row(int y) const {
     return {runs.data() + first_run[y], runs.data() + first_run[y + 1]};

@@ -12,7 +12,7 @@
 
 namespace strata::mesh {
 
-// A connected piece of surface that is laid flat by looking along `axis`.
+// A connected piece of surface that is flattened by projection along `axis`.
 struct Chart {
   glm::vec3 origin{0}, axis{0, 0, 1}, u{1, 0, 0}, v{0, 1, 0};
   bool uses_smoothed = true;  // projects the smoothed copy; single faces project the surface itself
@@ -34,7 +34,7 @@ struct ChartOptions {
   double progress_from = 0.1, progress_to = 0.7;
 };
 
-// Everything that growing and laying out charts needs to know of a mesh.
+// The data of a mesh for growing charts and laying them out.
 struct ChartSurface {
   const UnitMesh& mesh;
   std::vector<std::uint32_t> neighbours;
@@ -50,24 +50,25 @@ struct ChartSurface {
 };
 ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing);
 
-// Cuts the surface into charts: each grows from a seed by priority (faces that look along its axis
-// and lie near first), takes a face only if that keeps it injective at texel level, and is grown
-// again along its mean normal. A flat piece is taken as a whole, and one too large for that is a
-// chart by itself. Then faces of tiny charts join neighbours that can take them. Every face ends in
-// exactly one chart, every chart is connected. Empty when cancelled.
+// Cuts the surface into charts. Each grows from a seed by priority (faces that look along its axis
+// and lie near first), accepts a face only if it stays injective at texel level, and is grown again
+// along its mean normal. A flat piece is added as a whole, and one too large for that is its own
+// chart. Then faces of tiny charts join neighbors that can accept them. In the result every face is
+// in exactly one chart, and every chart is connected. Empty when cancelled.
 std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface,
                                               const ChartOptions& options, Progress& progress);
 
-// Takes the given faces, with the flat pieces that they are of, out of their charts and cuts them
-// into charts of their own, of several faces where `options` allow it; what a chart loses its
-// connection by becomes several charts. Returns the number of the first new chart: the ones before
-// it are parts of what was there. Empty when cancelled.
+// Removes the given faces, with their flat pieces, from their charts and cuts them into new charts,
+// of several faces where `options` allow it. A chart that is no longer connected becomes several
+// charts. Returns the number of the first new chart: the charts before it are parts of existing
+// charts. Empty when cancelled.
 std::optional<std::size_t> split_off(const ChartSurface& surface,
                                      std::span<const std::uint32_t> faces,
                                      const ChartOptions& options, const Progress& progress,
                                      std::vector<Chart>& charts);
 
-// Appends the connected parts of `chart` to `charts`. `pending`: one a face, all 0, and left so.
+// Appends the connected parts of `chart` to `charts`. `pending` has one entry a face, all 0 before
+// and after the call.
 void append_connected_parts(const ChartSurface& surface, const Chart& chart,
                             std::vector<std::uint8_t>& pending, std::vector<Chart>& charts);
 

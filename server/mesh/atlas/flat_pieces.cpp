@@ -9,8 +9,8 @@
 namespace strata::mesh {
 namespace {
 
-// Of the largest side of the mesh: what text files with few digits and float positions leave of a
-// plane.
+// Distance from a plane, share of the largest side of the mesh: covers the rounding of text files
+// with few digits and of float positions.
 constexpr float kOffPlane = 1e-5f;
 constexpr float kFlatCosine = 0.99999f;    // 0.26°: between normals of faces of one piece
 constexpr float kCreaseCosine = 0.99985f;  // 1°: to a face beyond the edge of the piece
@@ -24,7 +24,7 @@ class Finder {
   FlatPieces find() {
     std::vector<std::uint32_t> seeds = faces_with_a_flat_edge();
     if (seeds.empty()) return {};
-    // A large face has the most exact normal.
+    // Large faces first: they have the most exact normals.
     std::stable_sort(seeds.begin(), seeds.end(),
                      [&](auto a, auto b) { return frames_.areas[a] > frames_.areas[b]; });
     of_face_.assign(mesh_.triangle_count(), FlatPieces::kNone);
@@ -62,7 +62,7 @@ class Finder {
     piece.normal = frames_.normals[seed];
     const glm::vec3 origin = mesh_.corner(seed, 0);
     const auto lies_in_plane = [&](std::uint32_t face) {
-      // A sliver has hardly a normal: its corners tell.
+      // The normal of a sliver is inexact: its corners decide.
       const float cosine = glm::dot(frames_.normals[face], piece.normal);
       if (frames_.areas[face] > 0 && cosine < kFlatCosine) return false;
       for (int k = 0; k < 3; ++k)
@@ -85,7 +85,7 @@ class Finder {
     if (piece.faces.size() > 1 && ends_at_creases(piece, number)) {
       pieces_.push_back(std::move(piece));
     } else {
-      // Each seed of a smooth surface would find much the same faces.
+      // Other seeds on a smooth surface would find almost the same faces.
       for (const auto face : piece.faces) of_face_[face] = FlatPieces::kNone, was_tried_[face] = 1;
     }
   }

@@ -9,11 +9,11 @@
 namespace strata::mesh {
 
 // Connected faces that lie in one plane and end at creases or rims: the sides of a cube, the cap of
-// a cylinder. Faces of a curved surface are in none, however small the angles between them.
+// a cylinder. Faces of a curved surface are in no piece, even with small angles between them.
 struct FlatPieces {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  // the number of its piece, or kNone; empty where there are no pieces
+  // number of the piece of each face, or kNone; empty where there are no pieces
   std::vector<std::uint32_t> of_face;
   // those of piece i: faces[begin[i]] up to faces[begin[i + 1]]
   std::vector<std::uint32_t> faces, begin;
@@ -28,8 +28,8 @@ struct FlatPieces {
   }
 };
 
-// The pieces of two faces and more, the largest area first. `neighbours`: as face_neighbours gives
-// them.
+// The pieces of at least two faces, the largest area first. `neighbours` is the result of
+// `face_neighbours`.
 FlatPieces find_flat_pieces(const UnitMesh& mesh, std::span<const std::uint32_t> neighbours,
                             const FaceFrames& frames);
 

@@ -9,7 +9,7 @@
 namespace strata::mesh {
 
 // The texels that the faces of one growing chart cover, so that no two faces of it share a texel.
-// Chart coordinates are texels relative to the centre of a square window of `side` texels; faces
+// Chart coordinates are texels relative to the center of a square window of `side` texels; faces
 // that leave the window are refused.
 class Occupancy {
  public:
@@ -17,13 +17,13 @@ class Occupancy {
 
   enum class Overlap { refuse, allow };
 
-  // Forgets all texels, at no cost.
+  // Clears all texels in constant time.
   void clear() { ++stamp_; }
 
-  // Whether no texel whose centre the triangle covers is taken, and it lies in the window.
+  // Whether the triangle lies in the window and all texels whose centers it covers are free.
   bool is_free(glm::vec2 a, glm::vec2 b, glm::vec2 c);
 
-  // Takes the texels whose centres the triangle covers; with Overlap::refuse only if all of them
+  // Occupies the texels whose centers the triangle covers; with Overlap::refuse only if all of them
   // are free.
   bool claim(glm::vec2 a, glm::vec2 b, glm::vec2 c, Overlap overlap = Overlap::refuse);
 
@@ -37,7 +37,7 @@ class Occupancy {
   const int side_;
   std::uint32_t stamp_ = 1;
   std::vector<std::uint32_t> stamps_;
-  std::vector<Span> spans_;  // of the triangle that is looked at
+  std::vector<Span> spans_;  // of the current triangle
 };
 
 }  // namespace strata::mesh

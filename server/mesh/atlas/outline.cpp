@@ -21,8 +21,8 @@ std::vector<glm::vec2> hull_of(std::vector<glm::vec2> points) {
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   std::vector<glm::vec2> hull;
-  const auto add = [&](glm::vec2 p, std::size_t kept) {
-    while (hull.size() > kept && turn_of(hull[hull.size() - 2], hull.back(), p) <= 0)
+  const auto add = [&](glm::vec2 p, std::size_t min_size) {
+    while (hull.size() > min_size && turn_of(hull[hull.size() - 2], hull.back(), p) <= 0)
       hull.pop_back();
     hull.push_back(p);
   };
@@ -33,7 +33,8 @@ std::vector<glm::vec2> hull_of(std::vector<glm::vec2> points) {
   return hull;
 }
 
-// Turns the outline so that its box has the least area: it lies on an edge of the convex hull then.
+// Turns the outline so that its box has the least area: the box then lies on an edge of the convex
+// hull.
 void turn(Outline& outline) {
   const auto hull = hull_of(outline.segments);
   float least = std::numeric_limits<float>::max();
@@ -51,8 +52,7 @@ void turn(Outline& outline) {
     turned.low = low, turned.size = high - low;
     if (const float area = turned.size.x * turned.size.y; area < least) least = area, best = turned;
   }
-  // The box of the segments themselves: where the hull dropped points for rounding, they may lie a
-  // little outside.
+  // Computed from the segments: rounding in the hull may leave points a little outside.
   glm::vec2 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
   best.low = glm::vec2(0);
   for (auto& p : outline.segments) {

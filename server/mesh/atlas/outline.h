@@ -9,7 +9,7 @@
 namespace strata::mesh {
 
 // The rim of a chart in its plane, turned so that its bounding box has the least area, squeezed
-// where it was too long, lower left corner at 0.
+// where it was too long. The lower left corner is at 0.
 struct Outline {
   std::vector<glm::vec2> segments;  // two points each, the chart on the left, any order
   glm::vec2 size{0};                // of the box, in units of the plane
@@ -21,12 +21,12 @@ struct Outline {
     return glm::vec2(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y) * scale - low;
   }
 
-  // Makes it narrower or lower by these factors.
+  // Scales the outline by these factors.
   void squeeze(glm::vec2 factors);
 };
 
-// `plane`: of every corner of the mesh, as `flatten` gives it.
-// with all edges of its faces
+// `plane`: a point for every corner of the mesh, from `flatten`. Contains all edges of the chart's
+// faces.
 Outline make_outline_of(const Chart& chart, std::span<const glm::vec2> plane);
 std::vector<Outline> make_outlines(const ChartSurface& surface, std::span<const Chart> charts,
                                    std::span<const glm::vec2> plane);

@@ -12,18 +12,18 @@
 namespace strata::mesh {
 namespace {
 
-// No single order packs every set of charts best: all are tried at one density, and the two best of
-// them at others. The more charts, the less they differ.
+// No single order packs every set of charts best: all orders are tried at one density, and the two
+// best at others. The more charts, the less the orders differ.
 enum Order : std::uint8_t { longer_side, box_area, half_perimeter, area, diagonal };
 constexpr std::array<std::uint8_t, 5> kOrders{longer_side, half_perimeter, box_area, diagonal,
                                               area};
 constexpr std::size_t kManyCharts = 1000, kSomeCharts = 200;
-// Densities are tried two at a time, whatever the number of threads: each round leaves a third of
-// the interval.
+// Two densities are tried at a time, with any number of threads: each round leaves a third of the
+// interval.
 constexpr int kTogether = 2;
 constexpr int kRounds = 4, kRoundsOfMany = 3;
 constexpr double kLikelyFill = 0.78;  // of the atlas by charts with half their gaps
-// relative to the atlas: a pack that grows higher tells nothing
+// relative to the atlas: higher packings give no useful estimate
 constexpr double kMaxHeight = 1.3;
 constexpr double kLessDense = 0.9, kMoreDense = 1.04;
 
@@ -47,10 +47,10 @@ std::vector<std::uint32_t> ordered(std::span<const ChartShape> shapes, std::uint
   return numbers;
 }
 
-// From which row on the search for a place of a chart begins. Nothing is free below the place of a
-// chart of the very same shape. Below the places of the last charts of like size, or of any size
-// where there was none, there hardly is, which is what searches take as given where there are many
-// charts: without it they would read the whole atlas for each.
+// The row where the search for a chart's place begins. Nothing is free below the place of a chart
+// of the same shape. Below the places of the last charts of similar size (or of any size, if none
+// is similar) there is rarely free space; with many charts the search assumes no free space there,
+// because otherwise it would read the whole atlas for each chart.
 class Floors {
  public:
   explicit Floors(std::size_t charts)
@@ -66,7 +66,7 @@ class Floors {
     if (like != of_size_.end()) return std::max(floor, least(like->second));
     return by_any_ ? std::max(floor, least(of_any_)) : floor;
   }
-  // A place was found, whether or not it was taken.
+  // Records a place, whether or not the chart was put there.
   void found(const ChartMask& mask, std::uint64_t shape, int y) {
     of_shape_[shape] = y;
     if (!by_size_) return;
@@ -79,7 +79,7 @@ class Floors {
   void taken(int y) { push(of_any_, y); }
 
  private:
-  static constexpr double kStep = 1.25;  // sizes within this factor are alike
+  static constexpr double kStep = 1.25;  // sizes within this factor are similar
   static std::uint64_t size_class(const ChartMask& mask) {
     const auto step = [](double size) {
       return static_cast<std::uint64_t>(std::log(size) / std::log(kStep));
@@ -96,7 +96,7 @@ class Floors {
   }
   const bool by_size_, by_any_;
   std::unordered_map<std::uint64_t, int> of_shape_;
-  // one that is hard to place does not set it alone
+  // three values, so that one chart that is hard to place does not decide alone
   std::unordered_map<std::uint64_t, std::array<int, 3>> of_size_;
   std::array<int, 32> of_any_;
 };
@@ -111,17 +111,17 @@ std::uint64_t fingerprint(const ChartMask& mask) {
   return hash;
 }
 
-// Texels: a margin of one remains on either side.
+// In texels: a margin of one remains on either side.
 int longest_box(int side) { return std::max(1, side - 2); }
 
-// Charts at one density.
+// The shapes of all charts at one density.
 struct Shapes {
   double texels_per_unit = 0;
   std::vector<ChartShape> charts;
-  std::vector<std::array<std::uint64_t, 4>> fingerprints;  // of each in its four turns
+  std::vector<std::array<std::uint64_t, 4>> fingerprints;  // of each chart in its four turns
 };
 
-// Empty where one of them is larger than the atlas.
+// Empty where a shape is larger than the atlas.
 std::optional<Shapes> make_shapes(std::span<const Outline> outlines, double density, int side) {
   Shapes shapes;
   shapes.texels_per_unit = density;
@@ -136,7 +136,7 @@ std::optional<Shapes> make_shapes(std::span<const Outline> outlines, double dens
   return shapes;
 }
 
-// Charts laid into a strip as wide as the atlas.
+// A packing of charts into a strip as wide as the atlas.
 struct Trial {
   Packing packing;
   int height = 0;
@@ -155,11 +155,11 @@ std::optional<Trial> place(const Shapes& shapes, int side, int most_height, int 
     const auto& prints = shapes.fingerprints[i];
     Canvas::Spot best;
     int best_turn = 0, best_top = most_height + 1;
-    // Lying first: upright a chart reaches that high only from far lower, so that little is left to
-    // search.
+    // The lying turn first: the upright turn reaches the same height only from far lower, so little
+    // is left to search.
     const int lying = shape.box.x >= shape.box.y ? 0 : 1;
     for (const int turn : {lying, lying + 2, 1 - lying, 3 - lying}) {
-      // Small charts look the same from most sides.
+      // Small charts often have the same shape in opposite turns.
       if (turn >= 2 && prints[turn] == prints[turn - 2]) continue;
       const ChartMask& mask = shape.turned[turn];
       const auto spot = canvas.find(mask, floors.of(mask, prints[turn]), best_top - mask.height);
@@ -192,7 +192,7 @@ double doubled_area(const Outline& outline) {
   return std::max(area, 0.0);
 }
 
-// The density at which the charts, each with half a gap around it, take `share` of the atlas.
+// The density at which the charts, each with half a gap around it, cover `share` of the atlas.
 double density_that_fills(std::span<const Outline> outlines, int side, int gap, double share) {
   double area = 0, rim = 0;
   for (const Outline& outline : outlines) {
@@ -206,7 +206,7 @@ double density_that_fills(std::span<const Outline> outlines, int side, int gap, 
   return a > 0 ? (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a) : -c / b;
 }
 
-// A little below the density at which the box of the longest chart grows longer than `texels`.
+// A little below the density at which the box of the longest chart would exceed `texels`.
 double density_of_longest(std::span<const Outline> outlines, int texels) {
   float largest = 0;
   for (const Outline& outline : outlines)
@@ -265,7 +265,7 @@ std::optional<PackingStart> begin_packing(std::span<const Outline> outlines, int
     for (const auto i : numbers)
       if (start.orders.size() < (outlines.size() >= kSomeCharts ? 2 : 5))
         start.orders.push_back(orders[i]);
-    // The height that charts reach grows about as their area does.
+    // The height of a packing grows approximately with the area of the charts.
     start.expected_density = std::clamp(start.density * std::sqrt(double(side) / lowest.height),
                                         start.least_density, start.most_density);
     if (lowest.height <= side) start.packing = std::move(lowest.packing);

@@ -6,13 +6,13 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kAreaWeight = 4;  // of the area's distortion beside the shape's
-// height over base; slivers say nothing of the shape they should have
+constexpr double kAreaWeight = 4;  // of the area's distortion relative to the shape's
+// height over base; the true shape of a thinner sliver is not meaningful
 constexpr double kMinQuality = 0.1;
 constexpr int kMaxHalvings = 6;
 
-// A triangle's map from its true shape: the columns of its Jacobian are sums of its corners with
-// these factors.
+// The map of a triangle from its true shape: the columns of the Jacobian are sums of its corners
+// with these factors.
 struct Element {
   double first[3], second[3];
   double weight;
@@ -27,7 +27,7 @@ Element make_element(const RelaxPatch::Face& face, double mean_area) {
     b = {side, 0}, c = {side / 2, side * std::sqrt(3.0) / 2};
   }
   const double det = b.x * c.y - b.y * c.x;
-  // The inverse of [b c] takes (b - a, c - a) to the Jacobian.
+  // The inverse of [b c] maps (b - a, c - a) to the Jacobian.
   Element element;
   element.first[1] = c.y / det, element.first[2] = -b.y / det;
   element.second[1] = -c.x / det, element.second[2] = b.x / det;
@@ -97,7 +97,7 @@ class Relaxer {
       visit(corners_[i] / 3, corners_[i] % 3);
   }
 
-  // Of the faces around a point; `epsilon` keeps it finite where some are folded.
+  // Energy of the faces around a point; `epsilon` keeps it finite where some are folded.
   Energy energy(std::uint32_t v, double epsilon, bool with_gradient) const {
     Energy sum;
     for_each_corner(v, [&](std::uint32_t f, std::uint32_t k) {

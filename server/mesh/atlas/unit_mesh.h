@@ -9,9 +9,9 @@
 
 namespace strata::mesh {
 
-// A mesh moved to the origin and scaled so that its largest side is 1: what the unwrap works on, so
-// that millimetres, UTM metres and nanometres behave alike. The subtraction and scaling are done in
-// double.
+// A mesh moved to the origin and scaled so that its largest side is 1, the input of the unwrap: so
+// models in millimeters, UTM meters and nanometers behave alike. Subtraction and scaling are
+// computed in double.
 struct UnitMesh {
   std::vector<glm::vec3> positions;
   std::span<const std::uint32_t> triangles;  // of the source mesh, which must outlive this
@@ -25,7 +25,7 @@ struct UnitMesh {
 
 UnitMesh to_unit_mesh(const TriangleMesh& mesh);
 
-// Normals and areas of faces for given positions; a degenerate face has area 0 and normal 0.
+// Normals and areas of faces for given positions. A degenerate face has area 0 and normal 0.
 struct FaceFrames {
   std::vector<glm::vec3> normals;
   std::vector<float> areas;
@@ -34,7 +34,7 @@ struct FaceFrames {
 FaceFrames face_frames(std::span<const std::uint32_t> triangles,
                        std::span<const glm::vec3> positions);
 
-// Face normals averaged over neighbours `rounds` times, weighted by area: the trend of the surface
+// Face normals averaged over neighbors `rounds` times, weighted by area: the trend of the surface
 // without its noise.
 std::vector<glm::vec3> averaged_normals(std::span<const std::uint32_t> triangles,
                                         std::size_t vertex_count, const FaceFrames& frames,

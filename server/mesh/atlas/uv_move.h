@@ -13,14 +13,14 @@ namespace strata::mesh {
 
 struct MovedUvs {
   std::vector<glm::vec2> corner_uvs;
-  // of the coordinates that stay, where the texture had no free room and was given some
+  // scale of the coordinates that stay, less than 1 where the texture had no free room
   float scale = 1;
 };
 
-// Unfolds the triangles `moved` (ascending, each with surface) and lays them, at the scale that the
-// rest has, on texels that the rest leaves free at `resolution`; where there is no room, at a
-// smaller scale, and then beside the rest, which is made smaller. `corner_uvs` of the rest lie in
-// [0,1]². Empty where nothing helps, or when cancelled.
+// Unfolds the triangles `moved` (ascending, each with area) and places them, at the scale of the
+// rest, on texels that the rest leaves free at `resolution`; without enough room, at a smaller
+// scale; and then next to the rest, which is made smaller. `corner_uvs` of the rest lie in [0,1]².
+// Empty where nothing fits, or when cancelled.
 std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh,
                                        std::span<const glm::vec2> corner_uvs,
                                        std::span<const std::uint32_t> moved, int resolution,

@@ -22,7 +22,7 @@ struct Ring {
 };
 
 // Rings from the middle of the underside over the rim to the middle of the floor. Towards the poles
-// a ring has half as many columns each time its radius halves, so that triangles stay well-shaped.
+// each halving of the radius halves the number of columns, so that triangles stay well-shaped.
 std::vector<Ring> make_rings(double detail) {
   const double scale = std::sqrt(detail);
   const int columns = 32 * std::max(2, static_cast<int>(std::lround(480 * scale / 32)));
@@ -81,8 +81,8 @@ class RingMesh {
     mesh_.triangles.insert(mesh_.triangles.end(), {a, b, c});
   }
 
-  // `a` comes before `b` on the way from the underside to the floor; seen from outside it is the
-  // lower one.
+  // `a` precedes `b` on the way from the underside to the floor; seen from outside it is the lower
+  // one.
   void stitch(const Ring& a, const Ring& b) {
     const int fewer = std::min(a.columns, b.columns);
     if (a.columns == 1) {
@@ -107,7 +107,7 @@ class RingMesh {
     }
   }
 
-  // Along the shorter diagonal.
+  // Splits along the shorter diagonal.
   void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     const auto& p = mesh_.positions;
     if (glm::distance(p[a], p[c]) <= glm::distance(p[b], p[d])) {
@@ -123,7 +123,7 @@ class RingMesh {
   TriangleMesh mesh_;
 };
 
-// Stands the pot on z = 0 with its axis near the origin, at its stated size.
+// Places the pot on z = 0 with its axis near the origin, at its stated size.
 void scale_to_size(TriangleMesh& mesh) {
   glm::dvec3 low = mesh.positions[0], high = low;
   for (const glm::dvec3& p : mesh.positions) {
@@ -137,8 +137,8 @@ void scale_to_size(TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh make_demo_pot(double detail) {
-  // Ring counts must at most double or halve from one to the next; so coarse a pot that they could
-  // not is never asked for.
+  // The number of columns must at most double or halve from one ring to the next, which a coarser
+  // pot would violate.
   std::vector<Ring> rings = make_rings(std::clamp(detail, 0.02, 100.0));
   for (std::size_t i = 2; i + 1 < rings.size(); ++i) {
     rings[i].columns =

@@ -13,7 +13,7 @@ namespace strata::mesh {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSplitHeight = 50;  // below it rings are level; above they follow the broken rim
+constexpr double kSplitHeight = 50;  // rings below are level; rings above follow the broken rim
 constexpr double kHeight = 91;
 
 // Profiles, (distance from the axis, height).
@@ -38,7 +38,7 @@ glm::dvec2 catmull_rom(std::span<const glm::dvec2> points, double u) {
                 f * f * f * (3.0 * p1 - p0 - 3.0 * p2 + p3));
 }
 
-// A profile by its length, or by its height where that grows along it.
+// A profile by its length, or by its height where the height increases along it.
 class Profile {
  public:
   explicit Profile(std::span<const glm::dvec2> points) {
@@ -63,7 +63,7 @@ class Profile {
     const glm::dvec2 a = *(above - 1), b = *above;
     return glm::mix(a, b, (z - a.y) / (b.y - a.y));
   }
-  // Unit normal to the left of an upward profile's inside, that is away from the axis.
+  // Unit normal that points away from the axis for an upward outer profile.
   glm::dvec2 normal(double t) const {
     return turned(at(std::min(1.0, t + 0.004)) - at(std::max(0.0, t - 0.004)));
   }
@@ -115,10 +115,10 @@ struct Surface {
   double paint = 0;   // 0…1: dark slip
   double ochre = 0;   // 0…1: red slip
   double cream = 0;   // 0…1: light ground
-  double recess = 0;  // 0…1: where dirt stays
+  double recess = 0;  // 0…1: where dirt collects
 };
 
-// A rope laid round the pot: strands at a slant on a round ridge.
+// A rope around the pot: slanted strands on a round ridge.
 void add_rope(Surface& s, double angle, double z, double center, double width, double height) {
   const double ridge = std::sqrt(std::max(0.0, 1 - (z - center) * (z - center) / (width * width)));
   const double strands = std::sin(52 * angle + (z - center) * 1.5);
@@ -159,8 +159,8 @@ void add_spirals(Surface& s, double angle, double z) {
   const double coil = r / kPitch - turn;
   double distance = std::abs(coil - std::round(coil)) * kPitch;
   if (r > kOuter) distance = std::max(distance, (r - kOuter) + 0.4);
-  // The bar that leaves the foot of one spiral and rises, over the edge of the cell, to the crest
-  // above the next.
+  // The bar from the foot of one spiral, across the edge of the cell, up to the crest above the
+  // next.
   const double cell = kPi / kCount * kRadius;
   const double wave =
       kOuter *
@@ -214,7 +214,7 @@ Surface outer_surface(double angle, double z) {
     s.recess = std::max(
         s.recess, 0.8 * std::max(bump(z - center - 1.25, 0.45), bump(z - center + 1.25, 0.45)));
   }
-  // The painted neck with leaves left free, and the bead of the lip.
+  // The painted neck with leaves left unpainted, and the bead of the lip.
   const double neck = window(z, 77.0, 86.4, 0.3);
   const double leaf_x = arc_in_cell(angle, 26, 33.0), leaf_y = (z - 81.6) / 4.0;
   const double leaf = glm::smoothstep(-0.15, 0.15, 1 - leaf_y * leaf_y - std::abs(leaf_x) / 1.6);
@@ -226,12 +226,12 @@ Surface outer_surface(double angle, double z) {
 }
 
 struct Break {
-  double height;  // of the rim here
+  double height;  // of the rim at this angle
   double broken;  // 0 intact lip … 1 fracture
 };
 
-// The rim, once round: the lip is whole behind and broken in front, where one sherd is missing down
-// to the shoulder.
+// The rim around the pot: the lip is intact at the back and broken in front, where one sherd is
+// missing down to the shoulder.
 Break rim_at(double angle) {
   struct Knot {
     double degrees, height;
@@ -255,8 +255,7 @@ Break rim_at(double angle) {
   return {std::min(kHeight, height + broken * jag), broken};
 }
 
-// What hands do to a wheel-thrown form: not quite round, leaning a little, with the marks of
-// fingers.
+// The irregularities of a hand-made form: not quite round, leaning a little, with finger marks.
 glm::dvec3 wobbled(double radius, double z, double angle) {
   const double h = z / kHeight;
   const double round = 1 + 0.022 * std::cos(2 * (angle - 0.3)) +
@@ -288,15 +287,15 @@ glm::dvec3 clay_color(const glm::dvec3& p) {
 
 std::uint32_t outer_color(const Surface& s, const glm::dvec3& p) {
   const double wear = fractal_noise(p * 0.22 + 11.0, 4);
-  const double kept = glm::smoothstep(-0.34, -0.16, wear);  // slip has flaked off elsewhere
+  const double slip_share = glm::smoothstep(-0.34, -0.16, wear);  // slip has flaked off elsewhere
   const double chipped = glm::smoothstep(-0.25, 0.0, fractal_noise(p * 0.8 + 31.0, 2) + 0.22);
   glm::dvec3 color = clay_color(p);
-  color = glm::mix(color, kCream * (1 + 0.06 * wear), s.cream * (0.55 + 0.45 * kept));
-  color = glm::mix(color, kOchre * (1 + 0.2 * wear), s.ochre * kept * 0.92);
-  color = glm::mix(color, kPaint * (1 + 0.3 * wear), s.paint * kept * (0.7 + 0.3 * chipped));
+  color = glm::mix(color, kCream * (1 + 0.06 * wear), s.cream * (0.55 + 0.45 * slip_share));
+  color = glm::mix(color, kOchre * (1 + 0.2 * wear), s.ochre * slip_share * 0.92);
+  color = glm::mix(color, kPaint * (1 + 0.3 * wear), s.paint * slip_share * (0.7 + 0.3 * chipped));
   const double dirt = s.recess * (0.62 + 0.35 * fractal_noise(p * 0.3 + 5.0, 2));
   color = glm::mix(color, kDirt, std::clamp(dirt, 0.0, 0.85));
-  // A cloud of soot from the last fire, low on one side.
+  // A soot mark from the last fire, low on one side.
   const double soot = bump(glm::distance(p, glm::dvec3(-38, 30, 20)), 24) *
                       (0.75 + 0.8 * fractal_noise(p * 0.12, 3));
   return pack(glm::mix(color, kSoot, std::clamp(soot, 0.0, 0.75)));
@@ -310,7 +309,7 @@ std::uint32_t inner_color(const glm::dvec3& p) {
   return pack(glm::mix(color, glm::dvec3(150, 132, 112), 0.6 * deposit));
 }
 
-// Fired in a short fire: the core stayed grey between two red margins.
+// Fired briefly: the core is gray between two red margins.
 std::uint32_t fracture_color(double t, double broken, const glm::dvec3& p) {
   const double core = window(t, 0.28, 0.72, 0.12);
   glm::dvec3 color =

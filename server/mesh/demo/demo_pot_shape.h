@@ -5,12 +5,12 @@
 
 namespace strata::mesh {
 
-// The form of the demo pot without its mesh: where its skin lies, and what colour it has. Lengths
-// in mm, angles in radians, +z up, before the final scaling to the stated size.
+// The form of the demo pot without its mesh: position and color of its surface. Lengths in mm,
+// angles in radians, +z up, before the final scaling to the stated size.
 class DemoPotShape {
  public:
-  // The skin from the middle of the underside to the middle of the floor inside, in five stretches.
-  // `t` runs 0…1 in each.
+  // The surface from the middle of the underside to the middle of the inside floor, in five
+  // stretches. `t` is 0…1 in each.
   enum class Stretch { underside_and_belly, shoulder_and_neck, rim, inside_upper, inside_lower };
 
   struct Point {
@@ -19,7 +19,8 @@ class DemoPotShape {
   };
   static Point at(Stretch stretch, double t, double angle);
 
-  // Distance from the axis before relief and wobble; for choosing how many columns a ring needs.
+  // Distance from the axis before relief and wobble; used to choose the number of columns of a
+  // ring.
   static double radius(Stretch stretch, double t);
 };
 

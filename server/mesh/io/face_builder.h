@@ -11,32 +11,33 @@
 
 namespace strata::mesh {
 
-// Collects polygons as triangles: shared by the formats. Texture coordinates are kept for all
-// corners or for none; triangles without them have no textured material.
+// Collects polygons as triangles for all formats. Texture coordinates are kept for all corners or
+// for none; triangles without them have no textured material.
 class FaceBuilder {
  public:
   FaceBuilder(TriangleMesh& mesh, std::size_t max_triangles)
       : mesh_(mesh), max_triangles_(max_triangles) {}
 
   struct Corner {
-    std::uint32_t position = 0;  // in range: the caller has checked it
+    std::uint32_t position = 0;  // in range: checked by the caller
     glm::vec2 uv{0};
   };
 
-  // Room for the triangles of so many faces.
+  // Reserves memory for the triangles of this many faces.
   void reserve(std::size_t faces) { mesh_.triangles.reserve(3 * std::min(faces, max_triangles_)); }
 
-  // For readers, before they keep the corners of a face that has more than kMaxPolygonCorners.
+  // Readers call this before they store the corners of a face with more than kMaxPolygonCorners.
   static tl::unexpected<Error> too_many_corners(const std::string& place) {
     return refuse_file("The face at " + place + " has more than " +
                        std::to_string(kMaxPolygonCorners) +
                        " corners. Triangulate the mesh before importing it.");
   }
 
-  // Of the triangles that follow; the mesh's materials and their textures are known by then.
+  // Sets the material of the triangles that follow. The mesh already has its materials and their
+  // textures.
   void use_material(std::uint16_t material) { material_ = material; }
 
-  // At most kMaxPolygonCorners. Refuses more triangles than may be.
+  // `corners`: at most kMaxPolygonCorners. Refuses triangles beyond the limit.
   Result<void> add(const std::vector<Corner>& corners, bool has_uv) {
     assert(corners.size() <= kMaxPolygonCorners);
     if (corners.size() < 3) {
@@ -74,7 +75,7 @@ class FaceBuilder {
         mesh_.corner_uvs.insert(mesh_.corner_uvs.end(), 3, glm::vec2(0));
       return {};
     }
-    // The first triangle with coordinates: those before it get none.
+    // The first triangle with coordinates: the triangles before it get no coordinates.
     if (mesh_.corner_uvs.empty()) {
       mesh_.corner_uvs.reserve(mesh_.triangles.capacity());
       mesh_.corner_uvs.resize(mesh_.triangles.size() - 3, glm::vec2(0));

@@ -10,7 +10,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr std::size_t kHead = 256 * 1024;  // of a file that is looked at
+constexpr std::size_t kHead = 256 * 1024;  // of a file, the part searched for comments
 constexpr std::size_t kStlHeader = 80;
 
 bool is_blank_or_control(char c) { return static_cast<unsigned char>(c) <= ' '; }
@@ -30,7 +30,7 @@ class Comments {
   std::vector<std::string> list_;
 };
 
-// The lines of the head of a file, whatever ends them; `use` says whether to go on.
+// Calls `use` for the lines of the head of a file, with any line endings, until it returns false.
 template <class Use>
 void each_line(std::string_view head, Use&& use) {
   while (!head.empty()) {
@@ -50,7 +50,7 @@ void read_ply(std::string_view head, Comments& comments) {
   });
 }
 
-// Comments further down tell of groups.
+// Comments after the first element describe groups.
 void read_obj(std::string_view head, Comments& comments) {
   each_line(head, [&](std::string_view line) {
     if (line.starts_with('#'))
@@ -64,7 +64,7 @@ void read_stl(std::string_view head, Comments& comments) {
   comments.add(is_text ? head.substr(0, head.find_first_of("\r\n")) : head.substr(0, kStlHeader));
 }
 
-// The words of a text, in lower case: letters and digits, with a hyphen that stands before them.
+// The words of a text, in lower case: letters and digits, with a hyphen before them.
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words(1);
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
@@ -81,7 +81,7 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-// A hyphen that joins two words is no sign.
+// Removes a hyphen that joins two words: it is no sign.
 std::string unsigned_word(const std::string& word) {
   return word.starts_with('-') ? word.substr(1) : word;
 }
@@ -117,7 +117,7 @@ constexpr UnitName kUnitNames[] = {{"mm", Unit::mm},
                                    {"km", {}},
                                    {"yards", {}}};
 
-// What may stand between "unit" and its name.
+// Words allowed between "unit" and its name.
 bool is_filler(std::string_view word) {
   for (const std::string_view filler :
        {"is", "are", "of", "length", "lengths", "measure", "measurement", "name"})

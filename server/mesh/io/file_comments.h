@@ -10,9 +10,9 @@
 
 namespace strata::mesh {
 
-// What the writer of a mesh file says in words: the `comment` and `obj_info` lines of a PLY, the
-// `#` lines at the beginning of an OBJ, the header of a binary STL or the first line of an ASCII
-// one. At most kMaxComments, cut to kMaxCommentLength bytes, as UTF-8. glTF has none.
+// The comments of a mesh file: the `comment` and `obj_info` lines of a PLY, the `#` lines at the
+// beginning of an OBJ, the header of a binary STL or the first line of an ASCII one. At most
+// kMaxComments, cut to kMaxCommentLength bytes, as UTF-8. glTF has none.
 constexpr std::size_t kMaxComments = 200, kMaxCommentLength = 500;
 std::vector<std::string> file_comments(const InputFiles& files);
 
@@ -24,11 +24,11 @@ struct Stated {
 };
 
 // "unit: mm", "units millimetres", "File units = meters" (Alias, SketchUp), "obj_info units
-// millimeter", "UNITS=mm" (headers of STL). The first comment that names a unit decides; where that
-// is another one than ours (inches), nothing is stated.
+// millimeter", "UNITS=mm" (headers of STL). The first comment with a unit decides; if it is not one
+// of the supported units (inches), the result is empty.
 std::optional<Stated<Unit>> stated_unit(std::span<const std::string> comments);
 
-// "up axis: Z", "Y-up", "y_down": of kUpDirections.
+// "up axis: Z", "Y-up", "y_down": one of kUpDirections.
 std::optional<Stated<std::string>> stated_up(std::span<const std::string> comments);
 
 }  // namespace strata::mesh

@@ -16,12 +16,13 @@ struct Nature {
   InputKind kind = InputKind::companion;
 };
 
-// A download that went wrong is most often the page that should have led to it.
-constexpr std::string_view kUnpack = "Unpack it and import what is in it.",
+// A failed download is most often the web page that links to the file.
+constexpr std::string_view kUnpack = "Unpack it and import its files.",
                            kFetch = "Download the mesh itself.",
                            kExport = "Export the mesh as PLY, OBJ, STL or glTF.";
 constexpr std::array<Nature, 27> kNatures{{
-    {"PK\3\4"sv, "a zip archive", "Unpack it, or let its name end in .zip.", InputKind::zip},
+    {"PK\3\4"sv, "a zip archive", "Unpack it, or change the end of its name to .zip.",
+     InputKind::zip},
     {"\x1f\x8b"sv, "a gzip archive", kUnpack},
     {"\xfd"
      "7zXZ\0"sv,
@@ -45,12 +46,12 @@ constexpr std::array<Nature, 27> kNatures{{
     {"Kaydara FBX"sv, "an FBX file", kExport},
     {"; FBX"sv, "an FBX file", kExport},
     {"BLENDER"sv, "a Blender file", kExport},
-    {"LASF"sv, "a LAS point cloud", "Mesh it before importing it."},
+    {"LASF"sv, "a LAS point cloud", "Create a mesh from it before you import it."},
     {"#VRML"sv, "a VRML file", kExport},
-    {"ply\n"sv, "a PLY file", "Let its name end in .ply.", InputKind::ply},
-    {"ply\r"sv, "a PLY file", "Let its name end in .ply.", InputKind::ply},
-    {"glTF"sv, "a GLB file", "Let its name end in .glb.", InputKind::glb},
-    {"solid "sv, "an STL file", "Let its name end in .stl.", InputKind::stl},
+    {"ply\n"sv, "a PLY file", "Change the end of its name to .ply.", InputKind::ply},
+    {"ply\r"sv, "a PLY file", "Change the end of its name to .ply.", InputKind::ply},
+    {"glTF"sv, "a GLB file", "Change the end of its name to .glb.", InputKind::glb},
+    {"solid "sv, "an STL file", "Change the end of its name to .stl.", InputKind::stl},
 }};
 
 }  // namespace
@@ -63,13 +64,13 @@ std::optional<std::string> other_nature(std::span<const std::uint8_t> bytes, Inp
     if (!text.starts_with(nature.begins)) continue;
     if (nature.kind == kind || (nature.kind == InputKind::glb && kind == InputKind::gltf))
       return std::nullopt;
-    return "The file is " + std::string(nature.is) + " by its content. " +
+    return "The content of the file is " + std::string(nature.is) + ". " +
            std::string(nature.advice);
   }
   const bool json =
       text.starts_with('{') && text.substr(0, 65536).find("\"asset\"") != std::string_view::npos;
   if (json && kind != InputKind::gltf && kind != InputKind::glb)
-    return "The file is a glTF file by its content. Let its name end in .gltf.";
+    return "The content of the file is glTF. Change the end of its name to .gltf.";
   return std::nullopt;
 }
 

@@ -9,9 +9,9 @@
 
 namespace strata::mesh {
 
-// What a file that could not be read as `kind` is by its first bytes, with what to do about it, as
-// sentences for a person: archives, pictures, web pages in place of a download, meshes under
-// another ending. Nothing: not known, or of that kind.
+// For a file that could not be read as `kind`: its format by its first bytes and advice, as
+// sentences for a person. Recognizes archives, pictures, web pages in place of a download, and
+// meshes with the ending of another format. Nothing for an unknown format, or for `kind` itself.
 std::optional<std::string> other_nature(std::span<const std::uint8_t> bytes, InputKind kind);
 
 }  // namespace strata::mesh

@@ -27,7 +27,7 @@ std::string ending(std::string_view filename) {
   return dot == std::string_view::npos || dot == 0 ? std::string() : to_lower(name.substr(dot));
 }
 
-// How many parts of two paths are the same, counted from their ends.
+// The number of equal parts of two paths, counted from their ends.
 int common_parts(std::string_view a, std::string_view b) {
   int parts = 0;
   while (!a.empty() && !b.empty()) {
@@ -46,13 +46,13 @@ std::vector<std::string> names_of(std::span<const InputFiles::Entry> entries) {
   return names;
 }
 
-// Uploads lie where there is room for them; a person's folder may be read-only.
+// The folder of an upload has space; a user's folder may be read-only.
 std::filesystem::path scratch_beside(const std::filesystem::path& file) {
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   return ::access(folder.c_str(), W_OK) == 0 ? folder : std::filesystem::temp_directory_path();
 }
 
-// With their folders: scans often have the same name in folders of their own.
+// Lists the names with their folders: scans in different folders often have the same name.
 std::string listed(std::span<const std::string> filenames, std::span<const std::size_t> which) {
   std::string list;
   for (const std::size_t i : which.first(std::min<std::size_t>(which.size(), 5)))
@@ -85,22 +85,25 @@ Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
   if (scans.size() == 1) return scans.front();
   if (scans.size() > 1)
     return fail(ErrorCode::invalid, "More than one scan",
-                "One import makes one model, but several meshes were sent: " +
+                "One import creates one model, but the upload contains several meshes: " +
                     listed(filenames, scans) + ". Import them one by one.",
                 "filename");
   if (filenames.empty())
     return fail(ErrorCode::invalid, "No file",
-                "There is no file to import; " + std::string(kTaken) + ".", "file");
+                "The upload contains no file to import. Please " + std::string(kTaken) + ".",
+                "file");
   if (filenames.size() == 1 && ending(filenames[0]).empty())
     return fail(ErrorCode::invalid, "File name missing",
-                "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.",
+                "Send the name of the file, such as NAME.ply or NAME.obj. The end of the name "
+                "determines the format.",
                 "filename");
   if (filenames.size() == 1)
-    return fail(ErrorCode::unsupported, "Format not taken",
-                "'" + ending(filenames[0]) + "' files are not taken; " + std::string(kTaken) + ".",
+    return fail(ErrorCode::unsupported, "Unsupported format",
+                "'" + ending(filenames[0]) + "' files are not supported. Please " +
+                    std::string(kTaken) + ".",
                 "filename");
   return fail(ErrorCode::unsupported, "No mesh among the files",
-              "None of the " + std::to_string(filenames.size()) + " files is a mesh; " +
+              "None of the " + std::to_string(filenames.size()) + " files is a mesh. Please " +
                   std::string(kTaken) + ".",
               "filename");
 }
@@ -129,7 +132,7 @@ Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesys
     scan = pick_scan(names_of(entries));
     if (!scan) return refuse_file("In the zip: " + scan.error().detail);
     if (input_kind(entries[*scan].name) == InputKind::zip)
-      return refuse_file("The zip holds another zip and no mesh. Unpack the outer one.");
+      return refuse_file("The zip contains another zip but no mesh. Unpack the outer zip first.");
   }
   InputFiles files;
   files.entries_ = std::move(entries);
@@ -140,10 +143,10 @@ Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesys
 const InputFiles::Entry* InputFiles::find(std::string_view reference) const {
   const Entry* best = nullptr;
   int most = 0;
-  // A file may call another one in an encoding in which its name did not come through.
-  const std::string wanted = mended_utf8(reference);
+  // The name of a referenced file may have been damaged by its encoding.
+  const std::string target = mended_utf8(reference);
   for (const Entry& entry : entries_) {
-    const int common = common_parts(mended_utf8(entry.name), wanted);
+    const int common = common_parts(mended_utf8(entry.name), target);
     if (common <= most) continue;
     most = common;
     best = &entry;

@@ -21,7 +21,7 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
     }
   }();
   if (!loaded) {
-    // What a reader of another format stumbles over says nothing to a person.
+    // For a file of another format, the parser's message does not help the user.
     if (const auto other = other_nature(bytes, kind);
         other && loaded.error().code == ErrorCode::invalid)
       return refuse_file(*other);
@@ -35,16 +35,17 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
   if (loaded->mesh.triangles.empty()) {
     return refuse_file(
         loaded->mesh.positions.empty()
-            ? "The file holds no triangle: it is empty."
-            : "The file holds " + std::to_string(loaded->mesh.positions.size()) +
-                  " vertices but no triangle: a point cloud cannot carry layers. Mesh it before importing it.");
+            ? "The file contains no triangle: it is empty."
+            : "The file contains " + std::to_string(loaded->mesh.positions.size()) +
+                  " vertices but no triangle. A point cloud cannot have layers. Create a mesh "
+                  "from it before you import it.");
   }
   return loaded;
 }
 
 }  // namespace
 
-// Takes the files, so that they are unmapped before `repair` needs the memory.
+// Takes ownership of the files, so that they are unmapped before `repair` needs the memory.
 Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOptions& options) {
   auto loaded = STRATA_TRY([&] {
     const InputFiles opened = std::move(files);

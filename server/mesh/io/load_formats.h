@@ -8,9 +8,9 @@
 
 namespace strata::mesh {
 
-// The steps behind `load_mesh`, for its own files only. The parsers give triangles whose indices
-// are in range, in file order, unwelded, with notes of what they ignored; `repair` brings them into
-// the form that `load_mesh` promises.
+// The steps of `load_mesh`, for its own files only. The parsers return triangles whose indices are
+// in range, in file order, unwelded, with notes on ignored content; `repair` converts them to the
+// form that `load_mesh` promises.
 Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress,
                              std::size_t max_triangles = kMaxTriangles);
 Result<LoadedMesh> parse_obj(const InputFiles& files, Progress& progress,
@@ -21,10 +21,10 @@ Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress,
                               std::size_t max_triangles = kMaxTriangles);
 Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& options = {});
 
-// Parsers report up to this share of the whole, `repair` from there on.
+// Parsers report progress up to this share of the whole, `repair` from there on.
 constexpr double kParsedShare = 0.6;
 
-// invalid, the one title of every fault in a mesh file.
+// invalid, with the common title of all faults in a mesh file.
 inline tl::unexpected<Error> refuse_file(std::string detail) {
   return fail(ErrorCode::invalid, "Mesh file refused", std::move(detail), "file");
 }

@@ -17,8 +17,8 @@ constexpr std::size_t kMaxNumbers = 8;
 constexpr std::size_t kMaxLibraries = 100, kMaxNames = 10000;
 constexpr int kTextureToFind = 0;  // of a UDIM material until its tiles are known
 
-// Three passes: what there is, points, then faces, so that a face may name points that follow it
-// and polygons can be split at once.
+// Three passes: counts, points, then faces, so that a face may use points that follow it and
+// polygons can be split at once.
 class ObjReader {
  public:
   ObjReader(const InputFiles& files, Progress& progress, std::size_t max_triangles)
@@ -48,7 +48,7 @@ class ObjReader {
   }
 
  private:
-  // Sizes the arrays, so that they do not double their way over the memory limit.
+  // Sizes the arrays, so that their growth by doubling does not exceed the memory limit.
   Result<void> count_lines() {
     ObjLines lines(bytes_);
     std::string_view line;
@@ -65,12 +65,14 @@ class ObjReader {
         libraries_.emplace_back(rest_of(line));
     }
     if (positions >= 0xffffffffu || uvs >= 0xffffffffu)
-      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+      return refuse_file("The file has more than 4 294 967 294 vertices. Split the mesh.");
     if (faces == 0)
       return refuse_file(
-          positions > 0 ? "The OBJ has vertices but no faces: a point cloud cannot carry layers."
-                        : "The OBJ has neither vertices nor faces: it is empty, or no OBJ file.");
-    // Lines that are shorter than "v 0 0 0", "vt 0" and "f 1 2 3" are refused or make nothing.
+          positions > 0
+              ? "The OBJ has vertices but no faces. A point cloud cannot have layers. Create a "
+                "mesh from it before you import it."
+              : "The OBJ has neither vertices nor faces: it is empty, or it is not an OBJ file.");
+    // Lines shorter than "v 0 0 0", "vt 0" and "f 1 2 3" are refused or have no effect.
     loaded_.mesh.positions.reserve(std::min<std::uint64_t>(positions, bytes_.size() / 8 + 1));
     uvs_.reserve(std::min<std::uint64_t>(uvs, bytes_.size() / 5 + 1));
     faces_.reserve(std::min<std::uint64_t>(faces, bytes_.size() / 8 + 1));
@@ -83,8 +85,8 @@ class ObjReader {
     return line;
   }
 
-  // A library's name may hold blanks, or several may stand in one line. Where none is named, the
-  // only .mtl that was sent along is meant.
+  // A library's name may contain blanks, or one line may name several. Where none is named, the
+  // only uploaded .mtl is used.
   std::vector<const InputFiles::Entry*> find_libraries() {
     std::vector<const InputFiles::Entry*> found;
     for (const std::string& library : libraries_) {
@@ -116,7 +118,7 @@ class ObjReader {
         Material material{.name = printable(mtl.name), .color = mtl.color};
         if (mtl.clamp) material.wrap_u = material.wrap_v = Wrap::clamp;
         if (!mtl.texture.empty()) {
-          material.color = glm::vec4(1);  // writers leave anything in Kd beside a picture
+          material.color = glm::vec4(1);  // Kd is often not meaningful with a picture
           material.texture =
               UdimTiles::is_pattern(mtl.texture) ? kTextureToFind : shelf_.of_file(mtl.texture);
         }
@@ -217,21 +219,21 @@ class ObjReader {
     return {};
   }
 
-  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last that stands above the
-  // face. Texture coordinates and normals that are not there leave a face as it would be without
-  // them: writers name them out of habit.
+  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last one before the face. A
+  // face with missing texture coordinates or normals is read as if it did not name them: some
+  // writers always write these numbers.
   Result<FaceBuilder::Corner> read_corner(const ObjLines& lines, std::string_view word,
                                           bool& has_uv) {
     const std::size_t slash = word.find('/');
     FaceBuilder::Corner corner;
     std::int64_t index = 0;
     if (!parse_integer(word.substr(0, slash), index))
-      return fault(lines, "\"" + printable(word) + "\" is no face corner");
+      return fault(lines, "\"" + printable(word) + "\" is not a corner of a face");
     const auto position = resolve(index, positions_so_far_, loaded_.mesh.positions.size());
     if (!position) {
       return fault(
           lines,
-          "the face names vertex " + std::to_string(index) + ", but the file has " +
+          "the face refers to vertex " + std::to_string(index) + ", but the file has " +
               std::to_string(loaded_.mesh.positions.size()) + " vertices" +
               (index < 0 ? " (" + std::to_string(positions_so_far_) + " above this line)" : ""));
     }
@@ -243,7 +245,7 @@ class ObjReader {
       if (second != std::string_view::npos) normal_word = uv_word.substr(second + 1);
       uv_word = uv_word.substr(0, second);
     }
-    // Normals are not used, and so not looked at further.
+    // Normals are not used, and not checked further.
     if (!normal_word.empty() &&
         !(parse_integer(normal_word, index) && resolve(index, normals_so_far_, normals_)))
       missing_normal_ = true;
@@ -252,7 +254,7 @@ class ObjReader {
       return corner;
     }
     if (!parse_integer(uv_word, index))
-      return fault(lines, "\"" + printable(word) + "\" is no face corner");
+      return fault(lines, "\"" + printable(word) + "\" is not a corner of a face");
     const auto uv = resolve(index, uvs_so_far_, uvs_.size());
     if (!uv) {
       has_uv = false;
@@ -321,7 +323,7 @@ class ObjReader {
   TextureLoader shelf_;
   std::vector<std::string> libraries_;
   std::map<std::string, std::uint16_t, std::less<>> material_of_name_, undefined_;
-  std::vector<std::string> references_;  // a material's picture as the MTL names it
+  std::vector<std::string> references_;  // a material's picture as named in the MTL
   std::vector<UvTransform> uv_transforms_;
   UvTransform uv_transform_;
 };

@@ -31,7 +31,7 @@ class PlyReader {
 
   Result<LoadedMesh> read() {
     for (const PlyElement& element : header_.elements) {
-      // Triangles are made when their vertices are known, wherever those stand in the file.
+      // Triangles are made after their vertices, wherever both are in the file.
       const bool of_triangles = element.name == "face" || element.name == "tristrips";
       if (of_triangles && !has_vertices_) put_off_.push_back({&element, source_});
       STRATA_TRY(element.name == "vertex"        ? read_vertices(element)
@@ -62,7 +62,7 @@ class PlyReader {
       return refuse_file("The element \"vertex\" has no properties x, y and z.");
     }
     if (element.count >= 0xffffffffu)
-      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+      return refuse_file("The file has more than 4 294 967 294 vertices. Split the mesh.");
     const PlyColorProperties colors = find_ply_colors(element);
     const PlyType color_type =
         colors.present() ? element.properties[colors.rgba[0]].type : PlyType::u8;
@@ -115,7 +115,7 @@ class PlyReader {
       return refuse_file("The element \"face\" has no list \"vertex_indices\".");
     }
     const PlyProperty& index_list = element.properties[*indices];
-    // No triangle takes fewer bytes than its list of three.
+    // A triangle takes at least the bytes of its list of three.
     const std::uint64_t least =
         source_.rest() /
         (1 + 3 * (header_.encoding == PlyEncoding::ascii ? 2 : bytes_of(index_list.type)));
@@ -184,7 +184,7 @@ class PlyReader {
   bool read_uv_list(const PlyProperty& list) {
     std::int64_t count = 0;
     if (!read_count(list, count)) return false;
-    // Longer than any face has: none of its coordinates can be told to a corner.
+    // Longer than for any face: its coordinates cannot be assigned to corners.
     if (static_cast<std::uint64_t>(count) > 2 * kMaxPolygonCorners) {
       return source_.skip(list.type, static_cast<std::uint64_t>(count));
     }
@@ -196,8 +196,8 @@ class PlyReader {
     return true;
   }
 
-  // Strips end at a negative index; every second triangle of a strip turns the other way. Triangles
-  // with a repeated corner only join strips and are no fault.
+  // Strips end at a negative index; every second triangle of a strip has the opposite winding.
+  // Triangles with a repeated corner only join strips and are no fault.
   Result<void> read_strips(const PlyElement& element) {
     const auto indices = element.find({"vertex_indices", "vertex_index"});
     if (!indices || !element.properties[*indices].count_type) {
@@ -277,9 +277,10 @@ class PlyReader {
   Result<void> check_index(const std::string& what, std::int64_t index) const {
     const std::size_t vertices = loaded_.mesh.positions.size();
     if (index >= 0 && static_cast<std::uint64_t>(index) < vertices) return {};
-    return refuse_file(what + " (" + source_.place() + ") names vertex " + std::to_string(index) +
-                       ", but the file has " + std::to_string(vertices) + " vertices (0 … " +
-                       std::to_string(static_cast<std::int64_t>(vertices) - 1) + ").");
+    return refuse_file(what + " (" + source_.place() + ") refers to vertex " +
+                       std::to_string(index) + ", but the file has " + std::to_string(vertices) +
+                       " vertices (0 … " + std::to_string(static_cast<std::int64_t>(vertices) - 1) +
+                       ").");
   }
 
   tl::unexpected<Error> broken(const std::string& element, std::uint64_t index,
@@ -289,10 +290,9 @@ class PlyReader {
     if (list_too_long_)
       return refuse_file("The list of " + where + " has a length that the file cannot hold.");
     if (source_.fault() == PlyFault::not_a_number)
-      return refuse_file("In " + where +
-                         " stands something that is not the number expected there.");
+      return refuse_file("In " + where + ", the file contains something that is not a number.");
     return refuse_file("The file ends in " + where +
-                       ": it is cut short. Export or upload it again.");
+                       ": the file is incomplete. Export or upload it again.");
   }
 
   bool report(const std::string& message) {
@@ -313,7 +313,7 @@ class PlyReader {
   std::vector<glm::vec2> vertex_uvs_;
   std::vector<float> uv_list_;
   PlyFaceColors face_colors_;
-  std::vector<std::pair<const PlyElement*, Source>> put_off_;  // and where its data begin
+  std::vector<std::pair<const PlyElement*, Source>> put_off_;  // and the offset of its data
 };
 
 }  // namespace

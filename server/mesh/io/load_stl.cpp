@@ -15,15 +15,14 @@ constexpr std::size_t kHeaderBytes = 80, kTriangleBytes = 50;
 constexpr std::uint64_t kTrianglesBetweenReports = 65536;
 constexpr std::size_t kSample = 65536;
 
-// Every triangle brings its own three points; `repair` joins those that are equal.
+// Every triangle has its own three points; `repair` joins equal ones.
 class StlReader {
  public:
   StlReader(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles)
       : bytes_(bytes), plain_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
 
-  // Many binary files begin with "solid", as text does, and text may begin with anything: the size
-  // decides where it is that of a binary file to the byte, and otherwise whether there are bytes
-  // that no text has.
+  // Many binary files begin with "solid", as text does, and text may begin with anything. A file
+  // with exactly the size of a binary file is binary; otherwise bytes that no text contains decide.
   Result<LoadedMesh> read() {
     const auto count = binary_count();
     const std::uint64_t room = count ? (bytes_.size() - kHeaderBytes - 4) / kTriangleBytes : 0;
@@ -43,7 +42,7 @@ class StlReader {
     return count;
   }
 
-  // Letters of any encoding; the count of a binary file, or its coordinates, have bytes of 0.
+  // Text may be in any encoding; the count of a binary file, or its coordinates, have bytes of 0.
   bool is_all_text() const {
     const std::string_view sample = text_.substr(0, kSample);
     return std::none_of(sample.begin(), sample.end(), [](char c) {
@@ -64,13 +63,14 @@ class StlReader {
   Result<void> read_binary(std::optional<std::uint64_t> count, std::uint64_t room) {
     if (!count)
       return refuse_file(
-          "This is not an STL file: it is no text, and shorter than the header of a binary one.");
+          "This is not an STL file: it is not text, and it is shorter than the header of "
+          "a binary STL.");
     if (*count > room)
-      return refuse_file("The STL, a binary one, announces " + std::to_string(*count) +
-                         " triangles, but has bytes for " + std::to_string(room) +
-                         ": it is cut short, or not an STL. Export or upload it again.");
-    if (*count == 0)
-      return refuse_file("The STL, a binary one, announces no triangle: it is empty.");
+      return refuse_file(
+          "The binary STL declares " + std::to_string(*count) + " triangles, but contains only " +
+          std::to_string(room) +
+          ": it is incomplete, or it is not an STL file. Export or upload it again.");
+    if (*count == 0) return refuse_file("The binary STL contains no triangle: it is empty.");
     loaded_.mesh.positions.reserve(3 * *count);
     faces_.reserve(*count);
     const std::uint8_t* at = bytes_.data() + kHeaderBytes + 4;
@@ -90,7 +90,7 @@ class StlReader {
   }
 
   // solid NAME { facet normal x y z  outer loop  vertex x y z ×3  endloop  endfacet } endsolid, in
-  // letters of any case: only the vertices count.
+  // letters of any case: only the vertices are used.
   Result<void> read_text() {
     std::vector<glm::dvec3> loop;
     std::string_view rest = text_;
@@ -104,7 +104,7 @@ class StlReader {
       if (begins_comment(word)) {
         skip_line(rest);
       } else if (is_word(word, "solid") || is_word(word, "endsolid")) {
-        // their names may hold anything
+        // a name may be any text
         any_word = true;
         skip_line(rest);
       } else if (is_word(word, "vertex")) {
@@ -114,7 +114,7 @@ class StlReader {
         for (int k = 0; k < 3; ++k)
           if (!parse_number(next_word(rest), point[k]))
             return fault(numbers,
-                         "a vertex without three numbers; the file is damaged or cut short");
+                         "a vertex does not have three numbers; the file is damaged or incomplete");
         if (loop.size() == kMaxPolygonCorners) return FaceBuilder::too_many_corners(place(rest));
         loop.push_back(point);
       } else if (is_word(word, "endfacet") || is_word(word, "endloop")) {
@@ -122,22 +122,22 @@ class StlReader {
         loop.clear();
       } else if (is_word(word, "facet")) {
         any_word = true;
-        if (!loop.empty()) return fault(rest, "a facet that does not end");
+        if (!loop.empty()) return fault(rest, "a facet has no end");
       }
     }
     if (!loop.empty())
       return refuse_file(
-          "The STL ends within a facet: it is cut short. Export or upload it again.");
+          "The STL ends within a facet: the file is incomplete. Export or upload it again.");
     if (!any_word) return refuse_file("This is not an STL file: it is text without a facet.");
     if (loaded_.mesh.triangles.empty())
-      return refuse_file("The STL, a text, holds no triangle: it is empty.");
+      return refuse_file("The text STL contains no triangle: it is empty.");
     return {};
   }
 
   Result<void> add(std::span<const glm::dvec3> loop) {
     if (loop.empty()) return {};
     if (loaded_.mesh.positions.size() + loop.size() >= 0xffffffffu)
-      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+      return refuse_file("The file has more than 4 294 967 294 vertices. Split the mesh.");
     corners_.clear();
     for (const glm::dvec3& point : loop) {
       corners_.push_back({static_cast<std::uint32_t>(loaded_.mesh.positions.size())});

@@ -13,7 +13,7 @@
 namespace strata::mesh {
 namespace {
 
-// Up to `most` numbers off the front of `line`; how many there were.
+// Removes up to `most` numbers from the front of `line`. Returns how many there were.
 int take_numbers(std::string_view& line, std::array<double, 3>& numbers, int most) {
   int count = 0;
   while (count < most) {
@@ -32,7 +32,7 @@ void take_pair(std::string_view& line, glm::vec2& pair) {
   if (count > 1) pair.y = static_cast<float>(numbers[1]);
 }
 
-// map_Kd [options] file name: the name is what follows the last option, blanks and all.
+// map_Kd [options] file name: the name is the rest of the line after the last option, with blanks.
 void read_map(std::string_view line, MtlMaterial& material) {
   static constexpr std::pair<std::string_view, int> kOptions[] = {
       {"-blendu", 1}, {"-blendv", 1},  {"-boost", 1}, {"-mm", 2}, {"-texres", 1},
@@ -79,7 +79,7 @@ std::vector<MtlMaterial> parse_mtl(std::span<const std::uint8_t> bytes, std::siz
     MtlMaterial& material = materials.back();
     std::array<double, 3> numbers{};
     if (keyword == "Kd") {
-      // "Kd spectral …" and "Kd xyz …" have no three numbers and are passed over.
+      // "Kd spectral …" and "Kd xyz …" do not have three numbers and are skipped.
       const int count = take_numbers(line, numbers, 3);
       if (count == 1) numbers[1] = numbers[2] = numbers[0];
       for (int k = 0; count > 0 && k < 3; ++k)

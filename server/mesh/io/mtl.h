@@ -8,7 +8,7 @@
 
 namespace strata::mesh {
 
-// A material of an MTL file, as far as it says what a surface looks like in white light.
+// The properties of an MTL material for the appearance of a surface in white light.
 struct MtlMaterial {
   std::string name;
   glm::vec4 color{1};      // Kd, d; sRGB
@@ -18,9 +18,9 @@ struct MtlMaterial {
   glm::vec2 uv_offset{0};  // -o
 };
 
-// Reads what it knows and passes over the rest: an MTL says nothing without which a mesh cannot be
-// used. Lines may go on after a backslash and end as those of an OBJ; the text may be UTF-16; names
-// may hold blanks. At most `most` materials.
+// Reads the known statements and skips the rest: a mesh is usable without any of them. Lines may
+// continue after a backslash and end as in an OBJ; the text may be UTF-16; names may contain
+// blanks. At most `most` materials.
 std::vector<MtlMaterial> parse_mtl(std::span<const std::uint8_t> bytes, std::size_t most);
 
 }  // namespace strata::mesh

@@ -10,8 +10,8 @@
 
 namespace strata::mesh {
 
-// The logical lines of an OBJ, which end at LF, CRLF or CR: a line that ends with a backslash goes
-// on in the next. Comments are not cut off here.
+// The logical lines of an OBJ, which end at LF, CRLF or CR: a line that ends with a backslash
+// continues in the next. Comments are not removed here.
 class ObjLines {
  public:
   explicit ObjLines(std::span<const std::uint8_t> bytes)
@@ -47,8 +47,8 @@ class ObjLines {
   }
 
  private:
-  // Lines end at LF, CRLF, or CR alone. The next LF is kept: a file of CRs has none, and is not
-  // searched for it at each line.
+  // Lines end at LF, CRLF, or CR alone. The position of the next LF is kept, so that a file with CR
+  // only is not searched for LF at each line.
   std::string_view physical_line() {
     const char* start = at_;
     if (start >= newline_) {
@@ -70,14 +70,14 @@ class ObjLines {
   const char* at_;
   const char* begin_;
   const char* end_;
-  // the LF that comes next, or end_; looked for once at_ has reached it
+  // the next LF, or end_; searched again once at_ has reached it
   const char* newline_ = begin_;
   std::uint64_t line_number_ = 1;
   std::uint64_t lines_of_last_ = 0;
   std::string joined_;
 };
 
-// Takes the next word off the front of `line`; empty at its end or at a comment.
+// Removes the next word from the front of `line`; empty at its end or at a comment.
 inline std::string_view next_word(std::string_view& line) {
   std::size_t start = 0;
   while (start < line.size() && is_blank(line[start])) ++start;

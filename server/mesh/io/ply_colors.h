@@ -11,7 +11,8 @@
 
 namespace strata::mesh {
 
-// Where the colour of a PLY element stands among its properties; −1: it has none.
+// Positions of the color channels among the properties of a PLY element; −1: the channel is
+// missing.
 struct PlyColorProperties {
   std::array<int, 4> rgba{-1, -1, -1, -1};
   bool present() const { return rgba[0] >= 0; }
@@ -32,14 +33,13 @@ inline PlyColorProperties find_ply_colors(const PlyElement& element) {
   return colors;
 }
 
-// Whole-number colours as 0…255; real ones stay as they are.
+// Integer colors as 0…255; real ones are unchanged.
 inline double to_byte_scale(PlyType type, double value) {
   return type == PlyType::u16 ? value / 257.0 : value;
 }
 inline bool is_real(PlyType type) { return type == PlyType::f32 || type == PlyType::f64; }
 
-// Colours of faces whose vertices have none of their own: a vertex shows the mean of the faces
-// around it.
+// Colors of faces whose vertices have no color: a vertex gets the mean of the faces around it.
 class PlyFaceColors {
  public:
   void begin(std::size_t vertices) { sums_.resize(vertices); }

@@ -47,7 +47,7 @@ std::vector<std::string_view> split(std::string_view line) {
   return words;
 }
 
-// A piece of the file inside a message: short, and printable whatever the file holds.
+// A piece of the file for a message: short, and always printable.
 std::string shown(std::string_view text) {
   std::string result = "\"";
   for (char c : text.substr(0, 60)) result += c >= ' ' && c < 127 ? c : '?';
@@ -74,12 +74,13 @@ class HeaderReader {
     if (text_.size() - position_ > kMaxHeader || position_ > kMaxHeader)
       return refuse_file("The PLY has no \"end_header\" in its first 16 MB.");
     return refuse_file(
-        "The PLY header has no \"end_header\": the file is cut short, or not a PLY.");
+        "The PLY header has no \"end_header\": the file is incomplete, or it is not a "
+        "PLY file.");
   }
 
  private:
-  // The end of the first line says how all end: in old Macintosh files with CR alone, where a byte
-  // LF after "end_header" CR is already data. The CR of a CRLF counts as a blank.
+  // All lines end as the first one does: in old Macintosh files with CR alone, where a byte LF
+  // after "end_header" CR is already data. The CR of a CRLF counts as a blank.
   bool next_line(std::string_view& line) {
     if (position_ >= text_.size() || position_ > kMaxHeader) return false;
     const std::string_view rest = text_.substr(position_, kMaxHeader);
@@ -124,7 +125,7 @@ class HeaderReader {
       header_.encoding = PlyEncoding::big_endian;
     } else {
       return fault("unknown format " + shown(words[1]) +
-                   "; ascii, binary_little_endian and binary_big_endian are read.");
+                   "; the server reads ascii, binary_little_endian and binary_big_endian.");
     }
     has_format_ = true;
     return {};
@@ -171,7 +172,7 @@ class HeaderReader {
     return {};
   }
 
-  // A header may claim any count; nothing is allocated for one that the file cannot hold.
+  // A header may declare any count; nothing is allocated for a count that the file cannot hold.
   Result<PlyHeader> finish() {
     if (!has_format_) return refuse_file("The PLY header has no \"format\" line.");
     header_.data_offset = position_;
@@ -182,9 +183,9 @@ class HeaderReader {
       const std::uint64_t least = element.least_bytes(ascii);
       if (least > 0 && element.count > rest / least) {
         return refuse_file(
-            "The header announces " + std::to_string(element.count) + " of the element " +
+            "The header declares " + std::to_string(element.count) + " of the element " +
             shown(element.name) + ", but only " + std::to_string(rest) +
-            " bytes are left for them: the file is cut short or its header is wrong.");
+            " bytes are left for them. The file is incomplete, or its header is wrong.");
       }
       rest -= least * element.count;
     }
@@ -207,9 +208,9 @@ int bytes_of(PlyType type) {
 }
 
 std::optional<int> PlyElement::find(std::initializer_list<std::string_view> names) const {
-  for (std::string_view wanted : names) {
+  for (std::string_view requested : names) {
     for (std::size_t i = 0; i < properties.size(); ++i) {
-      if (properties[i].name == wanted) return static_cast<int>(i);
+      if (properties[i].name == requested) return static_cast<int>(i);
     }
   }
   return std::nullopt;
@@ -225,7 +226,7 @@ std::uint64_t PlyElement::least_bytes(bool ascii) const {
 std::uint64_t PlyHeader::element_count() const {
   std::uint64_t sum = 0;
   for (const PlyElement& element : elements)
-    if (!element.properties.empty()) sum += element.count;  // each takes bytes, which the file has
+    if (!element.properties.empty()) sum += element.count;  // each takes bytes that the file has
   return sum;
 }
 

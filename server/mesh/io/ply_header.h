@@ -25,10 +25,10 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  // index of the first that is there
+  // index of the first name that is present
   std::optional<int> find(std::initializer_list<std::string_view> names) const;
-  // Least bytes that one such element takes (a list may be empty; ascii needs a digit and a blank a
-  // value).
+  // The minimum bytes of one such element (a list may be empty; ascii needs a digit and a blank for
+  // each value).
   std::uint64_t least_bytes(bool ascii) const;
 };
 
@@ -40,13 +40,13 @@ struct PlyHeader {
   std::vector<std::string> texture_files;  // pictures named in comments, by texnumber
   std::size_t data_offset = 0;             // first byte after the header
 
-  // of all elements that have properties; no more than fits 64 bits
+  // number of all elements that have properties; fits in 64 bits
   std::uint64_t element_count() const;
 };
 
-// Refuses what is no PLY, a header of more than 16 MB, and counts that the rest of the file cannot
-// hold. Line ends are LF, CRLF or CR, of lines of any length; a UTF-8 byte order mark may stand
-// before them.
+// Refuses a file that is no PLY, a header of more than 16 MB, and counts that the rest of the file
+// cannot hold. Lines end at LF, CRLF or CR and may be of any length; the file may begin with a
+// UTF-8 byte order mark.
 Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes);
 
 }  // namespace strata::mesh

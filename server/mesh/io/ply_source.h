@@ -18,8 +18,8 @@ static_assert(std::endian::native == std::endian::little);
 
 enum class PlyFault { none, end_of_file, not_a_number };
 
-// Values one after the other, from binary or ascii data. Each read returns false at a fault and
-// then stays where it is.
+// Reads values one after the other, from binary or ascii data. Each read returns false at a fault
+// and then does not advance.
 class PlyBinarySource {
  public:
   PlyBinarySource(std::span<const std::uint8_t> bytes, std::size_t offset, bool big_endian)
@@ -67,7 +67,7 @@ class PlyBinarySource {
     return true;
   }
 
-  // Whether `count` items of a list can still follow.
+  // Whether the data can still hold `count` items of a list.
   bool holds(PlyType type, std::uint64_t count) const {
     return count <= rest() / static_cast<std::uint64_t>(bytes_of(type));
   }
@@ -108,9 +108,9 @@ class PlyBinarySource {
   PlyFault fault_ = PlyFault::none;
 };
 
-// Ascii values are taken by blanks, not by lines: some writers fold long lists. Where there are
-// exactly as many lines as elements, though, what is left of a line behind an element's last value
-// belongs to no other: MeshLab writes more words than the header has properties.
+// Ascii values are separated by blanks, not by lines: some writers fold long lists. If there are
+// exactly as many lines as elements, the rest of a line after an element's last value is skipped:
+// MeshLab writes more words than the header has properties.
 class PlyAsciiSource {
  public:
   PlyAsciiSource(std::span<const std::uint8_t> bytes, const PlyHeader& header)
@@ -129,7 +129,7 @@ class PlyAsciiSource {
     const std::string_view word = next_word();
     if (word.empty()) return false;
     if (parse_integer(word, result)) return true;
-    double number = 0;  // "3.0" is met in the wild
+    double number = 0;  // some files have "3.0"
     if (!parse_number(word, number) || !(std::abs(number) <= 9e15) || number != std::floor(number))
       return refuse(word);
     result = static_cast<std::int64_t>(number);
@@ -145,14 +145,14 @@ class PlyAsciiSource {
 
   bool holds(PlyType, std::uint64_t count) const { return count <= (rest() + 1) / 2; }
 
-  // To be called when all values of an element with properties are read.
+  // Call this after all values of an element with properties are read.
   void end_element() {
     if (!lines_hold_elements_) return;
     bool surplus = false;
     for (; at_ < text_.size() && !is_line_end(text_[at_]); ++at_) surplus |= !is_blank(text_[at_]);
     surplus_elements_ += surplus;
   }
-  // that had more words than the header says
+  // elements with more words than the header declares
   std::uint64_t surplus_elements() const { return surplus_elements_; }
 
   std::size_t offset() const { return at_; }
@@ -172,7 +172,7 @@ class PlyAsciiSource {
  private:
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
-  // Of the lines that follow and are not blank; no further than to `most`.
+  // Counts the remaining lines that are not blank, up to `most`.
   std::uint64_t count_lines(std::uint64_t most) const {
     std::uint64_t count = 0;
     bool blank = true;

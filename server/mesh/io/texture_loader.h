@@ -11,15 +11,15 @@
 namespace strata::mesh {
 
 // Collects the pictures that the materials of a file name, each once, into TriangleMesh::textures.
-// What was not sent along or cannot be read is noted in `repairs` by its name.
+// Pictures that were not uploaded or cannot be read are listed by name in `repairs`.
 class TextureLoader {
  public:
   TextureLoader(const InputFiles& files, TriangleMesh& mesh, std::vector<Repair>& repairs)
       : files_(files), mesh_(mesh), repairs_(repairs) {}
 
-  // The texture of a file as another one refers to it, or −1.
+  // The texture of a file, by the reference of another file, or −1.
   int of_file(std::string_view reference);
-  // Of a picture inside the mesh's own file, or −1.
+  // The texture of a picture inside the mesh's own file, or −1.
   int of_bytes(const std::string& name, std::vector<std::uint8_t> bytes);
   void missing(std::string_view reference);
 
@@ -31,17 +31,17 @@ class TextureLoader {
   std::map<const void*, int> of_entry_;
 };
 
-// Where nothing names a picture, but the mesh has texture coordinates and exactly one picture was
-// sent along: it is meant.
+// Uses the only uploaded picture as the texture of a mesh that has texture coordinates but names no
+// picture.
 void adopt_lone_picture(const InputFiles& files, TriangleMesh& mesh, std::vector<Repair>& repairs);
 
-// A texture named NAME.<UDIM>.EXT stands for tiles 1001, 1002 …: unit square (i, j) of the texture
-// coordinates is in the file of tile 1001 + i + 10 j. Gives every tile that a triangle uses a
-// material of its own, in place of such a material.
+// A texture named NAME.<UDIM>.EXT means tiles 1001, 1002 …: unit square (i, j) of the texture
+// coordinates is in the file of tile 1001 + i + 10 j. Replaces such a material by one material for
+// each tile that a triangle uses.
 class UdimTiles {
  public:
   static bool is_pattern(std::string_view reference);
-  // `references`: of each material's texture, empty where it has none.
+  // `references`: the texture of each material, empty without one.
   static void resolve(TextureLoader& shelf, const std::vector<std::string>& references,
                       TriangleMesh& mesh);
 };

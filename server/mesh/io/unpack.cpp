@@ -26,7 +26,7 @@ struct CloseEntry {
   void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
 
-// A file that has no name any more, and goes with its last user.
+// A file without a name, which the system deletes after its last use.
 class ScratchFile {
  public:
   static Result<ScratchFile> make(const std::filesystem::path& folder) {
@@ -34,8 +34,8 @@ class ScratchFile {
     ScratchFile file;
     file.descriptor_ = ::mkstemp(path.data());
     if (file.descriptor_ < 0)
-      return fail(ErrorCode::storage_full, "No room to unpack",
-                  "A file for unpacking cannot be made in " + folder.string() + ": " +
+      return fail(ErrorCode::storage_full, "No space to unpack",
+                  "The server cannot create a file for unpacking in " + folder.string() + ": " +
                       std::strerror(errno) + ".");
     ::unlink(path.c_str());
     return file;
@@ -51,8 +51,9 @@ class ScratchFile {
       const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
       if (written < 0 && errno == EINTR) continue;
       if (written <= 0)
-        return fail(ErrorCode::storage_full, "No room to unpack",
-                    std::string("The archive cannot be unpacked: ") + std::strerror(errno) + ".");
+        return fail(
+            ErrorCode::storage_full, "No space to unpack",
+            std::string("The server cannot unpack the archive: ") + std::strerror(errno) + ".");
       bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
     return {};
@@ -66,7 +67,7 @@ class ScratchFile {
   int descriptor_ = -1;
 };
 
-// Folders, and what a Mac adds.
+// Folders, and files that macOS adds.
 bool is_hidden(std::string_view name) {
   if (name.starts_with("__MACOSX/") || name.ends_with('/')) return true;
   return name.substr(name.find_last_of("/\\") + 1).starts_with('.');
@@ -75,25 +76,25 @@ bool is_hidden(std::string_view name) {
 class Unpacker {
  public:
   Unpacker(std::span<const std::uint8_t> zip, const std::filesystem::path& scratch,
-           Progress& progress, const std::function<bool(std::string_view)>& wanted)
+           Progress& progress, const std::function<bool(std::string_view)>& accepts)
       : zip_(zip),
         scratch_(scratch),
         progress_(progress),
-        wanted_(wanted),
+        accepts_(accepts),
         room_(zip.size() * kMaxUnpackGain + kUnpackAlways) {}
 
   Result<std::vector<InputFiles::Entry>> run() {
     STRATA_TRY(open());
     const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
     if (count < 0 || static_cast<std::uint64_t>(count) > kMaxArchiveEntries)
-      return refuse_file("The zip holds " + std::to_string(count) + " files; " +
+      return refuse_file("The zip contains " + std::to_string(count) + " files; " +
                          std::to_string(kMaxArchiveEntries) +
-                         " may be. Pack one scan with its pictures only.");
+                         " are allowed. Pack only one scan with its pictures.");
     std::vector<InputFiles::Entry> entries;
     for (zip_int64_t i = 0; i < count; ++i) {
       progress_.report(0, "Unpacking");
       const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
-      if (name == nullptr || is_hidden(name) || !wanted_(name)) continue;
+      if (name == nullptr || is_hidden(name) || !accepts_(name)) continue;
       auto entry = STRATA_TRY(unpack(static_cast<zip_uint64_t>(i), mended_utf8(name)));
       entries.push_back(std::move(entry));
     }
@@ -110,7 +111,8 @@ class Unpacker {
       if (source != nullptr) zip_source_free(source);
       const std::string why = zip_error_strerror(&error);
       zip_error_fini(&error);
-      return refuse_file("The zip cannot be opened: " + why + ". Pack or upload it again.");
+      return refuse_file("The zip cannot be opened: " + why +
+                         ". Create the zip or upload it again.");
     }
     zip_error_fini(&error);
     return {};
@@ -128,7 +130,7 @@ class Unpacker {
     if (zip_stat_index(archive_.get(), index, 0, &stat) != 0)
       return damaged(zip_strerror(archive_.get()));
     if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && stat.encryption_method != ZIP_EM_NONE)
-      return damaged("it is encrypted. Pack it without a password");
+      return damaged("it is encrypted. Create the zip without a password");
     const std::unique_ptr<zip_file_t, CloseEntry> file(zip_fopen_index(archive_.get(), index, 0));
     if (!file) return damaged(zip_strerror(archive_.get()));
     auto scratch = STRATA_TRY(ScratchFile::make(scratch_));
@@ -140,7 +142,7 @@ class Unpacker {
       if (read == 0) break;
       if (static_cast<std::uint64_t>(read) > room_)
         return refuse_file("The zip unpacks to more than " + std::to_string(kMaxUnpackGain) +
-                           " times its size. Send the files unpacked, if they are right.");
+                           " times its size. If this is correct, send the files without the zip.");
       room_ -= static_cast<std::uint64_t>(read);
       STRATA_TRY(scratch.append({chunk_.data(), static_cast<std::size_t>(read)}));
     }
@@ -152,7 +154,7 @@ class Unpacker {
   std::span<const std::uint8_t> zip_;
   const std::filesystem::path& scratch_;
   Progress& progress_;
-  const std::function<bool(std::string_view)>& wanted_;
+  const std::function<bool(std::string_view)>& accepts_;
   std::uint64_t room_;
   std::unique_ptr<zip_t, DiscardArchive> archive_;
   std::vector<std::uint8_t> chunk_;
@@ -172,8 +174,8 @@ bool is_scan_file(std::string_view name) {
 
 Result<std::vector<InputFiles::Entry>> unpack_archive(
     std::span<const std::uint8_t> zip, const std::filesystem::path& scratch, Progress& progress,
-    const std::function<bool(std::string_view)>& wanted) {
-  return Unpacker(zip, scratch, progress, wanted).run();
+    const std::function<bool(std::string_view)>& accepts) {
+  return Unpacker(zip, scratch, progress, accepts).run();
 }
 
 }  // namespace strata::mesh

@@ -11,11 +11,12 @@
 #include "mesh/io/load_formats.h"
 #include "mesh/io/plain_text.h"
 #include "mesh/io/ply_source.h"
+#include "mesh/surface/geometry.h"
 
 namespace strata::mesh {
 namespace {
 
-// Those that have a meaning of their own for a mesh.
+// Properties with a defined meaning for a mesh.
 constexpr std::array<std::string_view, 24> kKnown{"x",
                                                   "y",
                                                   "z",
@@ -58,7 +59,7 @@ bool skip_list(Source& source, const PlyProperty& property) {
 }
 
 template <class Source>
-Result<VertexProperty> read(Source source, const PlyHeader& header, const std::string& wanted) {
+Result<VertexProperty> read(Source source, const PlyHeader& header, const std::string& name) {
   const auto broken = [&](const PlyElement& element, std::uint64_t i) {
     return refuse_file("The file ends or cannot be read at " + source.place() + ", in " +
                        element.name + " " + std::to_string(i + 1) + " of " +
@@ -67,16 +68,15 @@ Result<VertexProperty> read(Source source, const PlyHeader& header, const std::s
   for (const PlyElement& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
     const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"}),
-               at = element.find({wanted});
+               at = element.find({name});
     const auto is_number = [&](const std::optional<int>& k) {
       return k && !element.properties[*k].count_type;
     };
     if (is_vertex && !(is_number(x) && is_number(y) && is_number(z)))
       return refuse_file("The element \"vertex\" has no properties x, y and z.");
     if (is_vertex && !is_number(at))
-      return fail(ErrorCode::invalid, "No such property",
-                  "The vertices of the file have no number \"" + wanted + "\".",
-                  "compute.property");
+      return fail(ErrorCode::invalid, "Property not found",
+                  "The vertices of the file have no number \"" + name + "\".", "compute.property");
     VertexProperty found;
     std::vector<double> values(element.properties.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -101,7 +101,7 @@ Result<VertexProperty> read(Source source, const PlyHeader& header, const std::s
 std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beginning) {
   const auto plain = beginning.subspan(utf8_mark(beginning));
   std::string lines(plain.begin(), plain.end());
-  std::replace(lines.begin(), lines.end(), '\r', '\n');  // they may end at CR alone
+  std::replace(lines.begin(), lines.end(), '\r', '\n');  // lines may end at CR alone
   std::istringstream text(std::move(lines));
   std::string line;
   if (!std::getline(text, line) || !line.starts_with("ply")) return {};
@@ -132,8 +132,9 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
                                        Progress& progress) {
   const InputKind kind = input_kind(filename);
   if (kind != InputKind::ply && kind != InputKind::obj)
-    return fail(ErrorCode::invalid, "Order not known",
-                "Vertices have an order of their own in PLY and OBJ files only.", "source");
+    return fail(ErrorCode::invalid, "Order of vertices unknown",
+                "Only PLY and OBJ files store the order of the vertices. Choose such a file.",
+                "source");
   std::vector<InputFiles::Entry> entries;
   entries.push_back({filename, scan, std::nullopt});
   const auto files = STRATA_TRY(InputFiles::of(std::move(entries), {}, progress));
@@ -142,7 +143,7 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
   VertexProperty property{std::move(mesh.mesh.positions), {}};
   property.values.reserve(property.positions.size());
   const auto refuse = [](std::size_t line, const std::string& what) {
-    return fail(ErrorCode::invalid, "CSV not usable", "Line " + std::to_string(line) + ": " + what,
+    return fail(ErrorCode::invalid, "Invalid CSV", "Line " + std::to_string(line) + ": " + what,
                 "body");
   };
   std::size_t line = 0;
@@ -157,8 +158,8 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
     if (!text.empty() && text != "nan" && text != "NaN" &&
         (!parse_number(text, value) || !std::isfinite(value))) {
       if (line == 1) continue;
-      return refuse(
-          line, "\"" + std::string(text.substr(0, 40)) + "\" is no number; give one value a line.");
+      return refuse(line, "\"" + std::string(text.substr(0, 40)) +
+                              "\" is not a number. Send one value per line.");
     }
     if (property.values.size() == property.positions.size()) {
       if (text.empty()) continue;  // blank lines at the end
@@ -168,10 +169,10 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
     property.values.push_back(value);
   }
   if (property.values.size() != property.positions.size())
-    return fail(ErrorCode::invalid, "CSV not usable",
+    return fail(ErrorCode::invalid, "Invalid CSV",
                 "There are values for " + std::to_string(property.values.size()) +
                     " of the scan's " + std::to_string(property.positions.size()) +
-                    " vertices; give one line for each.",
+                    " vertices. Send one line for each vertex.",
                 "body");
   return property;
 }

@@ -4,7 +4,7 @@
 
 namespace strata::mesh {
 
-// Copies what belongs to a triangle to an earlier place.
+// Copies the data of a triangle to an earlier position.
 inline void move_triangle(TriangleMesh& mesh, std::size_t from, std::size_t to) {
   for (std::size_t k = 0; k < 3; ++k) mesh.triangles[3 * to + k] = mesh.triangles[3 * from + k];
   if (!mesh.corner_uvs.empty())
@@ -21,10 +21,10 @@ inline void resize_triangles(TriangleMesh& mesh, std::size_t count) {
 // Keeps the triangles for which keep(number) holds, in their order.
 template <class Keep>
 void keep_triangles(TriangleMesh& mesh, Keep&& keep) {
-  std::size_t kept = 0;
+  std::size_t kept_triangles = 0;
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
-    if (keep(i)) move_triangle(mesh, i, kept++);
-  resize_triangles(mesh, kept);
+    if (keep(i)) move_triangle(mesh, i, kept_triangles++);
+  resize_triangles(mesh, kept_triangles);
 }
 
 }  // namespace strata::mesh

@@ -14,10 +14,10 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-// Of its longest edge: a corner so near to it stands there by rounding of a float.
+// Share of its longest edge: a corner this near to the edge is there by rounding of float.
 constexpr double kSliverHeight = 1e-5;
-constexpr std::size_t kMaxShells = 64;  // that may hold hollows
-constexpr std::size_t kMaxSides = 64;   // of an edge that is mended; beyond it all are cut
+constexpr std::size_t kMaxShells = 64;  // only the largest shells may contain hollows
+constexpr std::size_t kMaxSides = 64;   // of a repaired edge; all sides of others are cut
 
 std::uint32_t next_corner(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
@@ -63,7 +63,7 @@ class Manifold {
     return mesh_.positions[mesh_.triangles[corner]];
   }
 
-  // Whether the triangle is nothing but this side of it, its longest, up to rounding.
+  // Whether the triangle has no area and this side is its longest, up to rounding.
   bool is_sliver_along(std::uint32_t corner) const {
     const glm::dvec3 along = point(next_corner(corner)) - point(corner),
                      to = point(corner_before(corner)) - point(corner);
@@ -108,7 +108,7 @@ class Manifold {
     std::vector<HalfEdge> sides;
   };
 
-  // Of a fin, which would go on freely elsewhere: best left out.
+  // Whether the side is of a fin, which is free at its other sides: fins are joined last.
   bool is_loose(const HalfEdge& side) const {
     const std::uint32_t other = next_corner(side.corner);
     return mate_[other] == kNone && mate_[next_corner(other)] == kNone;
@@ -136,7 +136,7 @@ class Manifold {
       if (mate_[pair.a] == kNone && mate_[pair.b] == kNone) join(pair.a, pair.b);
   }
 
-  // Flatter is larger: −1 where both triangles lie on each other, 1 where they go on straight.
+  // Flatter is larger: −1 where the triangles lie on each other, 1 where they are in one plane.
   double flatness(std::uint32_t low, const HalfEdge& a, const HalfEdge& b) const {
     const glm::dvec3 from = mesh_.positions[low], axis = mesh_.positions[a.other_end] - from;
     const auto away = [&](const HalfEdge& side) {
@@ -153,12 +153,13 @@ class Manifold {
     mate_[b] = a;
   }
 
-  // Whether the triangles on both sides turn the same way: their sides then run against each other.
+  // Whether the triangles on both sides have the same winding: their sides then have opposite
+  // directions.
   bool agree(std::uint32_t corner) const {
     return mesh_.triangles[corner] == mesh_.triangles[next_corner(mate_[corner])];
   }
 
-  // Spreads a direction from the first triangle of each piece; the minority is turned.
+  // Spreads an orientation from the first triangle of each piece; the minority is reversed.
   void orient() {
     const std::size_t count = mesh_.triangle_count();
     is_turned_.assign(count, false);
@@ -204,7 +205,7 @@ class Manifold {
   }
 
   struct Shell {
-    std::vector<std::uint32_t> triangles;  // empty where it is turned outward
+    std::vector<std::uint32_t> triangles;  // empty if oriented outward
     double volume = 0;                     // six times, signed
     glm::dvec3 low{INFINITY}, high{-INFINITY};
     bool holds(const Shell& other) const {
@@ -231,11 +232,11 @@ class Manifold {
   void turn_shells(std::vector<Shell>& shells) {
     std::vector<const Shell*> largest;
     for (const Shell& shell : shells) largest.push_back(&shell);
-    const std::size_t kept = std::min(kMaxShells, largest.size());
+    const std::size_t kept_shells = std::min(kMaxShells, largest.size());
     std::partial_sort(
-        largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(kept), largest.end(),
+        largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(kept_shells), largest.end(),
         [](const Shell* a, const Shell* b) { return std::abs(a->volume) > std::abs(b->volume); });
-    largest.resize(kept);
+    largest.resize(kept_shells);
     for (const Shell& shell : shells) {
       if (shell.volume >= 0) continue;
       if (std::any_of(largest.begin(), largest.end(),
@@ -247,15 +248,15 @@ class Manifold {
     }
   }
 
-  // The corner of the triangle across the side at `corner` that has the same vertex as `at`.
+  // The corner of the triangle on the other side of `side` that has the vertex `vertex`.
   std::uint32_t across(std::uint32_t side, std::uint32_t vertex) const {
     const std::uint32_t mate = mate_[side];
     if (mate == kNone) return kNone;
     return mesh_.triangles[mate] == vertex ? mate : next_corner(mate);
   }
 
-  // Corners of a vertex hang together through joined sides; each further group gets a vertex of its
-  // own.
+  // Groups the corners of a vertex that are connected through joined sides; each group after the
+  // first gets its own vertex.
   void split_fans() {
     struct Moved {
       std::uint32_t vertex;
@@ -287,13 +288,13 @@ class Manifold {
       is_cut[vertex] = true;
       moved.push_back({copy_vertex(vertex), fan});
     }
-    // Only now: `across` goes by the vertices as they were.
+    // At the end only: `across` depends on the old vertices.
     for (const Moved& move : moved)
       for (const std::uint32_t corner : move.corners) mesh_.triangles[corner] = move.vertex;
   }
 
-  // A cut edge whose sides hang together around both of its ends is none yet: the triangles that
-  // are not joined there get the lower vertex for themselves. Whether there were any.
+  // A cut edge may still share both of its ends: then the triangles that are not joined there get
+  // their own copy of the lower vertex. Returns whether there were any.
   bool detach_what_still_touches() {
     std::vector<std::uint32_t> corners;
     for_each_edge(
@@ -301,7 +302,7 @@ class Manifold {
         [&](std::uint32_t low, std::span<const HalfEdge> sides) {
           if (sides.size() < 2 || (sides.size() == 2 && mate_[sides[0].corner] == sides[1].corner))
             return;
-          std::uint32_t stays = sides[0].corner;  // and what it is joined to
+          std::uint32_t stays = sides[0].corner;  // as does the side it is joined to
           for (const HalfEdge& side : sides)
             if (mate_[side.corner] != kNone) stays = side.corner;
           for (const HalfEdge& side : sides)
@@ -326,7 +327,7 @@ class Manifold {
     return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
   }
 
-  // Corners b and c change places: the sides a-b and c-a, too.
+  // Swaps corners b and c, and with them the sides a-b and c-a.
   void turn_triangles() {
     if (turned_ + turned_pieces_ == 0) return;
     for (std::uint32_t& mate : mate_)
@@ -342,7 +343,7 @@ class Manifold {
 
   TriangleMesh& mesh_;
   std::vector<Repair>& repairs_;
-  // of each side of a triangle, by its first corner: the side it is joined to
+  // for each side of a triangle, by its first corner: the side it is joined to
   std::vector<std::uint32_t> mate_;
   std::vector<bool> is_turned_;
   std::uint64_t slivers_ = 0, crowded_edges_ = 0, turned_ = 0, turned_pieces_ = 0,

@@ -14,10 +14,10 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-// beyond it squares and cubes of lengths leave the range of float
+// beyond this value squares and cubes of lengths exceed the range of float
 constexpr double kMaxCoordinate = 1e15;
 constexpr std::string_view kWelded = "welded vertices";
-constexpr double kFarAway = 1e5;  // in sizes of the mesh
+constexpr double kFarAway = 1e5;  // in multiples of the mesh's size
 constexpr double kMinExtent = 1e-12;
 
 std::vector<bool> used_vertices(const TriangleMesh& mesh) {
@@ -66,8 +66,8 @@ std::array<std::uint32_t, 3> sorted_corners(const std::uint32_t* t) {
   return key;
 }
 
-// Where most triangles shrank to nothing because single precision is too coarse there, what is left
-// is no picture of the thing that was scanned.
+// Where most triangles have no area because single precision is too coarse, the remaining ones do
+// not show the scanned object.
 Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_area,
                               std::uint64_t triangles) {
   if (without_area * 2 <= triangles) return {};
@@ -85,13 +85,13 @@ Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_ar
       "Export it with double precision, or near the origin.");
 }
 
-// Keeps triangles that have area and are the first with their three corners, whichever way round.
+// Keeps triangles that have area and are the first with their three corners, in any winding.
 Result<void> drop_triangles(LoadedMesh& loaded) {
   TriangleMesh& mesh = loaded.mesh;
   const std::size_t triangles = mesh.triangle_count();
   IndexTable table(mesh.triangle_count());
   std::uint64_t degenerate = 0, no_area = 0, duplicate = 0;
-  std::uint32_t kept = 0;
+  std::uint32_t kept_triangles = 0;
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const std::uint32_t t[3] = {mesh.triangles[3 * i], mesh.triangles[3 * i + 1],
                                 mesh.triangles[3 * i + 2]};
@@ -105,20 +105,21 @@ Result<void> drop_triangles(LoadedMesh& loaded) {
     }
     const auto key = sorted_corners(t);
     const std::uint64_t hash = mix_hash(mix_hash(mix_hash(0, key[0]), key[1]), key[2]);
-    // The slot that is written first is where the triangle goes if it stays, so that the table can
+    // Writes the triangle to the place where it will stay if it is kept, so that the table can
     // compare with it.
-    std::copy(t, t + 3, mesh.triangles.begin() + 3 * std::ptrdiff_t{kept});
-    const std::uint32_t found = table.find_or_insert(hash, kept, [&](std::uint32_t other) {
-      return sorted_corners(&mesh.triangles[3 * std::size_t{other}]) == key;
-    });
-    if (found != kept) {
+    std::copy(t, t + 3, mesh.triangles.begin() + 3 * std::ptrdiff_t{kept_triangles});
+    const std::uint32_t found =
+        table.find_or_insert(hash, kept_triangles, [&](std::uint32_t other) {
+          return sorted_corners(&mesh.triangles[3 * std::size_t{other}]) == key;
+        });
+    if (found != kept_triangles) {
       ++duplicate;
       continue;
     }
-    move_triangle(mesh, i, kept++);
+    move_triangle(mesh, i, kept_triangles++);
   }
-  resize_triangles(mesh, kept);
-  if (kept == 0) return refuse_file("No triangle of the file has an area.");
+  resize_triangles(mesh, kept_triangles);
+  if (kept_triangles == 0) return refuse_file("No triangle of the file has an area.");
   STRATA_TRY(refuse_collapsed(mesh, degenerate + no_area, triangles));
   note(loaded.repairs, "dropped degenerate triangles", degenerate);
   note(loaded.repairs, "dropped triangles without area", no_area);
@@ -133,19 +134,19 @@ std::uint64_t count_not_finite(const TriangleMesh& mesh) {
   return count;
 }
 
-// Moves the used vertices together, in their order.
+// Moves the used vertices together, in order.
 void drop_unused(TriangleMesh& mesh) {
   const std::vector<bool> used = used_vertices(mesh);
   std::vector<std::uint32_t> moved(mesh.positions.size());
-  std::uint32_t kept = 0;
+  std::uint32_t kept_vertices = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
-    mesh.positions[kept] = mesh.positions[i];
-    if (!mesh.vertex_colors.empty()) mesh.vertex_colors[kept] = mesh.vertex_colors[i];
-    moved[i] = kept++;
+    mesh.positions[kept_vertices] = mesh.positions[i];
+    if (!mesh.vertex_colors.empty()) mesh.vertex_colors[kept_vertices] = mesh.vertex_colors[i];
+    moved[i] = kept_vertices++;
   }
-  mesh.positions.resize(kept);
-  if (!mesh.vertex_colors.empty()) mesh.vertex_colors.resize(kept);
+  mesh.positions.resize(kept_vertices);
+  if (!mesh.vertex_colors.empty()) mesh.vertex_colors.resize(kept_vertices);
   for (std::uint32_t& index : mesh.triangles) index = moved[index];
 }
 
@@ -179,7 +180,7 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
   STRATA_TRY(drop_triangles(loaded));
   STRATA_TRY(make_manifold(loaded, progress, 0.75, 0.95));
   progress.report(0.95, "Dropping unused vertices");
-  // none of them is used
+  // no triangle uses them
   const std::uint64_t not_finite = count_not_finite(mesh), before = mesh.positions.size();
   drop_unused(mesh);
   note(loaded.repairs, "dropped unused vertices",

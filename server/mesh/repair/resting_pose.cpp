@@ -15,27 +15,27 @@
 namespace strata::mesh {
 namespace {
 
-// Of the directions in their order, before the shape is looked at.
+// Share of each direction, in the order of kUpDirections, before the shape is considered.
 constexpr std::array<double, 6> kPrior{0.10, 0.28, 0.32, 0.08, 0.10, 0.12};
-constexpr double kAnyPose = 0.005;    // what a direction has in which the object does not rest
+constexpr double kAnyPose = 0.005;    // share of a direction in which the object does not rest
 constexpr double kTilt_degrees = 30;  // a face of the hull counts for an axis up to this angle
-// of the diagonal: what lies nearer to the ground than this rests on it
+// of the diagonal: points nearer to the ground than this rest on it
 constexpr double kContact = 0.008;
-// share of the ways to drop it: what is rarer is not looked at
+// share of the ways to drop the object: rarer poses are skipped
 constexpr double kUnlikely = 0.004;
 constexpr int kMaxPoses = 40;
-// cosine of the slope up to which surface lies on the ground
+// cosine of the slope up to which surface counts as lying on the ground
 constexpr double kLevel = 0.85;
-constexpr int kColumns = 128;               // a side, for the points that the hull is made of
+constexpr int kColumns = 128;               // a side, for the points of the hull
 constexpr int kCells = 48;                  // a side, for hollows
-constexpr double kTouching = 0.04;          // of the height: what is a rim
-constexpr double kRound = 2.5;              // how much a round outline counts
-constexpr double kHollow = 6;               // how much hollows count
-constexpr double kSheet = 0.5, kFront = 3;  // what is a sheet, and how much its front counts
+constexpr double kTouching = 0.04;          // of the height: the part that counts as a rim
+constexpr double kRound = 2.5;              // weight of a round outline
+constexpr double kHollow = 6;               // weight of hollows
+constexpr double kSheet = 0.5, kFront = 3;  // limit for a sheet, and the weight of its front
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-// Andrew's monotone chain; counter-clockwise.
+// Andrew's monotone chain; counterclockwise.
 std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
   std::ranges::sort(
       points, [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
@@ -68,12 +68,12 @@ bool is_inside(std::span<const glm::dvec2> convex, const glm::dvec2& point) {
   return true;
 }
 
-// A mesh whose diagonal is 1 and whose middle (of its surface) is the origin.
+// A mesh whose diagonal is 1 and whose center (of its surface) is the origin.
 struct Shape {
   std::vector<glm::dvec3> points;
   std::span<const std::uint32_t> triangles;
   glm::dvec3 low{0}, high{0};
-  // mean of the normals by area: of length 1 for a flat sheet, 0 for what is closed
+  // mean of the normals by area: of length 1 for a flat sheet, 0 for a closed mesh
   glm::dvec3 facing{0};
 };
 
@@ -109,8 +109,8 @@ std::optional<Shape> shape_of(const TriangleMesh& mesh) {
   return shape;
 }
 
-// Of each column along each axis the two farthest points: what the hull is made of, up to the width
-// of a column across.
+// The two farthest points of each column along each axis: the points of the hull, up to the width
+// of a column.
 std::vector<glm::dvec3> outer_points(const Shape& shape) {
   std::vector<glm::dvec3> outer;
   const glm::dvec3 size = glm::max(shape.high - shape.low, glm::dvec3(1e-12));
@@ -142,11 +142,11 @@ std::vector<glm::dvec3> outer_points(const Shape& shape) {
 struct HullFacet {
   glm::dvec3 normal;  // outwards
   std::array<glm::dvec3, 3> corners;
-  // the facet on the other side of the edge that is opposite to the corner
+  // the facet across the edge opposite to each corner
   std::array<int, 3> beyond;
 };
 
-// Triangles of the convex hull; none for points in one plane.
+// Triangles of the convex hull; empty for points in one plane.
 std::vector<HullFacet> hull_of(std::vector<glm::dvec3> points) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere{std::fopen("/dev/null", "w"),
                                                                 &std::fclose};
@@ -174,12 +174,12 @@ std::vector<HullFacet> hull_of(std::vector<glm::dvec3> points) {
     }
   }
   qh_freeqhull(qh, !qh_ALL);
-  int kept = 0, bytes = 0;
-  qh_memfreeshort(qh, &kept, &bytes);
+  int remaining = 0, bytes = 0;
+  qh_memfreeshort(qh, &remaining, &bytes);
   return facets;
 }
 
-// Seen from the origin (Van Oosterom and Strackee, 1983).
+// As seen from the origin (Van Oosterom and Strackee, 1983).
 double solid_angle(const HullFacet& facet) {
   const auto& [a, b, c] = facet.corners;
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
@@ -188,11 +188,11 @@ double solid_angle(const HullFacet& facet) {
   return 2 * std::abs(std::atan2(glm::dot(a, glm::cross(b, c)), below));
 }
 
-// Where the object rolls on from this facet: the facet itself where it rests on it.
+// The facet to which the object rolls from this one: the same facet if it rests on it.
 int next_of(const std::vector<HullFacet>& facets, int at) {
   const HullFacet& facet = facets[static_cast<std::size_t>(at)];
   const auto& [a, b, c] = facet.corners;
-  // of the origin, which is the middle of the mass
+  // of the origin, which is the center of mass
   const glm::dvec3 foot = glm::dot(a, facet.normal) * facet.normal;
   const glm::dvec3 across = glm::cross(b - a, c - a);
   const std::array<double, 3> weights{glm::dot(glm::cross(c - b, foot - b), across),
@@ -206,9 +206,9 @@ int next_of(const std::vector<HullFacet>& facets, int at) {
   return height(facets[static_cast<std::size_t>(next)]) < height(facet) ? next : at;
 }
 
-// How broadly the object stands, 0…1: the part of its outline that lies between places on the
-// ground, and the part that is on it. A bust lies on three points of its back, and stands on all of
-// its base.
+// Breadth of the support, 0…1: the part of the outline between the contact points, and the part
+// that lies on the ground. A bust on its back has three contact points; upright it rests on its
+// whole base.
 double support_share(const Shape& shape, const std::vector<glm::dvec3>& corners,
                      const HullFacet& facet) {
   const glm::dvec3 side = glm::normalize(facet.corners[1] - facet.corners[0]),
@@ -252,8 +252,8 @@ std::array<double, 6> poses_of(const Shape& shape) {
   std::vector<glm::dvec3> corners;
   for (const HullFacet& facet : facets)
     corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
-  // Each costs a look at all triangles: the likeliest alone, and of those the ones that have an
-  // axis up.
+  // Each facet costs a pass over all triangles: only the most likely ones are examined, and of
+  // those only the ones that have an axis up.
   std::vector<std::size_t> order(facets.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, std::greater(), [&](std::size_t i) { return likely[i]; });
@@ -274,7 +274,7 @@ std::array<double, 6> poses_of(const Shape& shape) {
   return poses;
 }
 
-// The object as it is seen along an axis, from both ends.
+// The outline and the heights of the object along an axis, from both ends.
 class Silhouette {
  public:
   Silhouette(const Shape& shape, int axis)
@@ -304,13 +304,13 @@ class Silhouette {
     }
   }
 
-  // How deep the surface lies below its highest places, in the area that these surround, and how
-  // large that area is. What shows its back is no hollow: the scan has a hole there, where the
-  // object stood.
+  // Depth of the surface below its highest places, in the area that these enclose, and the size of
+  // this area. A surface seen from its back is not a hollow: the scan has a hole there, where the
+  // object was standing.
   double hollow_above() const { return hollow(+1); }
   double hollow_below() const { return hollow(-1); }
 
-  // 0…1: it was turned on a wheel or a lathe, as far as its outline tells. 0 for a square.
+  // 0…1: how likely it was made on a wheel or a lathe, by its outline. 0 for a square.
   double roundness() const {
     int both = 0, either = 0;
     for (int y = 0; y < kCells; ++y)
@@ -328,7 +328,7 @@ class Silhouette {
  private:
   struct Cell {
     double lowest = 0, highest = 0;
-    // the lowest and the highest place
+    // of the lowest and the highest point
     bool is_covered = false, faces_down = false, faces_up = false;
   };
 

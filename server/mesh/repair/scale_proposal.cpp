@@ -10,7 +10,7 @@
 namespace strata::mesh {
 namespace {
 
-// What is scanned in heritage, by the longest side, and about how much of it there is.
+// Usual objects of heritage scans, by the longest side, with their approximate share.
 struct SizeClass {
   double from_m, to_m;
   double share;
@@ -22,16 +22,16 @@ constexpr SizeClass kSizes[] = {
     {3, 60, 0.12},        // rooms, façades, buildings, trenches
     {60, 20000, 0.08},    // sites and terrain
 };
-constexpr double kAnySize = 1e-3;  // for each factor of ten, where none of them fits
+constexpr double kAnySize = 1e-3;  // for each factor of ten, outside of these sizes
 
-// Structured light and lasers give millimetres, photogrammetry metres.
+// Structured light and laser scanners use millimeters, photogrammetry meters.
 struct UnitShare {
   Unit unit;
   double share;
 };
 constexpr UnitShare kUnits[] = {{Unit::mm, 0.45}, {Unit::m, 0.45}, {Unit::cm, 0.10}};
 
-// As likely as a size is, for each factor of ten.
+// Likelihood of a size, for each factor of ten.
 double plausibility(double size_m) {
   for (const SizeClass& size : kSizes)
     if (size_m >= size.from_m && size_m < size.to_m)
@@ -52,7 +52,7 @@ Box box_of(const TriangleMesh& mesh) {
   return box;
 }
 
-// Where coordinates of a map begin: nobody measures an object from so far away.
+// Whether these are map coordinates: scans of objects do not have their origin so far away.
 bool is_surveyed(const Box& box) {
   constexpr double kFar = 10'000, kFarForItsSize = 5;
   const double away = glm::length((box.low + box.high) / 2.0);
@@ -77,7 +77,7 @@ void propose_by_size(const Box& box, ScaleProposal& proposal) {
 }  // namespace
 
 ScaleProposal propose_scale(const LoadedMesh& loaded, const std::string& crs) {
-  constexpr double kSurveyed = 0.95;  // how sure coordinates of a map make it
+  constexpr double kSurveyed = 0.95;  // certainty that map coordinates give
   ScaleProposal proposal;
   const auto unit = stated_unit(loaded.comments);
   const auto up = stated_up(loaded.comments);

@@ -10,7 +10,7 @@
 
 namespace strata::mesh {
 
-// Why the texture coordinates of a triangle cannot carry a layer.
+// Reasons why the texture coordinates of a triangle cannot carry a layer.
 enum class UvFault : std::uint8_t { none, not_finite, outside, no_area, overlap };
 constexpr int kUvFaults = 5;
 std::string_view words_of(UvFault fault);  // "lie outside the unit square"
@@ -18,18 +18,19 @@ std::string_view words_of(UvFault fault);  // "lie outside the unit square"
 struct UvFaults {
   std::vector<UvFault> of_triangle;
   std::vector<std::uint64_t> count = std::vector<std::uint64_t>(kUvFaults);
-  double area = 0;  // of the surface of those that have one, unit²
+  double area = 0;  // surface area of the triangles with a fault, unit²
 
   void set(std::size_t triangle, UvFault fault, double surface_area);
 };
 
-// What can be seen of each triangle alone. `corner_uvs` are the mesh's; triangles without surface
+// Finds the faults of each single triangle. `corner_uvs` are the mesh's; triangles without area
 // have no fault.
 UvFaults find_single_faults(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs);
 
-// Adds triangles that share texels with others at `resolution`, until no two of the rest do: those
-// with the most shared texels first, so that one that lies over many others is found, and of two
-// alike the later one. Every coordinate of triangles without a fault lies in [0,1]².
+// Marks triangles that share texels with others at `resolution`, until no two of the rest share
+// any: those with the most shared texels first, so that a triangle that covers many others is
+// found, and of equal ones the later one. All coordinates of triangles without a fault must lie in
+// [0,1]².
 void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution,
                    UvFaults& faults);
 

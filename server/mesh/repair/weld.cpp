@@ -9,17 +9,17 @@
 namespace strata::mesh {
 namespace {
 
-// `find(i)` gives the vertex that takes the place of i, which may be i.
+// `find(i)` returns the vertex that replaces i, which may be i.
 template <class Find>
 std::uint64_t redirect(TriangleMesh& mesh, const std::vector<bool>& used, Find&& find) {
-  std::vector<std::uint32_t> kept(mesh.positions.size());
+  std::vector<std::uint32_t> representative(mesh.positions.size());
   std::uint64_t merged = 0;
-  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+  for (std::uint32_t i = 0; i < representative.size(); ++i) {
     if (!used[i]) continue;
-    kept[i] = find(i);
-    merged += kept[i] != i;
+    representative[i] = find(i);
+    merged += representative[i] != i;
   }
-  for (std::uint32_t& index : mesh.triangles) index = kept[index];
+  for (std::uint32_t& index : mesh.triangles) index = representative[index];
   return merged;
 }
 
@@ -46,8 +46,8 @@ std::uint64_t weld_equal(TriangleMesh& mesh, const std::vector<bool>& used) {
 }
 
 std::uint64_t weld_near(TriangleMesh& mesh, const std::vector<bool>& used, double distance) {
-  // Cells as wide as the distance: whatever is near enough is in the same cell or in one of the 26
-  // around it.
+  // Cells as wide as the distance: vertices within the distance are in the same cell or in one of
+  // the 26 around it.
   const auto cell_of = [&](double coordinate) { return std::floor(coordinate / distance); };
   const auto hash = [](const glm::dvec3& cell) {
     const glm::dvec3 plain = cell + 0.0;  // −0 is 0

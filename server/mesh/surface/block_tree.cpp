@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kChildren = BlockTree::kChildren;
 constexpr int kBins = 16;        // along a block's longest axis
 constexpr int kMaxCuts = 2;      // one after the other: at most four parts a block
-constexpr int kSerialDepth = 3;  // of the halvings before threads take over
+constexpr int kSerialDepth = 3;  // number of halvings before threads are used
 
 struct Box {
   glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
@@ -31,8 +31,8 @@ Box box_of(const glm::vec3* positions, std::uint64_t texels) {
   return box;
 }
 
-// The texels on the lower side of the widest gap along the box's longest axis, if that is wide
-// enough; else all.
+// The texels below the widest gap along the box's longest axis, if that is wide enough; otherwise
+// all.
 std::uint64_t below_gap(const glm::vec3* positions, std::uint64_t texels, float least_gap) {
   const Box box = box_of(positions, texels);
   const int axis = longest_axis(box.high - box.low);
@@ -76,8 +76,8 @@ struct Range {
   std::size_t size() const { return last - first; }
 };
 
-// Halves a range across the longest axis of its centres, at a whole number of subtrees: so that
-// eight neighbours in the final order are a node's children.
+// Halves a range across the longest axis of its centers, at a whole number of subtrees, so that
+// eight neighbors in the final order are a node's children.
 std::size_t halve(std::vector<BoundedPart>& parts, Range range) {
   std::size_t subtree = 1;
   while (subtree * kChildren < range.size()) subtree *= kChildren;

@@ -8,13 +8,13 @@ namespace strata::mesh {
 
 struct BoundingSphere {
   glm::vec3 center{0};
-  float radius = -1;  // -1: of nothing
+  float radius = -1;  // -1: empty
 };
 
-// The occupied 8 × 8 blocks of a surface map by where they lie on the model. What lies in a small
-// part of space is found by the cost of that part, whatever the size of map and mesh: the atlas
-// puts neighbours side by side, but also strangers. A block in which islands meet that lie far
-// apart on the model counts as several parts.
+// The occupied 8 × 8 blocks of a surface map by their position on the model. A search in a small
+// part of space costs in proportion to that part, independent of the size of map and mesh.
+// Neighbors in the atlas may be far apart on the model: a block in which distant islands meet
+// counts as several parts.
 struct BlockTree {
   static constexpr std::size_t kChildren = 8;
 
@@ -26,26 +26,26 @@ struct BlockTree {
   };
   std::vector<Part> parts;
   // levels[0] bounds a part each, levels[i] each run of eight of levels[i - 1]; the last has one,
-  // or none where there is no part.
+  // or none if there is no part.
   std::vector<std::vector<BoundingSphere>> levels;
 
   std::size_t bytes() const;
 };
 
-// Makes a tree of parts with their bounds. The result does not depend on the number of threads.
+// Builds a tree of parts with their bounds. The result does not depend on the number of threads.
 struct BoundedPart {
   BlockTree::Part part;
   BoundingSphere bounds;
 };
 BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int threads);
 
-// Adds the parts of a block, `whole` where it is one: texels between which there is nothing for
-// `least_gap` are apart. `positions` are its 64, of which those in `owned` count; every bound is
-// wider by `slack`.
+// Adds the parts of a block, or `whole` where it is one part: texels separated by an empty gap of
+// `least_gap` belong to different parts. `positions` are its 64, of which those in `owned` count;
+// every bound is enlarged by `slack`.
 void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned,
                         float least_gap, float slack, std::vector<BoundedPart>& parts);
 
-// Around the texels of `owned`.
+// Bounds the texels of `owned`.
 BoundingSphere bounds_of(const glm::vec3* positions, std::uint64_t owned, float slack);
 
 }  // namespace strata::mesh

@@ -13,10 +13,10 @@
 namespace strata::mesh {
 
 // Edges that belong to one triangle only: rims, breaks, holes. Pairs of indices of welded
-// positions, in the triangles' order; an edge of three triangles is none.
+// positions, in the triangles' order. An edge of three triangles is not a boundary edge.
 std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometry);
 
-// Straight distance to the nearest boundary edge, in model space. Thread-safe.
+// Euclidean distance to the nearest boundary edge, in model space. Thread-safe.
 class BoundaryDistance {
  public:
   explicit BoundaryDistance(const Geometry& geometry);

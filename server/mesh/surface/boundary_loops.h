@@ -6,12 +6,12 @@
 
 namespace strata::mesh {
 
-// The open sides of triangles along one rim of the mesh, in their direction: each begins where the
-// one before it ends, and the first where the last ends.
+// The open sides of triangles along one rim of the mesh, in their direction: each begins at the end
+// of the one before it, and the first at the end of the last.
 using BoundaryLoop = std::vector<OpenMesh::HalfedgeHandle>;
 
-// Every open side is in one of them. Where two rims touch in a vertex, each goes on along its own
-// triangles, so that pieces that touch only there have loops of their own.
+// Every open side is in one loop. Where two rims touch in a vertex, each continues along its own
+// triangles, so that pieces that touch only there have separate loops.
 std::vector<BoundaryLoop> boundary_loops(const Connectivity& connectivity);
 
 }  // namespace strata::mesh

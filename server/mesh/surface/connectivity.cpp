@@ -19,7 +19,7 @@ Handle numbered(std::uint32_t number) {
 }  // namespace
 
 Connectivity::Connectivity(std::span<const std::uint32_t> triangles, std::size_t vertex_count) {
-  // By the first corner of each side: that of the side across its edge, and later its half-edge.
+  // By the first corner of each side: the corner of the opposite side, and later its half-edge.
   constexpr std::uint32_t kOpen = 0xffffffffu;
   std::vector<std::uint32_t> sides(triangles.size(), kOpen);
   std::size_t edge_count = triangles.size();
@@ -30,7 +30,7 @@ Connectivity::Connectivity(std::span<const std::uint32_t> triangles, std::size_t
     --edge_count;
   });
   resize(vertex_count, edge_count, triangles.size() / 3);
-  // Edges in the order of the triangles, so that what goes from face to face stays near in memory.
+  // Edges in the order of the triangles, so that neighboring faces are near each other in memory.
   std::uint32_t next_edge = 0;
   for (std::uint32_t first = 0; first < triangles.size(); first += 3) {
     const auto face = numbered<FaceHandle>(first / 3);
@@ -51,8 +51,8 @@ Connectivity::Connectivity(std::span<const std::uint32_t> triangles, std::size_t
     for (std::size_t k = 0; k < 3; ++k) set_next_halfedge_handle(around[k], around[(k + 1) % 3]);
     set_halfedge_handle(face, around[0]);
   }
-  // The rim goes on where the fan of triangles around a vertex ends. A vertex on a rim names the
-  // half-edge that leaves it along the rim, as OpenMesh wants it.
+  // The rim continues where the fan of triangles around a vertex ends. OpenMesh requires that a
+  // vertex on a rim refers to the half-edge that leaves it along the rim.
   for (std::uint32_t i = 0; i < n_halfedges(); ++i) {
     const auto rim = numbered<HalfedgeHandle>(i);
     if (!is_boundary(rim)) continue;

@@ -8,15 +8,15 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::size_t kStep = 4;
-// A level is worth its memory if it has at most this share of the triangles of the one before.
+// A level is kept if it has at most this share of the triangles of the one before,
 constexpr double kWorthwhile = 0.7;
-// And if it has most of the surface: of unconnected triangles a collapse leaves nothing but holes.
+// and at least this share of the area: simplification of unconnected triangles leaves only holes.
 constexpr double kMinArea = 0.9;
-// Of the model's extent. A level is as coarse as its triangle count says, not as fine as an error
-// would have it.
+// Share of the model's extent. The triangle count determines a level; this limit is not meant to
+// stop it.
 constexpr float kMaxError = 0.05f;
 
-// Triangle counts to aim at, the finest first.
+// Target triangle counts, the finest first.
 std::vector<std::size_t> level_sizes(std::size_t triangles) {
   std::vector<std::size_t> sizes;
   for (std::size_t size = kCoarsestLevelTriangles; 2 * size <= triangles; size *= kStep)

@@ -18,8 +18,8 @@ struct HalfEdge {
 static_assert(sizeof(HalfEdge) == 8);
 
 // Calls visit(smaller vertex, half-edges) for every edge of the mesh, in ascending order of its
-// vertices, with all sides of triangles that lie on it in ascending order of corners. Fewer than
-// 2³¹ corners; 8 bytes for each while it runs.
+// vertices, with all sides of triangles that lie on it in ascending order of corners. At most 2³¹ -
+// 1 corners; needs 8 bytes for each.
 template <class Visit>
 void for_each_edge(std::span<const std::uint32_t> triangles, std::size_t vertex_count,
                    Visit&& visit) {
@@ -42,7 +42,7 @@ void for_each_edge(std::span<const std::uint32_t> triangles, std::size_t vertex_
     half_edges[begin[std::min(from, to)]++] = {
         std::max(from, to), static_cast<std::uint32_t>(c) & 0x7fffffffu, from < to ? 1u : 0u};
   }
-  // The cursor of a vertex stands at the end of its bucket now, which is where the next one begins.
+  // The cursor of a vertex is now at the end of its bucket, which is where the next one begins.
   for (std::size_t v = 0; v < vertex_count; ++v) {
     const auto first = half_edges.begin() + (v == 0 ? 0 : begin[v - 1]),
                last = half_edges.begin() + begin[v];

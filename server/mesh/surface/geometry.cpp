@@ -15,7 +15,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint32_t kStoneGrey = 0xffcfd3d6u;
 constexpr double kRoundOriginAbove = 16;
 
-// Spreads the low 21 bits of `value` so that two zero bits stand between them.
+// Spreads the low 21 bits of `value` so that two zero bits are between them.
 std::uint64_t spread_bits(std::uint64_t value) {
   value &= 0x1fffff;
   value = (value | value << 32) & 0x1f00000000ffffULL;
@@ -28,7 +28,7 @@ std::uint64_t spread_bits(std::uint64_t value) {
 constexpr int kCurveBits = 21;  // of each coordinate
 constexpr std::uint32_t kCurveEnd = (1u << kCurveBits) - 1;
 
-// The place of a cell on the Hilbert curve (Skilling 2004, "Programming the Hilbert curve").
+// The index of a cell on the Hilbert curve (Skilling 2004, "Programming the Hilbert curve").
 std::uint64_t hilbert_code(std::array<std::uint32_t, 3> cell) {
   for (std::uint32_t bit = 1u << (kCurveBits - 1); bit > 1; bit >>= 1) {
     const std::uint32_t below = bit - 1;
@@ -47,9 +47,9 @@ std::uint64_t hilbert_code(std::array<std::uint32_t, 3> cell) {
          spread_bits(cell[2] ^ turn);
 }
 
-// Triangle numbers along a Hilbert curve through their centroids: neighbours on the surface end up
-// near each other, and a run of triangles lies together, as the curve never jumps. It serves the
-// caches of the GPU, clusters for culling, compression and the search tree at once.
+// Triangle numbers along a Hilbert curve through their centroids: neighbors on the surface are near
+// each other, and a run of triangles is compact, as the curve never jumps. This order is good for
+// the caches of the GPU, clusters for culling, compression and the search tree.
 std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dvec3& low,
                                          const glm::dvec3& extent) {
   struct Entry {
@@ -85,7 +85,7 @@ std::uint32_t pack_normal(const glm::dvec3& sum) {
   return snorm10(normal.x) | snorm10(normal.y) << 10 | snorm10(normal.z) << 20;
 }
 
-// Area-weighted normals of the mesh's positions: the cross product is twice the area long.
+// Area-weighted normals of the mesh's positions: the length of the cross product is twice the area.
 std::vector<std::uint32_t> position_normals(const TriangleMesh& mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
   for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {

@@ -11,13 +11,13 @@
 
 namespace strata::mesh {
 
-// One vertex as the GPU reads it; 32 bytes. Positions are model space: world minus
+// One vertex in the layout of the GPU; 32 bytes. Positions are in model space: world minus
 // `Geometry::origin`, in file units.
 struct Vertex {
   glm::vec3 position;
   std::uint32_t normal;  // snorm 10:10:10:2 (GL_INT_2_10_10_10_REV), unit length
   glm::vec2 uv;
-  // RGBA8, red in the low byte; 0xffcfd3d6-like stone grey where the scan has no colour
+  // RGBA8, red in the low byte; a stone gray such as 0xffcfd3d6 where the scan has no color
   std::uint32_t color;
   std::uint32_t position_index;  // of the welded position: vertices split at seams share it
 };
@@ -28,16 +28,15 @@ struct ClusterBox {
   glm::vec3 min{0}, max{0};
 };
 
-// What a model is once imported: the immutable input of rendering, of the surface map and of the
-// search tree.
+// An imported model: the immutable input of rendering, of the surface map and of the search tree.
 struct Geometry {
-  // centre of the box, rounded to whole units where the box is larger than 16
+  // center of the box, rounded to whole units where the box is larger than 16
   glm::dvec3 origin{0};
   std::vector<glm::dvec3> positions;   // world, double, welded
   std::vector<Vertex> vertices;        // corners with equal position and uv share a vertex
-  std::vector<std::uint32_t> indices;  // 3 a triangle, in an order that keeps neighbours together
+  std::vector<std::uint32_t> indices;  // 3 a triangle, in an order that keeps neighbors together
   glm::vec3 box_min{0}, box_max{0};    // model space
-  // of each kTrianglesPerCluster triangles in their order; the last has fewer
+  // for each kTrianglesPerCluster triangles in their order; the last has fewer
   std::vector<ClusterBox> clusters;
 
   static constexpr std::size_t kTrianglesPerCluster = 1024;
@@ -46,7 +45,7 @@ struct Geometry {
   std::size_t bytes() const;
 };
 
-// Fills in the boxes, which follow from vertices and indices.
+// Computes the boxes from vertices and indices.
 void find_boxes(Geometry& geometry);
 
 Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas);

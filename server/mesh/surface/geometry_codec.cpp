@@ -13,8 +13,8 @@
 //   u64 positions, vertices, indices · f64 origin[3] · planes(positions x, y, z as u64) ·
 //   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32)
 // "planes" is a column of integers, each replaced by its zigzag difference to the one before,
-// stored byte plane by byte plane: neighbours in the order along the curve differ little, so the
-// high planes are nearly all zero. Vertex positions and the box follow from the rest and are not
+// stored byte plane by byte plane: neighbors in the order along the curve differ little, so the
+// high planes are nearly all zero. Vertex positions and the box are computed from the rest and not
 // stored.
 
 namespace strata::mesh {
@@ -27,7 +27,7 @@ constexpr std::size_t kHeaderBytes = 3 * 8 + 3 * 8;
 constexpr std::size_t kPositionBytes = 3 * 8, kVertexBytes = 5 * 4, kIndexBytes = 4;
 
 tl::unexpected<Error> damaged(const std::string& what) {
-  return fail(ErrorCode::internal, "Stored geometry is damaged",
+  return fail(ErrorCode::internal, "Stored geometry damaged",
               "The stored geometry cannot be read: " + what +
                   ". Restore it from a backup or import the model again.");
 }
@@ -41,7 +41,7 @@ Bits unzigzag(Bits code) {
   return static_cast<Bits>((code >> 1) ^ (Bits{0} - (code & 1)));
 }
 
-// Writes `count` values of `value(i)` as planes at `out` and moves it behind them.
+// Writes `count` values of `value(i)` as planes at `out` and moves `out` past them.
 template <class Bits, class Value>
 void write_planes(std::uint8_t*& out, std::size_t count, Value value) {
   Bits before = 0;
@@ -98,7 +98,7 @@ std::vector<std::uint8_t> serialize(const Geometry& geometry) {
 }
 
 Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
-  if (bytes.size() < kHeaderBytes) return damaged("it is cut short");
+  if (bytes.size() < kHeaderBytes) return damaged("it is incomplete");
   std::uint64_t counts[3];
   std::memcpy(counts, bytes.data(), sizeof counts);
   const std::uint64_t positions = counts[0], vertices = counts[1], indices = counts[2];
@@ -106,7 +106,7 @@ Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
   if (positions > kMax || vertices > kMax || indices > kMax || indices % 3 != 0 ||
       bytes.size() != kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes +
                           indices * kIndexBytes) {
-    return damaged("its counts do not fit its size");
+    return damaged("its counts do not match its size");
   }
   Geometry geometry;
   double origin[3];
@@ -170,7 +170,7 @@ std::vector<std::uint8_t> encode_geometry(const Geometry& geometry) {
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
   const std::size_t size = ZSTD_compress2(context.get(), result.data() + prefix,
                                           result.size() - prefix, content.data(), content.size());
-  if (ZSTD_isError(size)) throw std::bad_alloc();  // with a bound-sized target only memory can fail
+  if (ZSTD_isError(size)) throw std::bad_alloc();  // the target is large: only memory can fail
   result.resize(prefix + size);
   result.shrink_to_fit();
   return result;
@@ -179,21 +179,21 @@ std::vector<std::uint8_t> encode_geometry(const Geometry& geometry) {
 Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
   const std::size_t prefix = sizeof kMagic + 1;
   if (bytes.size() <= prefix || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
-    return damaged("it does not begin as one");
+    return damaged("it does not begin like stored geometry");
   if (bytes[sizeof kMagic] != kVersion) {
     return damaged("it has version " + std::to_string(bytes[sizeof kMagic]) +
                    ", this server reads version 1");
   }
   const std::span<const std::uint8_t> frame = bytes.subspan(prefix);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
-  // Geometry never shrinks a thousandfold; a size beyond that is damage, and nothing is allocated
+  // Geometry never compresses a thousandfold; a larger size means damage, and nothing is allocated
   // for it.
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN ||
       size / 1000 > frame.size() + 65536) {
     return damaged("its size is wrong");
   }
   if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size())
-    return damaged("it is cut short or has bytes too many");
+    return damaged("it has too few or too many bytes");
   std::vector<std::uint8_t> content(size);
   const std::size_t read =
       ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());

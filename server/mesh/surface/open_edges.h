@@ -5,7 +5,7 @@
 
 namespace strata::mesh {
 
-// Where the surface ends, in file units: the loops of `boundary_loops`, measured. For its time and
+// Measures where the surface ends, in file units: the loops of `boundary_loops`. For time and
 // memory see Connectivity.
 OpenEdges measure_open_edges(const Geometry& geometry);
 

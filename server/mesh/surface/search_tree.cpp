@@ -7,11 +7,11 @@
 #include <limits>
 #include <vector>
 
-// A tree of boxes over the triangles in the order in which the geometry stores them. That order
-// follows a Hilbert curve, so runs of it have compact boxes without any sorting: a million
-// triangles take some tens of milliseconds, and any other order would only be slower, never wrong.
-// Each node has eight children, whose boxes lie side by side, so that vectors of the CPU test them
-// together. Triangles are computed in double.
+// A tree of boxes over the triangles in the order of the geometry. That order follows a Hilbert
+// curve, so runs of it have compact boxes without any sorting: a million triangles take some tens
+// of milliseconds, and any other order would only be slower, never wrong. Each node has eight
+// children, whose boxes are stored together, so that vectors of the CPU test them at once.
+// Triangles are computed in double.
 
 namespace strata::mesh {
 namespace {
@@ -20,7 +20,7 @@ constexpr std::size_t kLeafTriangles = 2;
 constexpr std::size_t kWidth = 8;
 constexpr std::size_t kMaxLevels = 12;  // 8^12 leaves
 
-// The boxes of a node's children; those of children that are not there are empty.
+// The boxes of a node's children; the boxes of missing children are empty.
 struct Boxes {
   Boxes() {
     for (auto& side : low) side.fill(std::numeric_limits<float>::infinity());
@@ -37,8 +37,7 @@ struct Boxes {
 template <class Key>
 using Keys = std::array<Key, kWidth>;
 
-// Several boxes at once. Compilers do not find this by themselves: they keep branches, which
-// vectors of the CPU cannot take.
+// Several boxes at once. Compilers do not vectorize this automatically: they keep branches.
 template <class Number>
 struct LanesOf {
   typedef Number Type __attribute__((vector_size(16)));
@@ -53,8 +52,8 @@ Lanes load(const Number* from) {
   return lanes;
 }
 
-// Not above the squared distances of the boxes: the margin is more than the floats round, those of
-// a limit that they are held against included.
+// At most the squared distances of the boxes: the margin exceeds the rounding of the floats, and of
+// a limit that they are compared with.
 Keys<float> squared_distances(const Boxes& boxes, const glm::vec3& p) {
   constexpr std::size_t kLanes = sizeof(Floats) / sizeof(float);
   Keys<float> keys;
@@ -68,17 +67,17 @@ Keys<float> squared_distances(const Boxes& boxes, const glm::vec3& p) {
       const Floats outside = farther > 0.0f ? farther : Floats{};
       sum += outside * outside;
     }
-    // Points may be so far that a square is no float any more.
+    // The square of a very distant point may overflow float.
     const Floats most = Floats{} + std::numeric_limits<float>::max();
-    const Floats kept = (sum < most ? sum : most) * (1 - 1e-6f);
-    std::memcpy(&keys[first], &kept, sizeof kept);
+    const Floats lowered = (sum < most ? sum : most) * (1 - 1e-6f);
+    std::memcpy(&keys[first], &lowered, sizeof lowered);
   }
   return keys;
 }
 
 // Weights of the corners at the point of triangle a, b, c that is nearest to p (Ericson, Real-Time
-// Collision Detection, 5.1.5). Written with differences of products only where the denominators
-// cannot vanish; a triangle without area falls to its edges.
+// Collision Detection, 5.1.5). Uses differences of products only where the denominators cannot
+// vanish; for a triangle without area the nearest point is on its edges.
 glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                            const glm::dvec3& c) {
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -100,7 +99,7 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::
 
 // A ray prepared for the watertight test of Woop, Benthin and Wald (2013): the axis along which it
 // is longest becomes z, and the others are sheared. Edges shared by two triangles give the same
-// numbers with opposite sign, so no ray slips between them.
+// numbers with opposite sign, so no ray passes between them.
 struct PreparedRay {
   PreparedRay(const glm::dvec3& from, const glm::dvec3& along)
       : origin(from), direction(along + 0.0), inverse(1.0 / direction) {
@@ -121,7 +120,7 @@ struct PreparedRay {
       Doubles near{}, far = Doubles{} + limit;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double at = (&origin.x)[axis], scale = (&inverse.x)[axis];
-        // From the side that the ray meets first.
+        // From the side that the ray enters first.
         const float* first = &(scale < 0 ? boxes.high : boxes.low)[axis][begin];
         const float* last = &(scale < 0 ? boxes.low : boxes.high)[axis][begin];
         const Doubles t0 = (Doubles{first[0], first[1]} - at) * scale,
@@ -196,9 +195,9 @@ struct SearchTree::Impl {
             geometry->vertices[i[2]].position};
   }
 
-  // Visits the triangles of leaves in the order of their keys while these are not above `limit`,
-  // which `visit` may lower. `keys_of` gives those of a node's children: distances, infinity to
-  // skip.
+  // Visits the triangles of leaves in the order of their keys while these are at most `limit`,
+  // which `visit` may lower. `keys_of` returns the keys of a node's children: distances, infinity
+  // to skip.
   template <class Key, class KeysOf, class Visit>
   void search(double& limit, KeysOf keys_of, Visit visit) const {
     struct Entry {
@@ -224,7 +223,7 @@ struct SearchTree::Impl {
       const std::size_t below = entry.level == 1 ? leaves : levels[entry.level - 2].size();
       const std::size_t first_child = std::size_t{entry.index} * kWidth;
       const std::size_t first = depth, children = std::min(kWidth, below - first_child);
-      // Which of them are near is not to be foretold: a branch for each would take longer than the
+      // The CPU cannot predict which are near: branches would take longer than the tests of the
       // boxes.
       std::array<std::uint8_t, kWidth> near{};
       std::size_t count = 0;
@@ -272,7 +271,7 @@ struct SearchTree::Impl {
     const Vertex &a = geometry->vertices[i[0]], &b = geometry->vertices[i[1]],
                  &c = geometry->vertices[i[2]];
     const auto [pa, pb, pc] = corners(triangle);
-    // World positions tell the sides of triangles that are flat in float.
+    // World positions give the orientation of triangles that are flat in float.
     const glm::dvec3& base = geometry->positions[a.position_index];
     const glm::dvec3 cross = glm::cross(geometry->positions[b.position_index] - base,
                                         geometry->positions[c.position_index] - base);

@@ -8,10 +8,10 @@
 namespace strata::mesh {
 
 // Nearest point and ray queries on a model's surface, in model space (world minus origin), without
-// the GPU. Immutable once built; queries are thread-safe.
+// the GPU. Immutable after construction; queries are thread-safe.
 class SearchTree {
  public:
-  // Keeps a reference to `geometry`'s arrays.
+  // Shares ownership of `geometry`.
   explicit SearchTree(std::shared_ptr<const Geometry> geometry);
   ~SearchTree();
   SearchTree(const SearchTree&) = delete;
@@ -26,8 +26,8 @@ class SearchTree {
     glm::vec3 barycentric;
   };
   std::optional<Hit> nearest(const glm::vec3& point, float max_distance) const;
-  // Among triangles whose normal is within the angle of `normal` (unit; its cosine is `least_cos`):
-  // the right side of a thin wall.
+  // Searches among triangles whose normal is within an angle of `normal` (unit; `least_cos` is the
+  // cosine): this selects the right side of a thin wall.
   std::optional<Hit> nearest_facing(const glm::vec3& point, float max_distance,
                                     const glm::vec3& normal, float least_cos) const;
   std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction) const;

@@ -8,11 +8,11 @@
 namespace strata::mesh {
 namespace {
 
-// Room for the rounding of whoever unpacks positions in float; of the model's diagonal.
+// Share of the model's diagonal: allows for the rounding of code that unpacks positions in float.
 constexpr float kSlack = 1e-6f;
 
-// Texels of a block that lie further apart than so many mean texels with none between are of
-// different places.
+// Texels of a block that are more than this many mean texels apart, with none between, belong to
+// different parts.
 constexpr double kMinGap_texels = 4;
 
 float slack_of(const Geometry& geometry) {
@@ -21,7 +21,7 @@ float slack_of(const Geometry& geometry) {
 
 }  // namespace
 
-// visit(slot, mask of the texels that are surface or gutter)
+// Calls visit(slot, mask of the texels that are surface or gutter).
 template <class Visit>
 void SurfaceBake::for_each_slot(int band, Visit visit) {
   const std::size_t blocks = static_cast<std::size_t>(map_.blocks_per_side);
@@ -44,9 +44,9 @@ void SurfaceBake::box_slots(int band) {
   });
 }
 
-// A surface texel that gutter texels of other blocks borrow from is moved to the coarsest of their
-// grids: then each block can hold the same position. (Powers of two: what lies on a coarse grid
-// lies on every finer one.) In one order, on one thread.
+// A surface texel whose position gutter texels of other blocks use is moved to the coarsest of
+// their grids: then each block can hold the same position. (Powers of two: a point of a coarse grid
+// is a point of every finer one.) In one order, on one thread.
 void SurfaceBake::share_grids() {
   for (const auto& band : borrowed_)
     for (const Borrowed& borrowed : band) {
@@ -70,7 +70,7 @@ void SurfaceBake::pack_slots(int band) {
     const glm::vec3* positions = position_.get() + std::size_t{slot} * 64;
     auto& packed_box = map_.packed_box[slot];
     Box& box = box_of_slot_[slot];
-    // Moved positions may begin the box a little earlier; its step stays.
+    // Moved positions may begin the box a little earlier; its step does not change.
     for (std::uint64_t rest = owned; rest != 0; rest &= rest - 1) {
       const glm::vec3 position = positions[std::countr_zero(rest)];
       box.low = glm::min(box.low, position), box.high = glm::max(box.high, position);

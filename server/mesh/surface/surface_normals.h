@@ -10,9 +10,9 @@
 namespace strata::mesh {
 
 // Normals of a mesh as a smooth surface: at each welded position the mean of the faces around it
-// weighted by their angle there (the pseudo-normal of Bærentzen and Aanæs, which also tells inside
-// from outside), interpolated over triangles. Where a triangle stands at more than 40° to that mean
-// the edge is a real one, and the triangle keeps its own normal there. Immutable; thread-safe.
+// weighted by their angle there (the pseudo-normal of Bærentzen and Aanæs, which also distinguishes
+// inside from outside), interpolated over triangles. A triangle at more than 40° to that mean is at
+// a real edge and keeps its own normal there. Immutable; thread-safe.
 class SurfaceNormals {
  public:
   explicit SurfaceNormals(std::shared_ptr<const Geometry> geometry);

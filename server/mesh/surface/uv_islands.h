@@ -7,14 +7,15 @@
 
 namespace strata::mesh {
 
-// Pieces of a parametrisation: triangles are of one island when a chain of corners that share
+// Pieces of a parametrization: triangles are in the same island if a chain of corners with equal
 // position and UV joins them.
 struct UvIslands {
   std::vector<std::uint32_t> of_triangle;  // numbered from 0 in the order of their first triangle
   std::uint32_t count = 0;
 };
 
-// Numbers corners from 0 by first use: the same number exactly where position and UV are equal.
+// Numbers corners from 0 by first use: two corners have the same number exactly if their position
+// and UV are equal.
 class CornerWelder {
  public:
   explicit CornerWelder(std::size_t position_count) : first_(position_count, kEnd) {}
@@ -30,16 +31,16 @@ class CornerWelder {
   static constexpr std::uint32_t kEnd = 0xffffffffu;
   struct Vertex {
     glm::vec2 uv;
-    std::uint32_t next;  // of the same position
+    std::uint32_t next;  // with the same position
   };
-  std::vector<std::uint32_t> first_;  // of a position: head of the list of its vertices
+  std::vector<std::uint32_t> first_;  // for each position: head of the list of its vertices
   std::vector<Vertex> vertices_;
 };
 
 // `indices`: 3 a triangle, equal exactly where position and UV are equal.
 UvIslands find_islands(std::span<const std::uint32_t> indices, std::size_t vertex_count);
 
-// Such indices by a CornerWelder. Returns the number of distinct ones.
+// Computes such indices by a CornerWelder. Returns the number of distinct ones.
 std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner,
                          std::span<const glm::vec2> uv_of_corner, std::size_t position_count,
                          std::vector<std::uint32_t>& indices);

@@ -9,15 +9,15 @@
 
 namespace strata::mesh {
 
-// Where texture coordinates lie on the surface, to the precision of the mesh: a surface map knows
-// the middles of texels alone. Keeps a grid of the triangles, some 20 bytes each; `geometry` must
-// live as long.
+// Finds the position of texture coordinates on the surface, to the precision of the mesh: a surface
+// map has only the centers of texels. Keeps a grid of the triangles, some 20 bytes each; `geometry`
+// must outlive it.
 class UvLookup {
  public:
   explicit UvLookup(const Geometry& geometry);
 
-  // Model space, in double: of the triangle that holds the coordinates, or the one that is nearest
-  // to them in their cell of the grid; nothing where there is none.
+  // The position in model space, in double, on the triangle that contains the coordinates, or on
+  // the nearest one in their cell of the grid; nothing if the cell is empty.
   std::optional<glm::dvec3> place_at(glm::dvec2 uv) const;
 
  private:
@@ -27,7 +27,7 @@ class UvLookup {
 
   const Geometry& geometry_;
   int side_;                          // cells
-  std::vector<std::uint32_t> first_;  // a cell; and the end
+  std::vector<std::uint32_t> first_;  // for each cell, and the end
   std::vector<std::uint32_t> triangles_;
 };
 

@@ -4,14 +4,14 @@
 
 namespace strata::mesh {
 
-constexpr int kGutterRing = 2;  // texels of gutter around an island
+constexpr int kGutterRing = 2;  // width of the gutter around an island in texels
 
 struct TexelOffset {
   int x, y;
 };
 
-// The 24 neighbours within the ring, nearest first; among equals the lower, then the left one. A
-// gutter texel follows the first of them that is surface.
+// The 24 neighbors within the ring, nearest first; among equals the lower, then the left one. A
+// gutter texel follows the first of them that is a surface texel.
 constexpr std::array<TexelOffset, 24> gutter_ring_offsets() {
   std::array<TexelOffset, 24> offsets{};
   int count = 0;

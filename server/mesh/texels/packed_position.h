@@ -9,18 +9,18 @@
 
 namespace strata::mesh {
 
-// Positions in a box as 21 + 21 + 22 bits; the largest value of each is left out, so that all ones
-// is no position.
+// Positions in a box as 21 + 21 + 22 bits; the largest value of each is not used, so that all ones
+// is not a position.
 constexpr std::uint32_t kMaxPackedX = (1u << 21) - 2, kMaxPackedY = (1u << 21) - 2,
                         kMaxPackedZ = (1u << 22) - 2;
 
-// The smallest power of two that takes `low`…`high` in `largest` steps and is no finer than floats
-// there.
+// The smallest power of two for which `largest` steps cover `low`…`high` and that is no finer than
+// floats there.
 inline float packed_step(float low, float high, std::uint32_t largest) {
   const double farthest = std::max(std::abs(double{low}), std::abs(double{high}));
   int exponent = farthest > 0 ? std::ilogb(farthest) - 23 : -126;
-  // Two steps are kept free: the box begins on a whole step, and positions may be moved by less
-  // than one.
+  // Two steps are reserved: the box begins on a whole step, and positions may be moved by less than
+  // one.
   const double extent = double{high} - double{low};
   if (extent > 0) exponent = std::max(exponent, std::ilogb(extent / (largest - 2.0)) + 1);
   return static_cast<float>(std::ldexp(1.0, std::max(exponent, -126)));
@@ -37,7 +37,7 @@ inline SurfaceMap::PackedBox packed_box_of(glm::vec3 low, glm::vec3 high) {
   return box;
 }
 
-// `position` lies in the box.
+// `position` must lie in the box.
 inline std::uint64_t pack_position(glm::vec3 position, const SurfaceMap::PackedBox& box) {
   const auto axis = [&](int i, std::uint32_t largest) {
     const double steps = (double{position[i]} - double{box.min[i]}) / double{box.step[i]};

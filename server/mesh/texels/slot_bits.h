@@ -10,10 +10,10 @@
 
 namespace strata::mesh {
 
-// Between the slots of a surface map, with a bit for each of their 64 texels, and the tiles of its
-// layers.
+// Conversions between the slots of a surface map, with a bit for each of their 64 texels, and the
+// tiles of its layers.
 
-// The slot of a block; kNoSlot where nothing is, or out of the map.
+// The slot of a block; kNoSlot where the block is empty or outside the map.
 inline std::uint32_t slot_at(const SurfaceMap& map, int block_x, int block_y) {
   if (block_x < 0 || block_y < 0 || block_x >= map.blocks_per_side ||
       block_y >= map.blocks_per_side)
@@ -21,14 +21,14 @@ inline std::uint32_t slot_at(const SurfaceMap& map, int block_x, int block_y) {
   return map.slot_of_block[static_cast<std::size_t>(block_y) * map.blocks_per_side + block_x];
 }
 
-// Where a tile's texel stands in the map; the slot may be kNoSlot.
+// Position of a tile's texel in the map; the slot may be kNoSlot.
 struct SlotTexel {
   std::uint32_t slot;
   int texel;  // y * 8 + x
 };
 SlotTexel slot_texel(const SurfaceMap& map, TileAddress tile, int texel);
 
-// Calls bits_of(slot) for each occupied block of the tile and puts its 64 bits in place.
+// Calls bits_of(slot) for each occupied block of the tile and stores its 64 bits.
 template <class BitsOf>
 TileMask gather_tile_bits(const SurfaceMap& map, TileAddress tile, BitsOf&& bits_of) {
   constexpr int kBlocksPerTileSide = kTileSize / kBlockSize;
@@ -47,7 +47,7 @@ TileMask gather_tile_bits(const SurfaceMap& map, TileAddress tile, BitsOf&& bits
   return mask;
 }
 
-// Calls visit(gutter, owner) for every gutter texel and the surface texel that it follows.
+// Calls visit(gutter, owner) for every gutter texel and the surface texel it follows.
 template <class Visit>
 void for_each_gutter_texel(const SurfaceMap& map, Visit&& visit) {
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
@@ -75,7 +75,7 @@ void for_each_gutter_texel(const SurfaceMap& map, Visit&& visit) {
 }
 
 // Given a bit for each surface texel, a word a slot: gutter texels get the bit of the surface texel
-// that they follow.
+// they follow.
 void spread_to_gutter(const SurfaceMap& map, std::span<std::uint64_t> bits_of_slot);
 
 }  // namespace strata::mesh

@@ -38,10 +38,10 @@ void SurfaceBake::credit_areas(int band) {
   }
 }
 
-// The surface texel that takes what lies on a texel of no or of another island: the nearest of its
-// own island within the ring; beyond (a tip too thin to cover centres) the nearest that the
-// triangle covers; for a triangle that covers none the one that holds its centroid, which is always
-// surface.
+// The surface texel that is credited with area on a texel without an island, or of another one: the
+// nearest of its own island within the ring; without one (a tip too thin to cover centers) the
+// nearest that the triangle covers; for a triangle that covers none the one that contains its
+// centroid, which is always a surface texel.
 glm::ivec2 SurfaceBake::heir_of(const Leftover& leftover) const {
   const int x = static_cast<int>(leftover.texel % resolution_),
             y = static_cast<int>(leftover.texel / resolution_);

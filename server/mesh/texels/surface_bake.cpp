@@ -35,7 +35,7 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
   islands_ = find_islands(geometry.indices, geometry.vertices.size());
   triangle_area_.resize(geometry.triangle_count());
   for (std::uint32_t t = 0; t < triangle_area_.size(); ++t) {
-    // From the world's doubles: model space is float.
+    // Computed from the world's doubles: model space is float.
     const auto at = [&](int k) {
       return geometry.positions[geometry.vertices[vertex(t, k)].position_index];
     };
@@ -125,8 +125,7 @@ void SurfaceBake::mark_surface(int band) {
       }
       return true;
     });
-  // Triangles between the centres: they get the texel of their centroid where no other triangle
-  // owns it.
+  // Triangles between the centers own the texel of their centroid, if no other triangle owns it.
   auto& claims = claims_[band];
   for (const std::uint32_t t : triangles_of_band_[band]) {
     if (triangle_area_[t] <= 0) continue;
@@ -156,7 +155,7 @@ void SurfaceBake::mark_surface(int band) {
 void SurfaceBake::mark_gutter(int band) {
   for (int by = first_block_row(band); by < first_block_row(band + 1); ++by)
     for (int bx = 0; bx < map_.blocks_per_side; ++bx) {
-      // The block with 2 texels around it: rows of 12 bits, bit 2 is the block's first column.
+      // The block with 2 texels around it: rows of 12 bits; bit 2 is the block's first column.
       std::array<std::uint32_t, 12> rows{};
       std::uint64_t any = 0;
       for (int dy = -1; dy <= 1; ++dy)
@@ -193,7 +192,7 @@ void SurfaceBake::assign_slots(int threads) {
     map_.gutter_texels += std::popcount(gutter);
   }
   const std::size_t slots = map_.block_of_slot.size();
-  // Touching new memory costs as much as the baking itself: on all threads at once.
+  // The first access to new memory costs as much as the baking itself: it uses all threads.
   parallel_for(threads, 2, [&](int half) {
     if (half == 0)
       owner_.assign(slots * 64, kNobody);
@@ -231,7 +230,7 @@ class PositionPlane {
     weight_2_ = glm::dvec2(-e1.y, e1.x) / twice;
   }
 
-  // The weights of the second and third corner at (x, y), with negative ones set to 0.
+  // The weights of the second and third corner at (x, y); negative ones are set to 0.
   glm::dvec2 weights(double x, double y) const {
     if (is_line_) return glm::dvec2(1.0 / 3.0);
     const glm::dvec2 d(x - origin_.x, y - origin_.y);
@@ -253,7 +252,7 @@ class PositionPlane {
     return part(b.x) | part(b.y) << 16;
   }
 
-  // At the point of the triangle that has these weights.
+  // The point of the triangle with these weights.
   glm::dvec3 at(double x, double y) const {
     const glm::dvec2 b = weights(x, y);
     return base_ + b.x * along_1_ + b.y * along_2_;
@@ -289,8 +288,8 @@ void SurfaceBake::place_surface(int band) {
   std::vector<std::uint32_t> shared;
   for (const std::uint32_t t : triangles_of_band_[band]) {
     const CoverageRaster raster = raster_of(t);
-    // Most triangles of a dense scan cover little; the plane is worked out when the first texel
-    // asks for it.
+    // Most triangles of a dense scan cover little; the plane is computed when the first texel needs
+    // it.
     std::optional<PositionPlane> plane;
     raster.for_each_span(0, resolution_, y_low, y_high, [&](int y, int x0, int x1) {
       if (!plane) plane = plane_of(t);

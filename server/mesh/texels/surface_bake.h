@@ -14,13 +14,13 @@
 
 namespace strata::mesh {
 
-// What is kept of each texel: its position and area, or its triangle and its place there.
+// The data kept of each texel: its position and area, or its triangle and its place there.
 enum class BakeFor { map, owners };
 
-// The steps of a surface map's baking. Work is cut into horizontal bands of the atlas, always the
-// same ones, so that the result does not depend on which thread does which. Within a band triangles
-// come in ascending order. For owners the steps end with place_gutter, and the map's positions and
-// areas stay empty.
+// The steps of baking a surface map. Work is divided into horizontal bands of the atlas, always the
+// same ones, so that the result does not depend on the assignment to threads. Within a band
+// triangles are in ascending order. For owners the steps end with place_gutter, and the map's
+// positions and areas stay empty.
 class SurfaceBake {
  public:
   SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map,
@@ -41,9 +41,9 @@ class SurfaceBake {
   void bound_tiles();              // after pack_slots of all bands
   void plant_tree(int threads);    // after pack_slots of all bands
 
-  // What place_surface and place_gutter found, for those who paint by triangle: 64 a slot, of
-  // surface texels only. Weights are of the second corner and << 16 of the third, in 1/65535. To be
-  // asked for once, at the end.
+  // The results of place_surface and place_gutter for painting by triangle: 64 a slot, of surface
+  // texels only. Weights are of the second corner and << 16 of the third, in 1/65535. Call these
+  // once, at the end.
   std::vector<std::uint32_t> take_owners() { return std::move(owner_); }
   std::vector<std::uint32_t> take_weights() { return std::move(weights_); }
   struct Borrowed {
@@ -55,10 +55,11 @@ class SurfaceBake {
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
-  struct Claim {  // of a triangle that covers no texel centre on the texel that holds its centroid
+  // a triangle that covers no texel center claims the texel that contains its centroid
+  struct Claim {
     std::uint32_t texel, triangle;
   };
-  struct Leftover {  // area that lies on a texel which its own island does not own
+  struct Leftover {  // area on a texel that its own island does not own
     std::uint32_t texel, triangle;
     float area;
   };
@@ -78,9 +79,9 @@ class SurfaceBake {
   BlockTree::Part part_of(std::uint32_t slot) const;  // as if the block were one
   std::uint64_t block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const;
   bool is_surface(int x, int y) const;
-  // into the per-slot arrays; the block must have a slot
+  // index into the per-slot arrays; the block must have a slot
   std::size_t texel_index(int x, int y) const;
-  std::uint32_t owner(int x, int y) const;  // kNobody where no surface
+  std::uint32_t owner(int x, int y) const;  // kNobody if not a surface texel
   bool nearest_surface(int x, int y, std::uint32_t island, glm::ivec2& found) const;
   glm::ivec2 heir_of(const Leftover& leftover) const;
 
@@ -100,7 +101,7 @@ class SurfaceBake {
   std::vector<std::uint64_t> overlaps_of_band_;
   std::vector<std::uint32_t> owner_;    // 64 a slot
   std::vector<std::uint32_t> weights_;  // 64 a slot, for owners only
-  // 64 a slot, until they are packed; undefined where nothing is owned
+  // 64 a slot, until they are packed; undefined where a texel is neither surface nor gutter
   std::unique_ptr<glm::vec3[]> position_;
   struct Box {
     glm::vec3 low{INFINITY}, high{-INFINITY};

@@ -7,8 +7,8 @@ namespace strata::mesh {
 
 Result<void> check_map_resolution(int resolution) {
   if (resolution >= kTileSize && resolution <= 16384 && resolution % kTileSize == 0) return {};
-  return fail(ErrorCode::malformed, "Resolution not possible",
-              "A surface map has a multiple of 128 from 128 to 16384 texels a side, not " +
+  return fail(ErrorCode::malformed, "Invalid resolution",
+              "The resolution of a surface map must be a multiple of 128 from 128 to 16384, not " +
                   std::to_string(resolution) + ".",
               "resolution");
 }
@@ -20,7 +20,7 @@ Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Pr
   progress.report(0, "Locating texels on the surface");
   SurfaceBake bake(geometry, resolution, map);
   using Step = void (SurfaceBake::*)(int);
-  // Cancelled work is left half done: the map is thrown away.
+  // Cancelled work is incomplete: the map is discarded.
   const auto run = [&](Step step, double fraction_after) {
     if (progress.cancelled()) return;
     parallel_for(threads, bake.band_count(), [&](int band) {

@@ -13,7 +13,7 @@ namespace {
 constexpr int kBlocksPerTileSide = kTileSize / kBlockSize;
 constexpr const char* kLocating = "Locating texels on the surface";
 
-// What was worked out for the texels of all slots, as tiles.
+// Collects the values computed for the texels of all slots as tiles.
 class TileSorter {
  public:
   TileSorter(const TexelOwners& owners, ValueType type) : owners_(owners), type_(type) {
@@ -121,7 +121,7 @@ Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const Te
     const auto value = bits_at(texel);
     if (!value) return;
     bits[texel] = *value;
-    valid[texel / 64] |= std::uint64_t{1} << (texel % 64);  // a slot is one thread's
+    valid[texel / 64] |= std::uint64_t{1} << (texel % 64);  // only one thread writes to a slot
   };
   STRATA_TRY(for_each_texel(owners, paint, "Painting", progress, threads));
   for (const auto& [texel, owner] : owners.gutter) {

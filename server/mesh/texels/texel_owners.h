@@ -13,21 +13,21 @@
 
 namespace strata::mesh {
 
-// For every surface texel of an atlas at one resolution the triangle that it shows, and where in
-// it: what values computed from the mesh are painted by. The same texels in the same slots as the
-// SurfaceMap of that resolution, by the same code. Made when needed and thrown away: 8 bytes a
-// texel that painting with a brush has no use for.
+// The triangle of every surface texel of an atlas at one resolution, and the position in it, for
+// painting values that are computed from the mesh. The same texels in the same slots as the
+// SurfaceMap of that resolution, by the same code. Made when needed and discarded: 8 bytes a texel
+// that painting with a brush does not need.
 struct TexelOwners {
   int resolution = 0;
   int blocks_per_side = 0;
   std::vector<std::uint32_t> block_of_slot;  // y * blocks_per_side + x
   std::vector<std::uint64_t> surface_mask;   // a slot: bit (y*8+x)
-  // 64 a slot; of no meaning where the texel is not surface
+  // 64 a slot; undefined if the texel is not a surface texel
   std::vector<std::uint32_t> triangle;
   // 64 a slot: of the second corner and << 16 of the third, in 1/65535
   std::vector<std::uint32_t> weights;
   struct Gutter {
-    // a gutter texel and the surface texel that it follows; indices into the 64 a slot
+    // a gutter texel and the surface texel it follows; indices into the 64 a slot
     std::uint32_t texel, owner;
   };
   std::vector<Gutter> gutter;
@@ -43,16 +43,16 @@ struct TexelOwners {
 Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, Progress& progress,
                                       int threads = background_threads());
 
-// Calls `visit(texel)` for every surface texel (its index of the 64 a slot), on several threads at
-// once, and reports `message`. Texels of one range of kTexelsAtOnce (from a multiple of it) are
-// visited in order by one thread. Refused when cancelled.
+// Calls `visit(texel)` for every surface texel (its index into the 64 a slot), on several threads
+// at once, and reports `message`. One thread visits the texels of one range of kTexelsAtOnce (from
+// a multiple of it) in order. Refused when cancelled.
 constexpr std::size_t kTexelsAtOnce = 256 * 64;
 using TexelVisit = std::function<void(std::size_t texel)>;
 Result<void> for_each_texel(const TexelOwners& owners, const TexelVisit& visit, const char* message,
                             Progress& progress, int threads = background_threads());
 
-// Paints the surface: each texel gets the bits of the layer's value that `bits_at` gives for it, or
-// nothing; gutter texels follow their owners. Called like `visit` above.
+// Paints the surface: each texel gets the bits of the layer's value that `bits_at` returns for it,
+// or nothing; gutter texels follow their owners. Calls `bits_at` as `visit` above.
 using TexelBits = std::function<std::optional<std::uint32_t>(std::size_t texel)>;
 Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const TexelBits& bits_at,
                              Progress& progress, int threads = background_threads());

@@ -8,8 +8,8 @@
 
 namespace strata::mesh {
 
-// The exact area of a triangle within each texel of the grid, by signed areas right of its edges
-// summed along rows.
+// The exact area of a triangle within each texel of the grid: signed areas to the right of its
+// edges, summed along rows.
 class TexelPieces {
  public:
   // Corners in texels, not negative.
@@ -21,7 +21,7 @@ class TexelPieces {
     low_ = glm::min(a, glm::min(b, c));
     high_ = glm::max(a, glm::max(b, c));
     const glm::dvec2 extent = high_ - low_;
-    // Pieces of thinner ones would be rounding noise.
+    // Pieces of thinner triangles would be rounding noise.
     is_line_ = area_ <= 1e-9 * glm::dot(extent, extent);
   }
 
@@ -35,7 +35,8 @@ class TexelPieces {
     return std::max(first_column(), static_cast<int>(std::ceil(high_.x)) - 1);
   }
 
-  // visit(x, y, area) for each texel of rows [y_low, y_high) that holds a piece, row by row.
+  // Calls visit(x, y, area) for each texel of rows [y_low, y_high) that contains a piece, row by
+  // row.
   template <class Visit>
   void for_each(int y_low, int y_high, Visit&& visit) {
     const int x0 = first_column(), columns = last_column() - x0 + 1;
@@ -46,7 +47,7 @@ class TexelPieces {
     }
     if (sums_.size() < static_cast<std::size_t>(columns) + 2) sums_.resize(columns + 2, 0.0);
     for (int y = y0; y <= y1; ++y) {
-      // A long slanted triangle is in few of its columns in each row.
+      // A long slanted triangle covers few of its columns in each row.
       row_first_ = columns, row_last_ = -1;
       for (int k = 0; k < 3; ++k) add_edge(corners_[k], corners_[(k + 1) % 3], y, x0, columns);
       double sum = 0;
@@ -61,8 +62,8 @@ class TexelPieces {
   }
 
  private:
-  // Adds what lies right of the edge's part within row y: after a running sum each column holds its
-  // signed area.
+  // Adds the area to the right of the edge's part within row y: after a running sum each column
+  // holds its signed area.
   void add_edge(glm::dvec2 from, glm::dvec2 to, int y, int x0, int columns) {
     const double direction = from.y < to.y ? 1 : -1;
     if (direction < 0) std::swap(from, to);

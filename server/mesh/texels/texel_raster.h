@@ -9,13 +9,14 @@
 
 namespace strata::mesh {
 
-// Which texel centres a triangle covers, as OpenGL implementations find it: vertices snapped to
-// 1/256 texel, integer edge functions, and a centre on an edge belongs to the triangle whose left
-// or lower side that edge is. So the texels of two triangles that share an edge are disjoint, and
-// no texel between them is lost.
+// The texel centers that a triangle covers, as in OpenGL implementations: vertices snapped to 1/256
+// texel, integer edge functions, and a center on an edge belongs to the triangle whose left or
+// lower side that edge is. So the texels of two triangles that share an edge are disjoint, and no
+// texel between them is lost.
 constexpr int kSubtexels = 256;
 
-// A point of the texture in 1/256 texel; resolution 16384 takes 22 bits, products of two fit 64.
+// A point of the texture in 1/256 texel; resolution 16384 needs 22 bits, and products of two fit in
+// 64.
 using SnappedPoint = glm::ivec2;
 
 inline SnappedPoint snap_to_subtexels(double x_texels, double y_texels) {
@@ -38,7 +39,7 @@ class CoverageRaster {
       Edge& edge = edges_[k];
       edge.step_x = -dy * kSubtexels;
       edge.step_y = dx * kSubtexels;
-      // Value at the centre of texel (0, 0); inside is ≥ 0.
+      // Value at the center of texel (0, 0); inside is ≥ 0.
       edge.at_origin = dx * (kSubtexels / 2 - from.y) - dy * (kSubtexels / 2 - from.x) -
                        (owns_its_points ? 0 : 1);
     }
@@ -51,8 +52,8 @@ class CoverageRaster {
   std::int64_t twice_area() const { return twice_area_; }  // in (1/256 texel)², signed as given
 
   // Calls visit(y, x_begin, x_end) for each row of the window [x_low, x_high) × [y_low, y_high)
-  // that has covered texels, upward; it stops when visit returns false, and says whether it ran to
-  // the end.
+  // that has covered texels, upward; stops when visit returns false. Returns whether it reached the
+  // end.
   template <class Visit>
   bool for_each_span(int x_low, int x_high, int y_low, int y_high, Visit&& visit) const {
     if (twice_area_ == 0) return true;
@@ -78,7 +79,7 @@ class CoverageRaster {
   static int first_centre(int low) { return (low - kSubtexels / 2 + kSubtexels - 1) >> 8; }
   static int last_centre(int high) { return (high - kSubtexels / 2) >> 8; }
 
-  // Keeps of [begin, end) the texels of row y on the inner side of the edge.
+  // Narrows [begin, end) to the texels of row y on the inner side of the edge.
   static void narrow(const Edge& edge, int y, int& begin, int& end) {
     if (begin >= end) return;
     std::int64_t value = edge.at_origin + edge.step_y * y + edge.step_x * begin;

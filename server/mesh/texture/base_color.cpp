@@ -17,14 +17,14 @@ namespace strata::mesh {
 namespace {
 
 constexpr int kMinBaseColor = 256, kPlainColors = 2048;
-// sides are powers of two up to there, then multiples
+// sides are powers of two up to this value, then multiples
 constexpr int kMaxPower = 2048, kSideStep = 1024;
 constexpr int kGutterRing = 8, kRingsPerSide = 1024;
 constexpr int kJpegQuality = 92;
-constexpr double kRounding = 1 - 1e-3;    // of a side, before the next larger one is taken
-constexpr double kMaxMinification = 1.5;  // that mixing four texels bears
-constexpr double kLost = 0.02;            // of a texture's pixels: less is rounding
-constexpr double kBytesPerTexel = 6;      // the picture, its coarser levels and what is encoded
+constexpr double kRounding = 1 - 1e-3;    // of a side, below which the next larger one is used
+constexpr double kMaxMinification = 1.5;  // limit for mixing four texels
+constexpr double kLost = 0.02;        // share of a texture's pixels: smaller losses are rounding
+constexpr double kBytesPerTexel = 6;  // the picture, its coarser levels and the encoded result
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + " × " + std::to_string(height);
@@ -47,14 +47,14 @@ class Baker {
     look_at_materials();
     if (textured_) {
       if (const int only = only_texture(); only >= 0) {
-        auto kept = as_it_is(only);
-        if (!kept || *kept) return kept;
+        auto unchanged = as_it_is(only);
+        if (!unchanged || *unchanged) return unchanged;
         forget_texture(only);
       } else if (auto shares = shares_of_textures(); true) {
         auto baked = bake(shares);
         if (!baked || *baked) return baked;
       }
-      // None of the textures could be read: the mesh is as if it had none.
+      // No texture could be read: the mesh is treated as if it had none.
       look_at_materials();
     }
     if (mesh_.materials.empty() || !several_colors_) {
@@ -85,7 +85,7 @@ class Baker {
 
   static bool is_white(const glm::vec4& color) { return glm::vec3(color) == glm::vec3(1); }
 
-  // The texture whose pixels can stay as they are, or −1. Triangles that were moved may lack one.
+  // The texture whose pixels need no change, or −1. Moved triangles may have no texture.
   int only_texture() const {
     if (atlas_.report.source != "file" || atlas_.kept_scale < 1 || several_colors_ ||
         !is_white(first_color_))
@@ -104,7 +104,7 @@ class Baker {
     return texture;
   }
 
-  // One colour for all: the vertices carry it.
+  // One color for all triangles: it is applied to the vertices.
   void color_vertices() {
     if (is_white(first_color_) || (!mesh_.vertex_colors.empty() && !mesh_.colors_tint_materials))
       return;
@@ -173,8 +173,8 @@ class Baker {
     return std::abs(cross((this->*uv)(triangle, 1) - a, (this->*uv)(triangle, 2) - a)) / 2;
   }
 
-  // Pixels of a texture, and share of the atlas, that its triangles take. The first one is of those
-  // without.
+  // The pixels of a texture that its triangles use, and their share of the atlas. The first entry
+  // is for triangles without a texture.
   struct Share {
     PictureInfo info;
     double texture_pixels = 0, atlas = 0;
@@ -197,7 +197,7 @@ class Baker {
     return shares;
   }
 
-  // The largest picture up to the one that keeps all pixels for which there is memory.
+  // Reserves memory for the largest picture that fits, up to the one that keeps all pixels.
   Result<MemoryLedger::Share> reserve_picture(const std::vector<Share>& shares, int& side) {
     double source = 0;
     for (const Share& share : shares)
@@ -208,10 +208,10 @@ class Baker {
     }
   }
 
-  // Nothing where there were textures and none could be read.
+  // Nothing if there were textures and none could be read.
   Result<std::optional<BaseColor>> bake(std::vector<Share> shares) {
     const std::size_t textures = mesh_.textures.size();
-    // Triangles by their textures; those without come first.
+    // Triangles by their textures; those without a texture are first.
     const auto place_of = [&](std::uint32_t t) { return material_of(t).texture + 1; };
     const Buckets by_texture(static_cast<int>(textures) + 1,
                              static_cast<std::uint32_t>(mesh_.triangle_count()),
@@ -252,16 +252,16 @@ class Baker {
         atlas += share.atlas;
       }
     if (!(pixels > 0) || !(atlas > 0)) return kPlainColors;
-    const double wanted = std::clamp(std::sqrt(pixels / atlas) * kRounding, double(kMinBaseColor),
+    const double needed = std::clamp(std::sqrt(pixels / atlas) * kRounding, double(kMinBaseColor),
                                      double(kMaxBaseColor));
-    if (wanted <= kMaxPower)
-      return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wanted))));
-    return static_cast<int>(std::ceil(wanted / kSideStep)) * kSideStep;
+    if (needed <= kMaxPower)
+      return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(needed))));
+    return static_cast<int>(std::ceil(needed / kSideStep)) * kSideStep;
   }
 
-  // Says what came in and what is kept, where that is less.
+  // Notes the original and the kept size, if pixels were lost.
   void note_lost_pixels(const std::vector<Share>& shares, int side) {
-    double used = 0, kept = 0;
+    double used = 0, retained = 0;
     std::uint64_t smaller = 0;
     std::map<std::pair<int, int>, int, std::greater<>> sizes;
     for (std::size_t i = 1; i < shares.size(); ++i) {
@@ -270,15 +270,15 @@ class Baker {
       ++sizes[{share.info.width, share.info.height}];
       const double own = std::min(share.texture_pixels, share.atlas * side * side);
       used += share.texture_pixels;
-      kept += own;
+      retained += own;
       smaller += own < share.texture_pixels * (1 - kLost);
     }
     if (smaller == 0) return;
     std::string came;
     constexpr std::size_t kMaxSizes = 5;
-    std::size_t told = 0;
+    std::size_t listed = 0;
     for (const auto& [size, count] : sizes) {
-      if (told++ == kMaxSizes) {
+      if (listed++ == kMaxSizes) {
         came += ", …";
         break;
       }
@@ -286,7 +286,7 @@ class Baker {
               size_text(size.first, size.second);
     }
     char share[16];
-    std::snprintf(share, sizeof share, "%.0f %%", 100 * kept / used);
+    std::snprintf(share, sizeof share, "%.0f %%", 100 * retained / used);
     note(repairs_,
          "textures made smaller: " + came + " pixels became one picture of " +
              size_text(side, side) + ", which keeps " + share +
@@ -294,7 +294,7 @@ class Baker {
          smaller);
   }
 
-  // As fine as the atlas can show. An empty picture where it cannot be decoded.
+  // Decodes to the resolution of the atlas at most. An empty picture if it cannot be decoded.
   Picture decoded(Texture& texture, const Share& share, int side) {
     auto picture = decode_picture(texture.bytes);
     if (!picture) note_unreadable(texture, picture.error());

@@ -4,10 +4,10 @@
 
 namespace strata::mesh {
 
-// Gives the pixels whose alpha is 0 a colour and makes the picture opaque, so that neither
-// filtering nor the coarser levels of a texture bleed: up to `ring` pixels around what is filled
-// take the colour of a nearest filled pixel, and what is left the mean of what is around it,
-// coarser the farther away. A picture without any filled pixel becomes black.
+// Gives the pixels whose alpha is 0 a color and makes the picture opaque, so that neither filtering
+// nor the coarser levels of a texture bleed. Up to `ring` pixels around filled ones get the color
+// of a nearest filled pixel; the rest gets the mean of its surroundings, coarser with the distance.
+// A picture without any filled pixel becomes black.
 void fill_gutter(Picture& picture, int ring);
 
 }  // namespace strata::mesh

@@ -71,7 +71,8 @@ void SurfacePaint::raster(std::uint32_t t, glm::ivec2 size, int row_begin, int r
     return true;
   });
   if (covers) return;
-  // Too thin for any texel's centre: the one it lies in, unless another triangle has it.
+  // Too thin for any texel center: uses the texel that contains its middle, unless another triangle
+  // has it.
   const glm::dvec2 middle = (a + b + c) / 3.0;
   const int x = std::clamp(static_cast<int>(middle.x), 0, size.x - 1),
             y = std::clamp(static_cast<int>(middle.y), 0, size.y - 1);
@@ -106,7 +107,7 @@ void SurfacePaint::shade(std::uint32_t t, const Material& material, const glm::d
     store(sampler->sample(uv, material.wrap_u, material.wrap_v), out);
   }
   if (!is_white(material.color)) multiply_light(out, material.color);
-  // A triangle without any material shows its vertices' colours.
+  // A triangle without any material shows the colors of its vertices.
   const bool tinted = mesh_.colors_tint_materials || (!sampler && is_white(material.color));
   if (mesh_.vertex_colors.empty() || !tinted) return;
   glm::dvec3 tint(0);
@@ -125,7 +126,7 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
     const glm::dvec2 sum = texture_uv(t, 0) + texture_uv(t, 1) + texture_uv(t, 2);
     return std::isfinite(sum.x) && std::isfinite(sum.y);
   };
-  // A corner of each vertex that triangles without coordinates need, on a triangle that has them.
+  // For each vertex of triangles without coordinates: a corner on a triangle that has coordinates.
   std::unordered_map<std::uint32_t, std::uint32_t> corner_of;
   for (const auto t : atlas_.moved)
     if (!has_coordinates(t))
@@ -135,22 +136,22 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
     std::vector<bool> moves(mesh_.triangle_count());
     for (const auto t : atlas_.moved) moves[t] = true;
     for (std::uint32_t corner = 0; corner < mesh_.triangles.size(); ++corner)
-      if (const auto wanted = corner_of.find(mesh_.triangles[corner]);
-          wanted != corner_of.end() && !moves[corner / 3] && has_coordinates(corner / 3))
-        wanted->second = corner;
+      if (const auto entry = corner_of.find(mesh_.triangles[corner]);
+          entry != corner_of.end() && !moves[corner / 3] && has_coordinates(corner / 3))
+        entry->second = corner;
   }
   const auto color_at_vertex = [&](std::uint32_t vertex) -> std::optional<glm::vec3> {
     const std::uint32_t corner = corner_of.at(vertex);
     if (corner == 0xffffffffu) return std::nullopt;
     const std::uint32_t t = corner / 3;
     const Material& material = material_of(t);
-    // A little inside: beyond the rim of a chart, or of the texture, there are other colours.
+    // A little inside: beyond the rim of a chart, or of the texture, are other colors.
     const glm::dvec2 middle = (texture_uv(t, 0) + texture_uv(t, 1) + texture_uv(t, 2)) / 3.0;
     const glm::dvec2 uv = glm::mix(texture_uv(t, static_cast<int>(corner % 3)), middle, 0.05);
     return sampler.sample(uv, material.wrap_u, material.wrap_v);
   };
 
-  // What is painted is written afterwards: it may lie where another one is looked up.
+  // Painted texels are written afterwards: another lookup may read the same place.
   struct Texel {
     std::uint32_t at;
     std::array<std::uint8_t, 3> rgb;

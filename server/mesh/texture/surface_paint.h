@@ -12,22 +12,22 @@
 
 namespace strata::mesh {
 
-// The colours of a mesh's materials, textures and vertices, painted on its atlas. Holds references.
+// Paints the colors of a mesh's materials, textures and vertices on its atlas. Holds references.
 class SurfacePaint {
  public:
   SurfacePaint(const TriangleMesh& mesh, const Atlas& atlas) : mesh_(mesh), atlas_(atlas) {}
 
   const Material& material_of(std::size_t triangle) const;
 
-  // All texels of the triangles (`source`: their texture; empty: the material's colour alone), with
-  // alpha 255 where a triangle covers a texel's centre and a little less where it only claims one.
-  // Two threads.
+  // Paints all texels of the triangles (`source`: their texture; empty: the material's color only),
+  // with alpha 255 where a triangle covers a texel's center and a little less where it only claims
+  // one. Uses two threads.
   void paint(std::span<const std::uint32_t> triangles, const Picture& source,
              Picture& picture) const;
 
-  // The triangles of `atlas.moved` into a picture of the file's own texture, and `ring` texels
-  // around them where no triangle is. Those without coordinates mix the colours that their corners
-  // have on triangles beside them. Texels go on as `texture`'s materials say.
+  // Paints the triangles of `atlas.moved` into a picture of the file's own texture, and `ring`
+  // texels around them where no triangle is. Triangles without coordinates mix the colors that
+  // their corners have on neighboring triangles. Texels continue as `texture`'s materials define.
   void paint_moved(int texture, int ring, Picture& picture) const;
 
  private:
@@ -47,7 +47,7 @@ class SurfacePaint {
   const Atlas& atlas_;
 };
 
-// rgb × color, as light.
+// Multiplies rgb by `color` in linear light.
 void multiply_light(std::uint8_t* rgb, const glm::vec4& color);
 
 }  // namespace strata::mesh

@@ -8,7 +8,7 @@
 namespace strata::mesh {
 namespace {
 
-// The pixel that stands for pixel `at` of an endless row.
+// The pixel at position `at` of an endless row.
 int wrapped(std::int64_t at, int size, Wrap wrap) {
   if (wrap == Wrap::clamp) return static_cast<int>(std::clamp<std::int64_t>(at, 0, size - 1));
   const std::int64_t period = wrap == Wrap::mirror ? 2 * std::int64_t{size} : size;
@@ -40,7 +40,7 @@ Picture halve(const Picture& picture) {
 }
 
 glm::vec4 TextureSampler::sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
-  // Far away coordinates keep their fraction as well as a double does; what is no number is at the
+  // Distant coordinates keep the precision of a double in their fraction; NaN is replaced by the
   // origin.
   const auto finite = [](double value) { return std::abs(value) < 1e9 ? value : 0.0; };
   const double x = finite(uv.x) * picture_.width - 0.5,

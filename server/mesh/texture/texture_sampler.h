@@ -7,11 +7,11 @@
 
 namespace strata::mesh {
 
-// Half as wide and half as high (1 at least), each pixel the mean light of four.
+// Half the width and height (at least 1), each pixel the mean light of four.
 Picture halve(const Picture& picture);
 
-// A decoded texture, looked up as a GPU does: texel centres at (i + 0.5) / size, uv origin lower
-// left, mixed of the four nearest.
+// A decoded texture with the lookup of a GPU: texel centers at (i + 0.5) / size, uv origin lower
+// left, bilinear.
 class TextureSampler {
  public:
   explicit TextureSampler(const Picture& picture) : picture_(picture) {}
@@ -20,7 +20,7 @@ class TextureSampler {
   glm::vec3 sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
     return sample_with_alpha(uv, wrap_u, wrap_v);
   }
-  // The same, and alpha, which is not multiplied in.
+  // The same with alpha, which is not multiplied in.
   glm::vec4 sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const;
 
  private:

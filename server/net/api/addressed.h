@@ -19,8 +19,8 @@ namespace strata::net {
 struct Request;
 struct RouteContext;
 
-// Finds the entity that the address names, as the caller's role may see it. Reads from the store:
-// no room is opened.
+// Finds the entity that the address names, as visible to the caller's role. Reads the store; opens
+// no room.
 Result<Project> stored_project(const RouteContext& context, const Request& request);
 Result<Model> stored_model(const RouteContext& context, const Request& request);
 Result<Layer> stored_layer(const RouteContext& context, const Request& request);

@@ -9,8 +9,8 @@
 
 namespace strata::net {
 
-// Adds routes of things that everybody reads and annotators write, or a higher role: bodies are
-// JSON, and answers to changes are kept for repeats.
+// Adds the routes of entities that everybody reads and that annotators or higher roles write.
+// Bodies are JSON, and answers to changes are stored for repeats.
 class AnnotatedRoutes {
  public:
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);

@@ -65,9 +65,9 @@ std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, stor
 constexpr std::string_view kPolicy =
     "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
     "form-action 'self'; frame-ancestors 'none'";
-// The page of the contract: Redoc adds one style element without text, which it fills by script,
-// and one with the style of its scroll bars. The hashes are of these two texts: style elements with
-// any other text stay forbidden, and so do style attributes.
+// Redoc, on the page of the contract, adds two style elements: an empty one that it fills by
+// script, and one with the style of its scroll bars. The hashes are of these two texts; style
+// elements with any other text and style attributes stay forbidden.
 constexpr std::string_view kStylesOfDocs =
     "; style-src 'self' 'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=' "
     "'sha256-QMIg+bpjm3JdElJ388KYke01izlUW0UoNOeKjpMxdgc='";
@@ -81,7 +81,7 @@ const Headers& security_headers() {
       {"Referrer-Policy", "no-referrer"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
       {"Cross-Origin-Resource-Policy", "same-origin"},
-      // What the pages do not use, nothing in them can.
+      // Denies the features that the pages do not use.
       {"Permissions-Policy",
        "accelerometer=(), camera=(), display-capture=(), geolocation=(), gyroscope=(), magnetometer=(), "
        "microphone=(), midi=(), payment=(), serial=(), usb=(), xr-spatial-tracking=()"},
@@ -203,10 +203,11 @@ const Route* Api::find_route(Request& request, Response& refusal) const {
     return nullptr;
   }
   if (is_live_address(request) && request.method == Method::get) {
-    refusal = problem_response({ErrorCode::upgrade_required,
-                                "Upgrade required",
-                                "This address speaks WebSocket, subprotocol strata.v1.",
-                                {}});
+    refusal = problem_response(
+        {ErrorCode::upgrade_required,
+         "Upgrade required",
+         "This address accepts WebSocket connections only, with the subprotocol strata.v1.",
+         {}});
     refusal.with("Upgrade", "websocket");
     return nullptr;
   }
@@ -218,11 +219,11 @@ const Route* Api::find_route(Request& request, Response& refusal) const {
   if (match.allowed.empty() && !is_api)
     match.allowed = {Method::get, Method::head, Method::options};
   if (match.allowed.empty()) {
-    refusal = problem_response(
-        {ErrorCode::not_found,
-         "Not found",
-         "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.",
-         {}});
+    refusal = problem_response({ErrorCode::not_found,
+                                "Not found",
+                                "The server has nothing at " + request.path +
+                                    ". See the list of addresses at /api/v1/docs.",
+                                {}});
     return nullptr;
   }
   if (!is_api && (request.method == Method::get || request.method == Method::head)) return &page_;
@@ -232,7 +233,7 @@ const Route* Api::find_route(Request& request, Response& refusal) const {
   } else {
     refusal = problem_response({ErrorCode::method_not_allowed,
                                 "Method not allowed",
-                                "This address takes: " + allow + ".",
+                                "This address accepts: " + allow + ".",
                                 {}});
   }
   refusal.with("Allow", allow);
@@ -251,14 +252,13 @@ Result<void> Api::identify(Request& request, const Route& route) {
   const Role least = *route.role;
   if (request.principal->role < least)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "This takes the role " + std::string(name(least)) + "; yours is " +
+                "This action needs the role " + std::string(name(least)) + ". Your role is " +
                     std::string(name(request.principal->role)) + ".");
   return {};
 }
 
 std::optional<Response> Api::admit(Request& request, const Route& route) {
-  // What is open to everyone must work with a stale cookie, too: the page itself, signing in,
-  // health.
+  // Public routes (the page itself, signing in, health) must work with a stale cookie, too.
   if (route.role)
     if (auto known = identify(request, route); !known) return problem_response(known.error());
   if (changes(request.method))
@@ -271,7 +271,8 @@ std::optional<Response> Api::admit(Request& request, const Route& route) {
     if (auto good = route.check(request); !good) return problem_response(good.error());
   if (request.header("idempotency-key").size() > kMaxKey)
     return problem_response({ErrorCode::malformed, "Key too long",
-                             "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
+                             "An Idempotency-Key can have at most 255 characters.",
+                             "Idempotency-Key"});
   return std::nullopt;
 }
 
@@ -280,8 +281,10 @@ std::optional<Response> Api::admit_again(Request& request, const Route& route) {
   const std::string user = request.user();
   if (auto known = identify(request, route); !known) return problem_response(known.error());
   if (request.user() != user)
-    return problem_response(
-        {ErrorCode::unauthenticated, "Not signed in", "Somebody else is signed in now.", {}});
+    return problem_response({ErrorCode::unauthenticated,
+                             "Not signed in",
+                             "Another person is signed in now. Reload the page.",
+                             {}});
   return std::nullopt;
 }
 
@@ -290,13 +293,13 @@ void Api::handle(const Request& request, const Route& route, const Respond& send
   const Respond respond(
       [send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
        accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
-        // What was changed is told in any case; what was only read can be asked for in another way.
+        // Applies to reads only, which a client can repeat with another `Accept`.
         if (response.status == 200 && !response.events &&
             !accepts_type(accept, response.header("Content-Type")))
           response = problem_response({ErrorCode::not_acceptable, "Not acceptable",
                                        "This address answers with " +
                                            std::string(response.header("Content-Type")) +
-                                           ", which `Accept` does not take.",
+                                           ", but `Accept` does not allow this.",
                                        "Accept"});
         compress(response, coding, known);
         send(std::move(response));
@@ -305,16 +308,16 @@ void Api::handle(const Request& request, const Route& route, const Respond& send
     return answer_failures(request, respond, [&] { answer_read(request, route, respond); });
   const bool remembered = route.keeps_answer && !request.header("idempotency-key").empty();
   if (remembered) {
-    auto kept = answers_.begin(request);
-    if (!kept) return respond(kept.error());
-    if (*kept) {
+    auto stored = answers_.begin(request);
+    if (!stored) return respond(stored.error());
+    if (*stored) {
       auto response =
-          route.replay ? route.replay(request, **kept) : Result<Response>(response_of(**kept));
+          route.replay ? route.replay(request, **stored) : Result<Response>(response_of(**stored));
       if (!response) return respond(response.error());
       return respond(std::move(response->with("Idempotency-Replayed", "true")));
     }
   }
-  // Handlers that keep their answer reply before they return, so the request is still there.
+  // Handlers that store their answer reply before they return, so `request` is still valid.
   const Respond answer = remembered ? Respond([this, &request, respond](Response response) {
     answers_.end(request);
     respond(std::move(response));
@@ -330,19 +333,19 @@ void Api::answer_failures(const Request& request, const Respond& answer,
   } catch (const QuestionEnded& ended) {
     answer(ended.problem());
   } catch (const std::exception& error) {
-    // The address of a kiosk is its secret.
+    // The address of a kiosk contains its secret.
     const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";
     log::error("request " + std::string(name(request.method)) + " " +
                (is_secret ? "/kiosk/…" : request.path) + " failed: " + error.what());
-    answer(Error{ErrorCode::internal,
-                 "Internal error",
-                 "The server made a mistake; its log says more.",
-                 {}});
+    answer(Error{
+        ErrorCode::internal,
+        "Internal error",
+        "An internal error occurred. Ask an administrator to look into the log of the server.",
+        {}});
   }
 }
 
-// What is open to everyone is the page, which has tags of its own, and health, which nobody should
-// keep.
+// Public routes are the page, which has its own tags, and health, which caches should not keep.
 void Api::answer_read(const Request& request, const Route& route, const Respond& respond) {
   if (!route.role) return route.handler(request, respond);
   const auto known = request.header("if-none-match");
@@ -350,15 +353,15 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
     const auto state = route.state ? route.state(request) : std::nullopt;
     return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
   };
-  // Before the work, which is what it saves. `Accept` is part of such tags. Whether there is
-  // anything that `*` could stand for shows afterwards.
+  // Comparing the state before the work saves the work. Such tags include `Accept`. Whether the
+  // entity exists that `*` matches is known only afterwards.
   const auto before = state_now();
   if (before && known != "*" && names_tag(known, *before))
     return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));
   const Respond with_tag([respond, known_tags = std::string(known), before,
                           state_now](Response response) {
     if (response.status != 200) return respond(std::move(response));
-    // Nothing changed while the answer was made: it shows that state and no other.
+    // The state did not change while the handler worked, so the answer shows exactly this state.
     if (before && response.header("ETag").empty() && state_now() == before) {
       if (response.header("Vary").empty()) response.with("Vary", "Accept");
       response.with("ETag", *before);
@@ -366,7 +369,7 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
     }
     const auto tag = tag_of_body(response);
     if (!tag) return respond(std::move(response));
-    // For programs; a browser that several people use keeps no lists of people and sessions.
+    // For programs. `no-store`: a shared browser must not keep lists of people and sessions.
     response.with("ETag", *tag).with("Cache-Control", "private, no-store");
     respond(names_tag(known_tags, *tag) ? not_modified(response) : std::move(response));
   });
@@ -386,15 +389,15 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
   auto project = STRATA_TRY(store_.projects().find(to_string((*room)->model().project_id)));
-  // What the others read of them. A person who is gone will be sent out anyway.
+  // The portrait that others see. The server later closes the connection of a deleted user.
   auto person = store_.accounts().find(request.user());
   if (!person && person.error().code != ErrorCode::not_found) return tl::unexpected(person.error());
   std::optional<protocol::PersonalView> view;
   if (person && !request.principal->kiosk) {
-    auto kept = personal_view(store_, person->name, request.role(), **room);
-    if (!kept) return tl::unexpected(kept.error());
-    auto told = STRATA_TRY(protocol::from_json<protocol::PersonalView>(*kept));
-    view = std::move(told);
+    auto stored = personal_view(store_, person->name, request.role(), **room);
+    if (!stored) return tl::unexpected(stored.error());
+    auto parsed = STRATA_TRY(protocol::from_json<protocol::PersonalView>(*stored));
+    view = std::move(parsed);
   }
   return LiveEntry{std::move(*room),   project.slug,
                    *request.principal, person ? portrait_of(*person) : room::Portrait(),

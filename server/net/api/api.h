@@ -34,8 +34,8 @@
 
 namespace strata::net {
 
-// Everything between the sockets and the rooms: which route, who asks, may they, was it asked
-// before. Knows no socket library.
+// The layer between the sockets and the rooms: finds the route, authenticates and authorizes the
+// caller, and recognizes repeated requests. Does not depend on a socket library.
 class Api {
  public:
   Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
@@ -47,19 +47,19 @@ class Api {
   WorkerPool& workers() { return workers_; }
   QuestionDesk& questions() { return questions_; }
 
-  // Once the request's head is read; does not block. Puts the path's parameters into the request.
-  // Null: `refusal` is the answer.
+  // Call once the head of the request is read; does not block. Writes the path's parameters into
+  // the request. Null: `refusal` is the answer.
   const Route* find_route(Request& request, Response& refusal) const;
-  // On a worker, before the body is read: the refusal, if any.
+  // Call on a worker before the body is read. Returns the refusal, if any.
   std::optional<Response> admit(Request& request, const Route& route);
-  // On a worker, once the body is there, which may have taken long: who asks may be in no longer,
-  // or may do less.
+  // Call on a worker once the body is read. That may have taken long, and in the meantime the
+  // caller may have lost the access or the role.
   std::optional<Response> admit_again(Request& request, const Route& route);
-  // On a worker, with the body.
+  // Call on a worker, with the body.
   void handle(const Request& request, const Route& route, const Respond& respond);
 
-  // The live connection of a model: whether this is its address; and who may come in (blocks: opens
-  // the room).
+  // For the live connection of a model: whether the address is one, and whether the caller may
+  // connect (blocks: opens the room).
   static bool is_live_address(const Request& request);
   struct LiveEntry {
     std::shared_ptr<room::Room> room;
@@ -67,12 +67,12 @@ class Api {
     Principal principal;
     room::Portrait portrait;
     std::optional<protocol::PersonalView> personal_view;  // a kiosk has none
-    std::string secret;                                   // that the person showed
+    std::string secret;                                   // as the client sent it
   };
   Result<LiveEntry> admit_live(Request& request);
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
-  // Whether who came in with this may stay in the project as who it was (blocks). While the
-  // database is away nobody is sent out.
+  // Whether a session with this secret may stay in the project in this role (blocks). While the
+  // database is unreachable, every session may stay.
   bool is_still_welcome(const std::string& secret, ProjectId project_id, Role role);
   LiveSockets& live_sockets() { return *shared_->sockets; }
 
@@ -82,7 +82,7 @@ class Api {
   void answer_read(const Request& request, const Route& route, const Respond& respond);
   static void answer_failures(const Request& request, const Respond& answer,
                               const std::function<void()>& work);
-  // Who asks, and that they may do there what takes the role.
+  // Authenticates the caller and checks the role that the route requires.
   Result<void> identify(Request& request, const Route& route);
 
   const ServerOptions options_;
@@ -99,15 +99,15 @@ class Api {
   WorkerPool workers_;
   QuestionDesk questions_;
   Router router_;
-  Route page_;  // everything that is no API address
-  Route live_;  // the live connections, which no handler answers
+  Route page_;  // every address outside the API
+  Route live_;  // the live connections, without a handler
   app::TrashPurger trash_purger_;
   const TableEvents table_events_;
   const RouteContext context_;
   app::Recomputer recomputer_;
 };
 
-// Headers that every answer carries.
+// The headers of every answer.
 const Headers& security_headers();
 
 }  // namespace strata::net

@@ -47,7 +47,7 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   counter("strata_messages_received_total", "WebSocket messages received.",
           metrics.messages_received);
   counter("strata_messages_refused_total", "WebSocket messages refused.", metrics.messages_refused);
-  counter("strata_questions_left_total", "Questions whose client left before the answer.",
+  counter("strata_questions_left_total", "Questions whose client disconnected before the answer.",
           metrics.questions_left);
   add(text, "strata_question_steps_total", "counter",
       "Steps of questions: texels times the parts of a condition.",

@@ -9,7 +9,7 @@
 
 namespace strata::net {
 
-// Counters of this module. Any thread adds to them.
+// Counters of the module `net`. Any thread may add to them.
 struct Metrics {
   std::array<std::atomic<std::uint64_t>, 6> requests{};  // by the first digit of the status
   std::atomic<std::int64_t> open_connections{0};
@@ -17,7 +17,7 @@ struct Metrics {
   app::EditCounters edits;
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
-  std::atomic<std::uint64_t> questions_left{0};  // by their clients
+  std::atomic<std::uint64_t> questions_left{0};  // disconnected by the client before the answer
 
   void count_request(int status) { ++requests[status >= 100 && status < 600 ? status / 100 : 0]; }
 };

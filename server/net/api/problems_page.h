@@ -5,7 +5,7 @@
 
 namespace strata::net {
 
-// Every `type` of a problem, with its status, its meaning and what to do: a page without scripts.
+// Lists every `type` of a problem with its status, meaning and remedy: a page without scripts.
 std::string problems_html();
 std::string html_escape(std::string_view text);
 

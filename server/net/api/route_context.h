@@ -26,8 +26,8 @@ class WorkerPool;
 struct Metrics;
 struct ServerOptions;
 
-// What use cases work with, and what handlers need beside it. Lives as long as the router. Who uses
-// a part includes its header.
+// The parts that use cases need, and the additional parts that handlers need. Lives as long as the
+// router. A file that uses a part includes its header.
 struct RouteContext : app::Services {
   const ServerOptions& options;
   jobs::JobQueue& jobs;

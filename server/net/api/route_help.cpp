@@ -16,18 +16,18 @@
 
 namespace strata::net {
 namespace {
-constexpr int kMaxTries = 50;  // more than ever change one thing at once
+constexpr int kMaxTries = 50;  // more than there are simultaneous changes of one entity
 constexpr std::size_t kDigitsOfBody = 16;
 }  // namespace
 
 Handler answering(std::function<Result<Response>(const Request&)> answer) {
   return [answer = std::move(answer)](const Request& request, const Respond& respond) {
     auto response = answer(request);
-    // Who names no version means the newest, also where others change the same thing at once: one
-    // of them gets on each time.
-    const auto wanted = request.header("if-match");
+    // A change without a version applies to the newest one, also while others change the same
+    // entity: at each try one of the changes succeeds.
+    const auto if_match = request.header("if-match");
     const bool means_any = (request.method == Method::patch || request.method == Method::remove) &&
-                           (wanted.empty() || wanted == "*");
+                           (if_match.empty() || if_match == "*");
     for (int tries = 1;
          means_any && tries < kMaxTries && !response && response.error().code == ErrorCode::stale;
          ++tries)
@@ -47,7 +47,7 @@ Result<void> check_json_type(const Request& request) {
       (type.starts_with("application/") && type.ends_with("+json")))
     return {};
   return fail(ErrorCode::unsupported, "Not JSON",
-              "This address takes JSON: send it with `Content-Type: application/json`.",
+              "This address accepts JSON only. Send JSON with `Content-Type: application/json`.",
               "Content-Type");
 }
 
@@ -57,7 +57,7 @@ Response with_etag(Response response, const Request& request, std::int64_t versi
   std::string etag = etag_of(version);
   if (request.method != Method::get && request.method != Method::head)
     return response.with("ETag", etag);
-  // The same version is told otherwise to another role, and once something was painted.
+  // One version differs between roles, and changes after the first edit.
   etag.insert(etag.size() - 1, "." + sha256_hex(response.body).substr(0, kDigitsOfBody));
   if (names_tag(request.header("if-none-match"), etag))
     return empty_response(304).with("ETag", etag);
@@ -65,7 +65,7 @@ Response with_etag(Response response, const Request& request, std::int64_t versi
 }
 
 namespace {
-// Also as `with_etag` writes it, with what stands behind the version.
+// Also accepts the form that `with_etag` writes, with a suffix after the version.
 bool names_version(std::string_view etag, std::int64_t version) {
   const std::string own = etag_of(version), beginning = own.substr(0, own.size() - 1) + ".";
   return etag == own || (etag.starts_with(beginning) && etag.ends_with('"'));
@@ -73,10 +73,10 @@ bool names_version(std::string_view etag, std::int64_t version) {
 }  // namespace
 
 Result<void> check_if_match(const Request& request, std::int64_t version) {
-  const auto wanted = request.header("if-match");
-  if (wanted.empty() || wanted == "*" || names_version(wanted, version)) return {};
-  return fail(ErrorCode::stale, "Changed meanwhile",
-              "Somebody changed this since you read it; read it again and repeat your change.",
+  const auto if_match = request.header("if-match");
+  if (if_match.empty() || if_match == "*" || names_version(if_match, version)) return {};
+  return fail(ErrorCode::stale, "Changed by somebody else",
+              "Somebody changed this after you read it. Read it again and repeat your change.",
               "If-Match");
 }
 
@@ -150,9 +150,11 @@ std::vector<std::string> split_list(const std::string& text) {
 
 Result<void> check_source_download(const Request& request, const Model& model) {
   if (request.role() >= model.source_download) return {};
-  return fail(ErrorCode::forbidden, "Source not for download",
-              "Files of this scan are for the role " + std::string(name(model.source_download)) +
-                  " and above in its project; a curator may change that (`source_download`).");
+  return fail(
+      ErrorCode::forbidden, "Download not allowed",
+      "To download the files of this scan, you need the role " +
+          std::string(name(model.source_download)) +
+          " or a higher role in its project. A curator can change this (`source_download`).");
 }
 
 Response job_response(const RouteContext& context, JobId job) {
@@ -166,12 +168,14 @@ Response job_response(const RouteContext& context, JobId job) {
       .with("Location", "/api/v1/jobs/" + to_string(job));
 }
 
-Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {
-  if (!wish) return make_slug(text);
-  if (is_all_digits(*wish))
+Result<std::string> slug_of(const std::optional<std::string>& requested, const std::string& text) {
+  if (!requested) return make_slug(text);
+  if (is_all_digits(*requested))
     return fail(ErrorCode::invalid, "Slug of digits",
-                "A slug of digits only would be taken for an id; add a letter.", "slug");
-  return *wish;
+                "A slug cannot consist of digits only, because the server would read it as an "
+                "id. Add a letter.",
+                "slug");
+  return *requested;
 }
 
 }  // namespace strata::net

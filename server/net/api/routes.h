@@ -5,7 +5,7 @@ namespace strata::net {
 class Router;
 struct RouteContext;
 
-// Each adds the routes of one noun.
+// Each function adds the routes of one kind of resource.
 void add_system_routes(Router& router, const RouteContext& context);
 void add_auth_routes(Router& router, const RouteContext& context);
 void add_people_routes(Router& router, const RouteContext& context);

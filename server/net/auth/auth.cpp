@@ -17,9 +17,9 @@ constexpr std::size_t kMaxTokenLength = 512;
 constexpr std::string_view kScheme = "bearer ";
 
 tl::unexpected<Error> unknown_secret() {
-  return fail(
-      ErrorCode::unauthenticated, "Not signed in",
-      "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
+  return fail(ErrorCode::unauthenticated, "Not signed in",
+              "This token or session is unknown, expired or revoked. Sign in again, or "
+              "create a new token.");
 }
 
 constexpr std::string_view kKioskPrefix = "kiosk ", kHostPrefix = "__Host-";
@@ -61,7 +61,7 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
     }
   }
   auto stored = STRATA_TRY(store_.tokens().find(token));
-  // Links are traded for sessions; they are no tokens of their own.
+  // Links are exchanged for sessions; they are not tokens.
   using store::TokenKind;
   if (stored && stored->kind != TokenKind::session && stored->kind != TokenKind::script)
     return std::nullopt;
@@ -77,14 +77,14 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
     principal = principal_of(*kiosk);
   }
   std::lock_guard lock(mutex_);
-  if (changes != changes_) return principal;  // what was read may be of before
+  if (changes != changes_) return principal;  // the result may be older than the change
   if (remembered_.size() >= kMaxRemembered) remembered_.clear();
   remembered_[key] = {principal, now + kRememberFor};
   return principal;
 }
 
-// Once somebody can sign in who may do everything, the token has done its work: whoever reads the
-// environment must not own the site for ever.
+// Once an administrator can sign in with a password, the token loses the owner's role: access to
+// the environment must not mean permanent ownership of the site.
 Result<Principal> Authenticator::owner_by_token() {
   const auto principal = [](bool is_script) {
     const Role role = is_script ? Role::administrator : Role::owner;
@@ -108,7 +108,7 @@ std::string Authenticator::secret_of(const Request& request) {
   if (authorization.empty()) {
     const std::string cookie(request.as_kiosk ? kKioskCookie : kSessionCookie);
     std::string secret = cookie_value(request.header("cookie"), std::string(kHostPrefix) + cookie);
-    // By https the plain name counts for nothing: a neighbouring host may have set it.
+    // Over https the plain name is ignored: a neighboring host may have set the cookie.
     if (secret.empty() && !came_by_https(request))
       secret = cookie_value(request.header("cookie"), cookie);
     return secret;
@@ -124,15 +124,15 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
   if (secret.empty() && by_cookie) return std::nullopt;
   if (secret.empty())
     return fail(ErrorCode::unauthenticated, "Not signed in",
-                "The Authorization header is `Bearer TOKEN`.", "Authorization");
+                "The Authorization header must have the form `Bearer TOKEN`.", "Authorization");
   auto principal = STRATA_TRY(identify_token(secret));
   if (!principal) return unknown_secret();
-  // A cookie tells only what it is for: whoever can set one makes no kiosk of a person's page by
-  // it, and the other way round.
+  // A cookie is valid for its purpose only: a script that sets cookies cannot make a kiosk of a
+  // user's page, or the reverse.
   const bool is_kiosk = principal->kiosk.has_value();
   if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
-  // What scripts are given is no session: it does not end with the browser's, and no page shows it
-  // among the sessions.
+  // A script's token is not a session: it does not end with the browser's session, and no page
+  // lists it among the sessions.
   const bool is_session = principal->secret != 0 && !principal->is_script;
   if (by_cookie && !is_kiosk && !is_session) return unknown_secret();
   principal->by_cookie = by_cookie;
@@ -146,7 +146,8 @@ Result<std::string> Authenticator::session_for_password(const std::string& user,
   const auto fits = STRATA_TRY(store::password_fits(hash, password));
   if (!fits)
     return fail(ErrorCode::unauthenticated, "Not signed in",
-                "Name and password do not fit together. Whoever invited you can send a new link.",
+                "Wrong user name or password. Passwords are case-sensitive. If you forgot "
+                "yours, ask the person who invited you for a new link.",
                 "password");
   auto session = store_.tokens().create(store::TokenKind::session, user, Role::viewer,
                                         kSessionLifetime, agent, hash);
@@ -163,12 +164,13 @@ Result<std::string> Authenticator::session_for_token(const std::string& token,
   if (by_link) return *by_link;
   auto principal = STRATA_TRY(identify_token(token));
   if (!principal) return unknown_secret();
-  // Another session of a session, or of a token, would outlive what it was made of.
+  // A session made from a session or a token would outlive it.
   if (principal->secret != 0 || principal->is_script || principal->kiosk)
-    return fail(
-        ErrorCode::forbidden, "Not for signing in",
-        "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
-        "token");
+    return fail(ErrorCode::forbidden, "Token for scripts",
+                "You cannot sign in with a token for scripts. Scripts send it as "
+                "`Authorization: Bearer TOKEN`. In a browser, enter your user name and "
+                "password.",
+                "token");
   auto session = store_.tokens().create(store::TokenKind::session, principal->user, Role::owner,
                                         kSessionLifetime, agent);
   if (!session) return tl::unexpected(session.error());
@@ -179,10 +181,10 @@ Result<std::string> Authenticator::session_for_link(const std::string& link,
                                                     const std::string& agent) {
   auto session = STRATA_TRY(store_.tokens().redeem_owner_link(link, kSessionLifetime, agent));
   if (!session)
-    return fail(
-        ErrorCode::unauthenticated, "Link not valid",
-        "This sign-in link is unknown or revoked. The server prints a valid one when it starts.",
-        "link");
+    return fail(ErrorCode::unauthenticated, "Link is not valid",
+                "This sign-in link is unknown or revoked. The server prints a valid link when "
+                "it starts.",
+                "link");
   return *session;
 }
 

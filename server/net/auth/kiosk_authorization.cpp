@@ -18,7 +18,7 @@
 namespace strata::net {
 namespace {
 
-// Everything else is closed: a route that is added later, too. All of them only read.
+// All other routes are closed, future ones too. These only read.
 constexpr std::string_view kOpen[] = {
     "/api/v1/kiosk",
     "/api/v1/models/{model}",
@@ -43,8 +43,8 @@ constexpr std::string_view kOpen[] = {
 
 using Tables = std::set<TableId>;
 
-// Tables of the model's public layers and of the tour, and the lists whose terms their public
-// columns hold.
+// The tables of the model's public layers and of the tour, with the term lists of their public
+// columns.
 Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
   const auto layers = STRATA_TRY(context.store.layers().of_model(kiosk.model, Role::viewer));
   const auto tour = STRATA_TRY(context.store.tours().find(kiosk.model, to_string(kiosk.tour)));
@@ -75,7 +75,7 @@ Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk,
   return tables.contains(table->id);
 }
 
-// Whether the address's thing of this kind is the kiosk's to see.
+// Checks whether the kiosk can see the addressed entity of one kind.
 struct Place {
   const char* param;
   Result<bool> (*is_own)(const RouteContext& context, const KioskPass& kiosk,
@@ -118,8 +118,8 @@ constexpr Place kPlaces[] = {
 Result<void> enter_as_kiosk(const RouteContext& context, Request& request, const Route& route) {
   Principal& who = *request.principal;
   if (route.method != Method::get || std::ranges::find(kOpen, route.pattern) == std::end(kOpen))
-    return fail(ErrorCode::forbidden, "Not for kiosks",
-                "A kiosk reads what its tour shows, and changes nothing.");
+    return fail(ErrorCode::forbidden, "Not allowed for kiosks",
+                "A kiosk can only read the content of its tour. It cannot change anything.");
   who.role = Role::viewer;
   for (const Place& place : kPlaces) {
     const auto param = request.params.find(place.param);
@@ -137,19 +137,21 @@ bool may_send_as_kiosk(const protocol::ClientMessage& message) {
          std::holds_alternative<Pick>(message);
 }
 
-std::optional<protocol::ServerMessage> told_to_kiosk(const protocol::ServerMessage& message) {
+std::optional<protocol::ServerMessage> filtered_for_kiosk(const protocol::ServerMessage& message) {
   using namespace protocol;
-  ServerMessage told = message;
+  ServerMessage filtered = message;
   const auto without_user = [&](auto* event) {
     if (event) event->user.reset();
     return event != nullptr;
   };
-  if (auto* layer = std::get_if<LayerEvent>(&told)) layer->review.reset();  // it names people, too
-  if (without_user(std::get_if<LayerEvent>(&told)) || without_user(std::get_if<ViewEvent>(&told)) ||
-      std::holds_alternative<Welcome>(told) || std::holds_alternative<LookEvent>(told) ||
-      std::holds_alternative<ModelEvent>(told) || std::holds_alternative<Picked>(told) ||
-      std::holds_alternative<ProblemMessage>(told))
-    return told;
+  if (auto* layer = std::get_if<LayerEvent>(&filtered))
+    layer->review.reset();  // contains names of people
+  if (without_user(std::get_if<LayerEvent>(&filtered)) ||
+      without_user(std::get_if<ViewEvent>(&filtered)) ||
+      std::holds_alternative<Welcome>(filtered) || std::holds_alternative<LookEvent>(filtered) ||
+      std::holds_alternative<ModelEvent>(filtered) || std::holds_alternative<Picked>(filtered) ||
+      std::holds_alternative<ProblemMessage>(filtered))
+    return filtered;
   return std::nullopt;
 }
 

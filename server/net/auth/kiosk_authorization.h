@@ -4,14 +4,14 @@
 
 namespace strata::net {
 
-// What a kiosk may read, and nothing else: sets the role of the request's principal, which is one.
-// 403: it is no question that kiosks ask. 404, as if it was not there: another model, or a table or
-// file that has nothing to do with what is public of the model, or with its tour.
+// Sets the role of the request's principal, which is a kiosk, and limits it to the data that kiosks
+// may read. 403: not a route for kiosks. 404, as for a missing entity: another model, or a table or
+// file that belongs neither to the public part of the model nor to its tour.
 Result<void> enter_as_kiosk(const RouteContext& context, Request& request, const Route& route);
 
-// Of what a client sends over the live connection, what a kiosk may; and of what is told there,
-// what it is told: of no person, and of nothing beside its model.
+// Limit the live connection of a kiosk: the messages that it may send, and those that it receives.
+// A kiosk receives no names of people, and nothing about other models.
 bool may_send_as_kiosk(const protocol::ClientMessage& message);
-std::optional<protocol::ServerMessage> told_to_kiosk(const protocol::ServerMessage& message);
+std::optional<protocol::ServerMessage> filtered_for_kiosk(const protocol::ServerMessage& message);
 
 }  // namespace strata::net

@@ -27,7 +27,7 @@ Result<void> LoginThrottle::pass(const std::string& address, const std::string& 
                                  Clock::time_point now) {
   const auto refused = [] {
     return fail(ErrorCode::too_many_requests, "Too many sign-ins",
-                "There were too many tries. Wait ten seconds and try again.");
+                "There were too many attempts to sign in. Wait ten seconds and try again.");
   };
   std::lock_guard lock(mutex_);
   TokenBucket& of_address = bucket(by_address_, address, {2, 60}, now);
@@ -48,8 +48,7 @@ void LoginThrottle::was_right(const std::string& address, const std::string& nam
   if (name.empty()) return;
   std::lock_guard lock(mutex_);
   const std::string key = both(address, name);
-  // The address keeps what it cost: signing in again and again costs the server as much as
-  // guessing.
+  // The address gets no tries back: repeated sign-ins cost the server as much as guesses.
   if (const auto found = by_both_.find(key); found != by_both_.end()) found->second.give_back();
   if (const auto found = by_name_.find(to_lower(name)); found != by_name_.end())
     found->second.give_back();
@@ -70,15 +69,15 @@ std::string address_of(const Request& request) {
   };
   address = plain(address);
   if (address.is_loopback()) {
-    // The last of the last header is what the proxy itself saw; what stands before it anybody may
-    // have written.
+    // The last entry of the last header comes from the proxy; a client can forge those before it.
     std::string_view speaks_for;
     for (const auto& [key, value] : request.headers)
       if (key == "x-forwarded-for") speaks_for = value;
     speaks_for = speaks_for.substr(speaks_for.rfind(',') + 1);
     while (!speaks_for.empty() && speaks_for.front() == ' ') speaks_for.remove_prefix(1);
     while (!speaks_for.empty() && speaks_for.back() == ' ') speaks_for.remove_suffix(1);
-    if (const auto told = make_address(std::string(speaks_for), bad); !bad) address = plain(told);
+    if (const auto parsed = make_address(std::string(speaks_for), bad); !bad)
+      address = plain(parsed);
   }
   if (!address.is_v6()) return address.to_string();
   auto bytes = address.to_v6().to_bytes();

@@ -11,16 +11,16 @@
 
 namespace strata::net {
 
-// Slows guessing down: tries by an address, tries for a name by an address, and, far above what one
-// address can do, tries for a name by all. Whoever was right from an address is not held up there
-// by what others try from elsewhere. Thread-safe.
+// Limits password guesses: tries per address, tries per name and address, and, with a limit far
+// above that of one address, tries per name. Tries from other addresses do not block an address
+// that signed in successfully before. Thread-safe.
 class LoginThrottle {
  public:
   using Clock = TokenBucket::Clock;
-  // 429: too many tries. `name` may be empty: a secret of 256 bits is nobody's in particular.
+  // 429: too many tries. `name` may be empty for a secret of 256 bits, which belongs to no name.
   Result<void> pass(const std::string& address, const std::string& name,
                     Clock::time_point now = Clock::now());
-  // The try that was let through last was right: it is no guess.
+  // The last try was right, so it does not count as a guess.
   void was_right(const std::string& address, const std::string& name);
 
  private:
@@ -33,11 +33,11 @@ class LoginThrottle {
 
   std::mutex mutex_;
   Buckets by_address_, by_both_, by_name_;
-  std::unordered_set<std::string> known_;  // name and address of those who were right
+  std::unordered_set<std::string> known_;  // name and address of successful sign-ins
 };
 
-// Where a request comes from: the peer, or, where that is a proxy on this machine, whom it speaks
-// for. Of IPv6 the first half: the rest is one household's to choose from.
+// Returns the sender's address: the peer, or the client of a proxy on this machine. Of IPv6 only
+// the first half, since one household chooses the rest.
 std::string address_of(const Request& request);
 
 }  // namespace strata::net

@@ -6,24 +6,23 @@
 
 namespace strata::net {
 
-// What who asks may do where the address leads: sets the role of the request's principal to theirs
-// in the project of the model, table, attachment, comment, job or kiosk that the address names, or
-// in that of the query's `project` (absent: `default`) where `in_query`. 404, as if it was not
-// there: they have none in it.
+// Sets the role of the request's principal to the caller's role in the project of the addressed
+// model, table, attachment, comment, job or kiosk; if `in_query`, in the project of the query's
+// `project` (absent: `default`). 404, as for a missing entity: the caller has no role in it.
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query);
 
-// That project, whatever who asks may do; nothing: the address leads into none, or what it names is
-// not there.
+// Returns that project without regard to the caller's role; nothing if the address belongs to no
+// project or the entity does not exist.
 Result<std::optional<ProjectId>> addressed_project(const RouteContext& context,
                                                    const Request& request);
-// The number in the path's `param`; 404 where it can be nobody's.
+// Returns the number in the path's `param`; 404 if it cannot be an id.
 Result<std::int64_t> number_of(const Request& request, const std::string& param);
 template <class Id>
 Result<Id> id_of(const Request& request, const std::string& param) {
   return Id(STRATA_TRY(number_of(request, param)));
 }
 
-// That who asks may see the project; otherwise 404 at `field`.
+// Checks that the caller can see the project; otherwise 404 at `field`.
 Result<void> check_seen(const RouteContext& context, const Request& request,
                         const std::string& project, const std::string& field);
 

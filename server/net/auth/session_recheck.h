@@ -5,8 +5,8 @@
 
 namespace strata::net {
 
-// Whether who came in with the secret may still do the same in the project; where the database is
-// away they may stay. May ask the database.
+// Whether a session with this secret still has the role in the project. True while the database is
+// unreachable. May query the database.
 inline bool is_still_welcome(Authenticator& auth, const std::string& secret, ProjectId project_id,
                              Role role) {
   const auto who = auth.identify_token(secret);

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-// What a client takes (RFC 9110, 12.4 and 12.5): lists of values with a quality from 0, which
-// refuses, to 1.
+// Parses the Accept headers of a client (RFC 9110, 12.4 and 12.5): lists of values with a quality
+// from 0 (refused) to 1.
 namespace strata::net {
 
 struct Accepted {
@@ -15,8 +15,8 @@ struct Accepted {
 // The entries of an Accept or Accept-Encoding header; a malformed quality counts as 0.
 std::vector<Accepted> accepted_values(std::string_view header);
 
-// Whether an Accept header takes a content of this type. An absent header takes all;
-// `application/json` also takes `application/…+json`.
+// Whether an Accept header accepts a content of this type. An absent header accepts all types;
+// `application/json` also accepts `application/…+json`.
 bool accepts_type(std::string_view accept, std::string_view content_type);
 
 }  // namespace strata::net

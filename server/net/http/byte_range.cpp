@@ -15,9 +15,9 @@ std::optional<std::uint64_t> number_of(std::string_view text) {
 
 }  // namespace
 
-std::optional<AskedRange> asked_range(std::string_view header, std::uint64_t bytes) {
+std::optional<RequestedRange> requested_range(std::string_view header, std::uint64_t bytes) {
   constexpr std::string_view kUnit = "bytes=";
-  const AskedRange whole{{0, bytes}, false};
+  const RequestedRange whole{{0, bytes}, false};
   if (!header.starts_with(kUnit)) return whole;
   const std::string_view range = header.substr(kUnit.size());
   const auto dash = range.find('-');
@@ -27,11 +27,11 @@ std::optional<AskedRange> asked_range(std::string_view header, std::uint64_t byt
   if ((has_first && !first) || (has_last && !last) || (!has_first && !has_last)) return whole;
   if (!has_first) {  // the last bytes
     if (*last == 0 || bytes == 0) return std::nullopt;
-    return AskedRange{{bytes - std::min(*last, bytes), bytes}, true};
+    return RequestedRange{{bytes - std::min(*last, bytes), bytes}, true};
   }
   if (has_last && *last < *first) return whole;
   if (*first >= bytes) return std::nullopt;
-  return AskedRange{{*first, has_last ? std::min(*last, bytes - 1) + 1 : bytes}, true};
+  return RequestedRange{{*first, has_last ? std::min(*last, bytes - 1) + 1 : bytes}, true};
 }
 
 }  // namespace strata::net

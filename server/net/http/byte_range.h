@@ -7,16 +7,16 @@
 namespace strata::net {
 
 struct ByteRange {
-  std::uint64_t begin = 0, end = 0;  // before `end`
+  std::uint64_t begin = 0, end = 0;  // excludes `end`
 };
 
-// What a Range header asks of a content of so many bytes (RFC 9110, 14.2). Ranges of other units,
-// several at once and malformed ones are passed over, as the RFC allows: then it is all of it.
-// Nothing: no byte of it is there (416).
-struct AskedRange {
+// The range of a content of `size` bytes that a Range header requests (RFC 9110, 14.2). Ranges of
+// other units, several ranges and malformed ones are ignored, as the RFC allows: the result is the
+// whole content. Nothing: no requested byte exists (416).
+struct RequestedRange {
   ByteRange range;
   bool is_part = false;
 };
-std::optional<AskedRange> asked_range(std::string_view header, std::uint64_t bytes);
+std::optional<RequestedRange> requested_range(std::string_view header, std::uint64_t bytes);
 
 }  // namespace strata::net

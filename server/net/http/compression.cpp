@@ -15,10 +15,10 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMinBytes = 1024;  // below, a packet is a packet
-// texts are coded while their client waits: the middle, not the smallest
+constexpr std::size_t kMinBytes = 1024;  // less fits into one packet anyway
+// middle levels, not the strongest: clients wait for the result
 constexpr int kGzipLevel = 5;
-constexpr int kBrotliQuality = 4;  // likewise
+constexpr int kBrotliQuality = 4;
 
 bool is_text(std::string_view content_type) {
   const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));
@@ -28,7 +28,7 @@ bool is_text(std::string_view content_type) {
 
 struct Gzip {
   Gzip() {
-    constexpr int kGzipWindow = 15 + 16;  // zlib's way to say gzip
+    constexpr int kGzipWindow = 15 + 16;  // zlib's code for the gzip format
     if (deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY) != Z_OK)
       throw std::bad_alloc();
   }
@@ -38,7 +38,7 @@ struct Gzip {
 
   void add(std::span<const std::uint8_t> bytes, bool last, std::vector<std::uint8_t>& out) {
     std::array<std::uint8_t, 16384> piece;
-    // zlib counts in 32 bits.
+    // zlib has 32-bit counters.
     do {
       const std::size_t n = std::min<std::size_t>(bytes.size(), 1u << 30);
       stream.next_in = const_cast<Bytef*>(bytes.data());
@@ -62,7 +62,7 @@ struct Brotli {
   Brotli() : encoder(BrotliEncoderCreateInstance(nullptr, nullptr, nullptr)) {
     if (!encoder) throw std::bad_alloc();
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_QUALITY, kBrotliQuality);
-    // 256 KiB a stream, where 4 MiB are the default
+    // 256 KiB per stream instead of the default of 4 MiB
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_LGWIN, 18);
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_MODE, BROTLI_MODE_TEXT);
   }
@@ -91,7 +91,7 @@ struct Brotli {
   BrotliEncoderState* encoder;
 };
 
-// `"v3"` becomes `"v3-br"`; a weak one keeps its mark.
+// `"v3"` becomes `"v3-br"`; a weak tag stays weak.
 std::string with_coding(std::string_view etag, Coding coding) {
   std::string text(etag);
   if (text.size() >= 2 && text.back() == '"')
@@ -108,7 +108,7 @@ void set(Response& response, std::string_view header_name, std::string value) {
   response.with(std::string(header_name), std::move(value));
 }
 
-// A client that has the answer in a coding is told so: its tag is that of this one representation.
+// If the client has the answer in a coding, returns the tag of that representation.
 void name_known_tag(Response& response, std::string_view known_tags) {
   response.with("Vary", "Accept-Encoding");
   const std::string etag(response.header("ETag"));
@@ -167,7 +167,7 @@ void compress(Response& response, std::string_view accept_encoding, std::string_
     return;
   for (const char* of_its_own : {"Content-Encoding", "Content-Range", "Accept-Ranges"})
     if (!response.header(of_its_own).empty()) return;
-  if (response.header("Cache-Control") == "no-store") return;  // a secret
+  if (response.header("Cache-Control") == "no-store") return;  // it contains a secret
   if (!response.stream && std::max(response.body.size(), response.bytes.size()) < kMinBytes) return;
   response.with("Vary", "Accept-Encoding");
   const auto coding = accepted_coding(accept_encoding);

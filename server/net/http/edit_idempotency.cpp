@@ -5,8 +5,8 @@ namespace strata::net {
 namespace {
 
 tl::unexpected<Error> used_for_another() {
-  return fail(ErrorCode::invalid, "Key used for another edit",
-              "This Idempotency-Key was used with another edit; take a new key for a new one.",
+  return fail(ErrorCode::invalid, "Idempotency-Key already used",
+              "Another edit has used this Idempotency-Key. Use a new key for a new edit.",
               "Idempotency-Key");
 }
 

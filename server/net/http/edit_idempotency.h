@@ -10,14 +10,14 @@
 
 namespace strata::net {
 
-// Keeps an Idempotency-Key to one edit. The journal gives a repeat its first answer, by the id that
-// follows from the key; here another edit with the key of one that is in the journal, or on its way
-// there, is refused (422). Thread-safe, blocks.
+// Binds an Idempotency-Key to one edit. The journal answers a repeat by the id that is derived from
+// the key; this class refuses (422) another edit with the key of an edit that is in the journal or
+// on its way there. Thread-safe, blocks.
 class EditIdempotency {
  public:
   explicit EditIdempotency(store::Store& store) : store_(store) {}
 
-  // Then `end` must follow.
+  // Call `end` afterwards.
   Result<void> begin(ModelId model_id, const room::EditRequest& edit);
   void end(const Uuid& id);
 

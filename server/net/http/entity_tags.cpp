@@ -35,7 +35,7 @@ std::string_view without_weakness(std::string_view tag) {
   return tag;
 }
 
-// Parts of a text from outside cannot run into one another.
+// Escapes parts from outside, so that two parts cannot be confused with one.
 void add(std::string& text, std::string_view part) {
   text.append(std::to_string(part.size())).append(":").append(part);
 }
@@ -47,7 +47,7 @@ void add(std::string& text, Id<Kind> id) {
   add(text, id.number());
 }
 
-// The sequence of the model that the query names as `at`.
+// Returns the sequence that the query names as `at`.
 std::optional<std::int64_t> past_sequence(const Request& request) {
   const auto at = request.query.find("at");
   if (at == request.query.end()) return std::nullopt;
@@ -55,8 +55,8 @@ std::optional<std::int64_t> past_sequence(const Request& request) {
   return sequence ? std::optional(*sequence) : std::nullopt;
 }
 
-// What the room has in memory, which follows the database a moment later. `past`: an answer shows
-// that sequence in place of the newest.
+// Adds the room's state in memory, which follows the database slightly later. `past`: the answer
+// shows that sequence instead of the newest.
 bool add_room(std::string& text, const room::Room& room, std::optional<std::int64_t> past = {}) {
   const std::int64_t durable = room.edits().durable_sequence();
   const bool is_past = past && *past <= durable;
@@ -68,7 +68,7 @@ bool add_room(std::string& text, const room::Room& room, std::optional<std::int6
   for (const Layer& layer : room.layers().all()) {
     add(text, layer.id);
     add(text, layer.version);
-    // may come from terms, whose records change by themselves
+    // the palette may depend on terms, whose records change independently
     add(text, to_json(layer).at("palette").dump());
   }
   text += ';';
@@ -174,7 +174,7 @@ StateOf state_of_painted_table(const RouteContext& context) {
     std::string text;
     for (const Layer& layer : *layers) {
       add(text, layer.id);
-      if (layer.sequence > 0) models.insert(layer.model_id);  // the others hold nothing yet
+      if (layer.sequence > 0) models.insert(layer.model_id);  // other layers are still empty
     }
     for (const ModelId model : models) {
       const auto room = context.rooms.open(to_string(model), request.role());

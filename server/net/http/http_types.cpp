@@ -42,7 +42,7 @@ Response json_response(const nlohmann::json& json, int status) {
   Response response;
   response.status = status;
   response.with("Content-Type", "application/json");
-  // Names come from people and files: broken UTF-8 must not turn into an exception here.
+  // Names come from people and files: broken UTF-8 must not throw here.
   response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return response;
 }
@@ -128,7 +128,7 @@ struct Respond::State {
     if (!answered)
       send(problem_response({ErrorCode::unavailable,
                              "Request dropped",
-                             "The server stopped before it answered; ask again.",
+                             "The server stopped before it could answer. Try again.",
                              {}}));
   }
   std::function<void(Response)> send;
@@ -149,7 +149,7 @@ void name_download(Response& response, const std::string& filename) {
 
 namespace {
 
-// As forms send it: a plus is a space.
+// Decodes as forms encode: a plus is a space.
 std::optional<std::string> query_text(std::string_view text) {
   std::string spaced(text);
   std::ranges::replace(spaced, '+', ' ');
@@ -164,18 +164,18 @@ Result<void> parse_target(std::string_view target, Request& request) {
   };
   request.target = target;
   if (target.empty() || target[0] != '/')
-    return wrong("A request names a path that begins with a slash.");
+    return wrong("The path of a request must begin with a slash.");
   const auto question = target.find('?');
   const std::string_view path = target.substr(0, question);
   for (std::size_t begin = 1; begin <= path.size();) {
     const std::size_t end = std::min(path.find('/', begin), path.size());
     auto segment = percent_decode(path.substr(begin, end - begin));
-    if (!segment) return wrong("The path has a percent escape that is not one.");
+    if (!segment) return wrong("The path contains an invalid percent escape.");
     request.segments.push_back(std::move(*segment));
     begin = end + 1;
   }
   auto decoded = percent_decode(path);
-  if (!decoded) return wrong("The path has a percent escape that is not one.");
+  if (!decoded) return wrong("The path contains an invalid percent escape.");
   if (!is_utf8(*decoded)) return wrong("The path is not UTF-8.");
   request.path = std::move(*decoded);
   if (question == std::string_view::npos) return {};
@@ -189,13 +189,13 @@ Result<void> parse_target(std::string_view target, Request& request) {
     auto key = query_text(pair.substr(0, equals));
     auto value =
         query_text(equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1));
-    if (!key || !value) return wrong("The query has a percent escape that is not one.");
+    if (!key || !value) return wrong("The query contains an invalid percent escape.");
     if (!is_utf8(*key) || !is_utf8(*value)) return wrong("The query is not UTF-8.");
     if (!request.query.emplace(*key, std::move(*value)).second)
-      return fail(ErrorCode::malformed, "Query parameter given twice", "Give '" + *key + "' once.",
+      return fail(ErrorCode::malformed, "Duplicate query parameter", "Give '" + *key + "' once.",
                   *key);
   }
-  // No route's own: it says which cookie counts.
+  // Belongs to no route: selects the cookie.
   if (const auto as = request.query.find("as");
       as != request.query.end() && as->second == "kiosk") {
     request.as_kiosk = true;
@@ -204,12 +204,13 @@ Result<void> parse_target(std::string_view target, Request& request) {
   return {};
 }
 
-Result<std::string> asked_language(const Request& request) {
+Result<std::string> requested_language(const Request& request) {
   constexpr std::size_t kMaxLength = 35;  // BCP 47
   std::string language = to_lower(request.query_or("lang", {}));
   if (language.size() > kMaxLength)
-    return fail(ErrorCode::invalid, "Not a language",
-                "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.", "lang");
+    return fail(ErrorCode::invalid, "Invalid language",
+                "`lang` must be a language such as `es` or `de-AT`, with at most 35 characters.",
+                "lang");
   return language;
 }
 

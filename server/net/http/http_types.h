@@ -22,29 +22,29 @@
 
 namespace strata::net {
 
-// What routes see of HTTP: no socket library in here, so that they compile fast and can be tested
-// without a socket.
+// HTTP as the routes see it. Includes no socket library: routes compile fast, and tests need no
+// socket.
 
 enum class Method { get, head, post, put, patch, remove, options, unknown };
 std::string_view name(Method method);
 
-// What the link of a kiosk leads to, by ids.
+// The ids of a kiosk's content.
 struct KioskPass {
   KioskId id = 0;
   ModelId model = 0;
   NamedPartId tour = 0;
 };
 
-// Who asks. `role`: what they may do where the address leads. `by_cookie`: the browser sent the
-// secret by itself, so changing calls must prove where they come from.
+// The sender of a request. `role`: the role in the addressed project. `by_cookie`: the browser
+// added the secret automatically, so calls that change something must prove their origin.
 struct Principal {
   std::string user;
   Role role = Role::viewer;
   bool by_cookie = false;
-  bool is_script = false;  // it came with a token for scripts
-  TokenId secret = 0;      // id of the session or token; 0: the owner's token of the environment
+  bool is_script = false;  // identified by a token for scripts
+  TokenId secret = 0;      // id of the session or token; 0: the owner's token from the environment
   Roles roles{};
-  std::optional<KioskPass> kiosk{};  // it is none of the people, but a screen that shows a tour
+  std::optional<KioskPass> kiosk{};  // set for a screen that shows a tour, which is not a user
 
   bool sees(ProjectId project) const { return roles.in(project) >= Role::viewer; }
 };
@@ -57,54 +57,54 @@ struct Request {
   std::string path;                           // decoded, without the query
   std::vector<std::string> segments;          // of the path, each decoded
   std::map<std::string, std::string> query;   // decoded
-  std::map<std::string, std::string> params;  // what the route's pattern caught
+  std::map<std::string, std::string> params;  // parameters of the route's pattern
   Headers headers;                            // names in lower case
-  std::string body;                           // in memory, or…
-  // …in a file that is removed after the answer unless a handler moves it
+  std::string body;                           // in memory, otherwise in
+  // `body_file`, removed after the answer unless a handler moves it
   std::filesystem::path body_file;
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
-  std::string peer;     // address at the other end of the connection
-  bool by_tls = false;  // the connection speaks TLS
-  // If-None-Match as sent, where `headers` has it without codings (net/http/compression.h)
+  std::string peer;     // address of the other end of the connection
+  bool by_tls = false;  // the connection uses TLS
+  // original If-None-Match; `headers` has it without codings (net/http/compression.h)
   std::string known_tags{};
-  // the query had `as=kiosk`: of all cookies that of the kiosk counts, which otherwise does not
+  // the query has `as=kiosk`: only the kiosk's cookie counts, which is ignored otherwise
   bool as_kiosk = false;
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
   const std::string& param(const std::string& name) const { return params.at(name); }
   std::string query_or(const std::string& name, const std::string& fallback) const;
-  // routes that need a principal have one
+  // set for routes that require a principal
   const std::string& user() const { return principal->user; }
-  Role role() const { return principal->role; }                         // the same
-  Author author() const { return {principal->user, principal->role}; }  // the same
+  Role role() const { return principal->role; }                         // likewise
+  Author author() const { return {principal->user, principal->role}; }  // likewise
 };
 
 struct Response {
   int status = 200;
   Headers headers;
   std::string body;
-  std::vector<std::uint8_t> bytes;   // sent in place of `body` when not empty
-  std::filesystem::path file;        // the same
-  std::shared_ptr<const void> held;  // let go once the answer is sent
-  // Bytes made while they are sent, in place of `body`. `write` runs on a worker, stops when the
-  // sink says false, and says whether all was written: otherwise the connection ends, which tells
-  // the client.
+  std::vector<std::uint8_t> bytes;   // sent instead of `body` if not empty
+  std::filesystem::path file;        // likewise
+  std::shared_ptr<const void> held;  // released once the answer is sent
+  // Bytes made while they are sent, instead of `body`. `write` runs on a worker, stops when the
+  // sink returns false, and returns whether it wrote everything; otherwise the connection is
+  // closed, so that the client detects the failure.
   using Sink = std::function<bool(std::span<const std::uint8_t>)>;
   struct Stream {
     std::optional<std::uint64_t> length;  // nothing: known only at the end
     std::function<bool(const Sink&)> write;
   };
   std::optional<Stream> stream;
-  // Server-sent events (HTML, section 9.2), until the client goes: asked about once a second, on a
-  // worker, what there is to send; nothing: it ends. The client comes back by itself.
+  // Server-sent events (HTML, section 9.2), until the client disconnects. A worker calls `next`
+  // about once a second; nothing ends the stream. The client reconnects automatically.
   struct Events {
     std::function<std::optional<std::string>()> next;
   };
   std::optional<Events> events;
 
   Response& with(std::string header_name, std::string value);
-  std::string_view header(std::string_view name) const;  // as written by `with`; empty when absent
+  std::string_view header(std::string_view name) const;  // name as in `with`; empty when absent
 };
 
 Response json_response(const nlohmann::json& json, int status = 200);
@@ -112,14 +112,14 @@ Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_typ
 Response text_response(std::string text, std::string content_type);
 Response empty_response(int status);              // 204, 304
 Response problem_response(const Error& problem);  // RFC 9457
-// A download. The file is kept while it is sent.
+// Returns a download, and keeps the file while it is sent.
 Response file_response(std::shared_ptr<const TemporaryFile> file);
-// For a file that is kept and not shown; any characters will do.
+// For a file that browsers save instead of showing it; accepts any characters.
 void name_download(Response& response, const std::string& filename);
 std::string_view reason_phrase(int status);
 
-// The one answer to a request; may be called from any thread. The first call counts; when the last
-// copy goes without one, the client gets a 500 rather than silence.
+// The one answer to a request; may be called from any thread. Only the first call counts. If the
+// last copy is destroyed without a call, the client gets a 500.
 class Respond {
  public:
   explicit Respond(std::function<void(Response)> send);
@@ -131,11 +131,11 @@ class Respond {
   std::shared_ptr<State> state_;
 };
 
-// Splits and decodes a request target. Refused: bad percent escapes, NUL, what is not UTF-8, a
-// query parameter given twice.
+// Splits and decodes a request target. Refuses bad percent escapes, NUL, invalid UTF-8, and a query
+// parameter given twice.
 Result<void> parse_target(std::string_view target, Request& request);
 
-// `lang`, a language tag in lower case; empty: any. Refused (422, `lang`): one that is too long.
-Result<std::string> asked_language(const Request& request);
+// `lang`, a language tag in lower case; empty: any. Refuses one that is too long (422, `lang`).
+Result<std::string> requested_language(const Request& request);
 
 }  // namespace strata::net

@@ -12,14 +12,13 @@ std::string scoped_key(const Request& request) {
                     request.target + '\n' + std::string(key));
 }
 
-// Bodies in files are told apart by their length: hashing gigabytes to compare a retry is not worth
-// it.
+// Distinguishes bodies in files by their length: hashing gigabytes for a retry is too slow.
 std::string fingerprint(const Request& request) {
   return request.body_file.empty() ? sha256_hex(request.body)
                                    : "file:" + std::to_string(request.body_bytes);
 }
 
-nlohmann::json kept_answer(const Response& response, std::string request_fingerprint) {
+nlohmann::json stored_answer(const Response& response, std::string request_fingerprint) {
   nlohmann::json headers = nlohmann::json::array();
   for (const auto& [header, value] : response.headers) headers.push_back({header, value});
   return {{"request", std::move(request_fingerprint)},
@@ -28,12 +27,12 @@ nlohmann::json kept_answer(const Response& response, std::string request_fingerp
           {"body", response.body}};
 }
 
-Response response_of(const nlohmann::json& kept) {
+Response response_of(const nlohmann::json& stored) {
   Response response;
-  response.status = kept.value("status", 200);
-  for (const auto& header : kept.at("headers"))
+  response.status = stored.value("status", 200);
+  for (const auto& header : stored.at("headers"))
     response.with(header.at(0).get<std::string>(), header.at(1).get<std::string>());
-  response.body = kept.value("body", std::string());
+  response.body = stored.value("body", std::string());
   return response;
 }
 
@@ -42,17 +41,19 @@ Result<std::optional<nlohmann::json>> IdempotencyStore::begin(const Request& req
   {
     std::lock_guard lock(mutex_);
     if (!at_work_.insert(scoped).second)
-      return fail(ErrorCode::conflict, "Still at work",
-                  "The first call with this Idempotency-Key has not ended yet; ask again later.",
+      return fail(ErrorCode::conflict, "Request still running",
+                  "The first request with this Idempotency-Key is still running. Try again later.",
                   "Idempotency-Key");
   }
-  auto kept = store_.answers().find(scoped);
-  if (kept && *kept && (*kept)->value("request", std::string()) != fingerprint(request))
-    kept = fail(ErrorCode::invalid, "Key used for another call",
-                "This Idempotency-Key was used with another body; take a new key for a new call.",
-                "Idempotency-Key");
-  if (!kept || *kept) end(request);
-  return kept;
+  auto stored = store_.answers().find(scoped);
+  if (stored && *stored && (*stored)->value("request", std::string()) != fingerprint(request))
+    stored =
+        fail(ErrorCode::invalid, "Idempotency-Key already used",
+             "A request with another body has used this Idempotency-Key. Use a new key for a new "
+             "request.",
+             "Idempotency-Key");
+  if (!stored || *stored) end(request);
+  return stored;
 }
 
 void IdempotencyStore::end(const Request& request) {

@@ -12,16 +12,15 @@
 
 namespace strata::net {
 
-// Idempotency-Key: the first successful answer to a key is kept in the database, in the transaction
-// of what the call did, and given again to a repeat. A key belongs to one person, method and
-// address; the same key with another body is refused (422), and a repeat while the first call is
-// still at work too (409). Refusals are not kept: the call changed nothing and may be tried again.
-// Thread-safe, blocks.
+// Idempotency-Key: stores the first successful answer to a key in the database, in the transaction
+// of the call's effect, and returns it to a repeat. A key belongs to one user, method and address.
+// Refuses the same key with another body (422), and a repeat while the first call is still running
+// (409). Refusals are not stored: the call changed nothing and may be retried. Thread-safe, blocks.
 class IdempotencyStore {
  public:
   explicit IdempotencyStore(store::Store& store) : store_(store) {}
 
-  // What was kept for the request's key, or nothing when the call is new: then `end` must follow.
+  // Returns the stored answer for the request's key. Nothing: the call is new; call `end` later.
   Result<std::optional<nlohmann::json>> begin(const Request& request);
   void end(const Request& request);
 
@@ -31,22 +30,22 @@ class IdempotencyStore {
   std::unordered_set<std::string> at_work_;
 };
 
-// Under which the answer to a request is kept; empty when it has no key.
+// The key under which the answer is stored; empty if the request has none.
 std::string scoped_key(const Request& request);
-// Tells requests with one key apart.
+// Distinguishes requests with the same key.
 std::string fingerprint(const Request& request);
 
-nlohmann::json kept_answer(const Response& response, std::string request_fingerprint);
-Response response_of(const nlohmann::json& kept);
+nlohmann::json stored_answer(const Response& response, std::string request_fingerprint);
+Response response_of(const nlohmann::json& stored);
 
-// For the call that has the effect: keeps `respond(effect)` with it where the request has a key.
+// For the call with the effect: stores `respond(effect)` with it if the request has a key.
 template <class... Effect>
 store::IdempotentResponse<Effect...> idempotent_response(
     const Request& request,
     std::type_identity_t<std::function<Response(const Effect&...)>> respond) {
   return {scoped_key(request),
           [print = fingerprint(request), respond = std::move(respond)](const Effect&... effect) {
-            return kept_answer(respond(effect...), print);
+            return stored_answer(respond(effect...), print);
           },
           request.user()};
 }

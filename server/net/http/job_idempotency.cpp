@@ -9,9 +9,10 @@ Result<std::optional<JobId>> JobIdempotency::find(const Request& request) {
   const auto found = started_.find(scoped_key(request));
   if (found == started_.end() || !jobs_.status(found->second.job)) return std::nullopt;
   if (found->second.fingerprint != fingerprint(request))
-    return fail(ErrorCode::invalid, "Key used for another call",
-                "This Idempotency-Key was used with another body; take a new key for a new call.",
-                "Idempotency-Key");
+    return fail(
+        ErrorCode::invalid, "Idempotency-Key already used",
+        "A request with another body has used this Idempotency-Key. Use a new key for a new request.",
+        "Idempotency-Key");
   return found->second.job;
 }
 

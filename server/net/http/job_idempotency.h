@@ -9,17 +9,17 @@
 
 namespace strata::net {
 
-// Which job a call's Idempotency-Key started. The server forgets when it stops; the key of a job
-// that succeeded is in the database with what it made, and gets a job that is done. The key of one
-// that a restart ended starts it again. Thread-safe.
+// The job that a call's Idempotency-Key started. Kept in memory only. The database has the key of a
+// job that succeeded, with its result; a repeat then gets a finished job. A key whose job a restart
+// ended starts the job again. Thread-safe.
 class JobIdempotency {
  public:
   explicit JobIdempotency(jobs::JobQueue& jobs) : jobs_(jobs) {}
 
-  // Nothing: the key is new, or its job is forgotten. 422: it was used with another body.
+  // Nothing: the key is new, or its job is forgotten. 422: the key was used with another body.
   Result<std::optional<JobId>> find(const Request& request);
   void started(const Request& request, JobId job);
-  // The job that an earlier server finished.
+  // Returns the job that an earlier server process finished.
   Result<JobId> finished(const Request& request, ProjectId project, jobs::JobResult result);
 
  private:

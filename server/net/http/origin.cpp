@@ -26,20 +26,20 @@ std::string cookie_value(std::string_view header, std::string_view name) {
 
 bool is_own_origin(std::string_view origin, std::string_view host,
                    const std::vector<std::string>& allowed, bool by_https) {
-  const std::string asked = to_lower(origin);
+  const std::string lower_origin = to_lower(origin);
   for (const auto& entry : allowed) {
     std::string known = to_lower(entry);
     while (known.ends_with('/')) known.pop_back();
-    if (asked == known) return true;
+    if (lower_origin == known) return true;
   }
   const std::string_view scheme = by_https ? "https://" : "http://";
-  return asked.starts_with(scheme) && !host.empty() &&
-         asked.substr(scheme.size()) == to_lower(host);
+  return lower_origin.starts_with(scheme) && !host.empty() &&
+         lower_origin.substr(scheme.size()) == to_lower(host);
 }
 
 namespace {
 
-// `museum.example` of `museum.example:8080`; an IPv6 address keeps its brackets.
+// `museum.example` from `museum.example:8080`; an IPv6 address keeps its brackets.
 std::string_view without_port(std::string_view host) {
   if (host.starts_with('[')) {
     const auto end = host.find(']');
@@ -81,11 +81,11 @@ Result<void> check_host(const Request& request, const std::vector<std::string>& 
   std::string host = to_lower(without_port(sent));
   if (host.ends_with('.')) host.pop_back();
   if (is_address(host) || std::ranges::find(own_names, host) != own_names.end()) return {};
-  return fail(
-      ErrorCode::misdirected, "Unknown host name",
-      "This server does not know the name by which it was asked. Whoever runs it adds the name with --origin "
-      "(STRATA_ORIGIN), for example --origin https://museum.example.",
-      "Host");
+  return fail(ErrorCode::misdirected, "Unknown host name",
+              "The server does not know the host name of this request. Ask an administrator "
+              "to add the name with --origin (STRATA_ORIGIN), for example --origin "
+              "https://museum.example.",
+              "Host");
 }
 
 namespace {
@@ -100,36 +100,36 @@ bool is_own(const Request& request, const std::vector<std::string>& allowed) {
 Result<void> check_same_origin(const Request& request, const std::vector<std::string>& allowed) {
   const auto origin = request.header("origin");
   if (request.principal && !request.principal->by_cookie) return {};
-  // Signing in: a foreign page must not sign its visitor in as somebody else.
+  // Signing in: a foreign page must not sign in its visitor as another user.
   if (!request.principal && origin.empty()) return {};
   if (!origin.empty()) {
     if (is_own(request, allowed)) return {};
-    return fail(
-        ErrorCode::forbidden, "Foreign origin",
-        "Changes signed by a cookie are taken from this server's own pages only. Add the origin with --origin, or use a bearer token.",
-        "Origin");
+    return fail(ErrorCode::forbidden, "Foreign origin",
+                "With a session cookie, the server accepts changes from its own pages only. "
+                "Ask an administrator to add this origin with --origin, or use a bearer token.",
+                "Origin");
   }
   if (request.header("sec-fetch-site") == "same-origin") return {};
-  return fail(
-      ErrorCode::forbidden, "Origin missing",
-      "Changes signed by a cookie need an Origin header of this server. Scripts use a bearer token.",
-      "Origin");
+  return fail(ErrorCode::forbidden, "Origin missing",
+              "With a session cookie, a change needs an Origin header of this server. Use a "
+              "bearer token in scripts.",
+              "Origin");
 }
 
 Result<void> check_upgrade_origin(const Request& request, const std::vector<std::string>& allowed) {
   const auto origin = request.header("origin");
   if (origin.empty()) {
     if (request.principal && !request.principal->by_cookie) return {};
-    return fail(
-        ErrorCode::forbidden, "Origin missing",
-        "A connection signed by a cookie needs an Origin header of this server. Scripts use a bearer token.",
-        "Origin");
+    return fail(ErrorCode::forbidden, "Origin missing",
+                "With a session cookie, a live connection needs an Origin header of this "
+                "server. Use a bearer token in scripts.",
+                "Origin");
   }
   if (is_own(request, allowed)) return {};
-  return fail(
-      ErrorCode::forbidden, "Foreign origin",
-      "Live connections are taken from this server's own pages only. Add the origin with --origin.",
-      "Origin");
+  return fail(ErrorCode::forbidden, "Foreign origin",
+              "The server accepts live connections from its own pages only. Ask an "
+              "administrator to add this origin with --origin.",
+              "Origin");
 }
 
 bool came_by_https(const Request& request) {

@@ -6,17 +6,18 @@
 #include "core/text/base64.h"
 #include "core/text/percent.h"
 #include "store/content/projects.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMaxCursorLength = 6000;  // beside the rest of a head of 8 KiB
+constexpr std::size_t kMaxCursorLength = 6000;  // the remaining head has 8 KiB in all
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// One cursor alone stands for a text: other spellings are refused.
+// Each text has one valid cursor: other spellings are refused.
 std::optional<std::string> text_of_cursor(const std::string& cursor) {
   const auto bytes = from_base64(cursor);
   if (!bytes || to_base64url(*bytes) != cursor) return std::nullopt;
@@ -27,7 +28,7 @@ bool is_of_page(const std::string& parameter) {
   return parameter == "limit" || parameter == "offset" || parameter == "after";
 }
 
-// Which list it is, in which order and with which filters.
+// Identifies the list, its order and its filters.
 std::string list_mark(const Request& request) {
   std::string text;
   for (const std::string& segment : request.segments)
@@ -46,7 +47,7 @@ std::string text_of(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// As `cursor_of` writes it, to the character.
+// Accepts exactly the text that `cursor_of` writes.
 Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
   if (cursor.empty() || cursor.size() > kMaxCursorLength) return wrong_place();
   const auto text = text_of_cursor(cursor);
@@ -61,7 +62,7 @@ Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
 
 std::string link_to(const Request& request, const Page& page, const std::string& where,
                     const char* relation) {
-  std::string target;  // encoded anew: as sent it may hold bytes that a header may not
+  std::string target;  // encoded again: the original may hold bytes invalid in a header
   for (const auto& segment : request.segments) target += "/" + percent_encode(segment);
   target += "?";
   for (const auto& [key, value] : request.query)
@@ -108,8 +109,8 @@ Result<Page> page_of(const Request& request, int default_limit) {
   }
   if (auto found = request.query.find("after"); found != request.query.end()) {
     if (request.query.contains("offset"))
-      return fail(ErrorCode::invalid, "after and offset together",
-                  "Give one of `after` and `offset`.", "after");
+      return fail(ErrorCode::invalid, "`after` and `offset` together",
+                  "Send either `after` or `offset`, but not both.", "after");
     auto place = STRATA_TRY(place_in(request, found->second));
     page.after = std::move(place);
   }

@@ -8,16 +8,19 @@
 #include <vector>
 
 #include "net/http/http_types.h"
-#include "store/content/projects.h"
-#include "store/store.h"
+#include "store/content/named_id.h"
 #include "store/tables/list_place.h"
 
-// Pages of lists: `limit`, and where the page begins: behind the entry at which another page ended
-// (`after`), which stays right while others write, or behind so many entries (`offset`).
+namespace strata::store {
+class Store;
+}
+
+// Pages of lists: `limit`, and the beginning of the page: after the last entry of another page
+// (`after`), which stays right while others write, or after a number of entries (`offset`).
 namespace strata::net {
 
-// What a list is sorted by, of one entry: an array of whole numbers, texts and nulls, by which no
-// two entries are alike.
+// The sort key of one entry: an array of whole numbers, texts and nulls. No two entries have the
+// same key.
 using ListPlace = nlohmann::json;
 
 struct Page {
@@ -27,27 +30,27 @@ struct Page {
 };
 constexpr int kMaxPage = 1000;
 
-// Of lists that had no pages: `limit` is what it was not, absent, and so the largest.
+// For lists that had no pages originally: an absent `limit` means the largest.
 Result<Page> page_of(const Request& request, int default_limit = 100);
 
-// A place as `after` names it, good for the same list with the same filters and order alone;
-// nothing: it is too long for an address.
+// Returns a place as `after` has it, valid for the same list, filters and order only; nothing if it
+// is too long for an address.
 std::optional<std::string> cursor_of(const Request& request, const ListPlace& place);
 
-// Link header values (next, prev). `last`: where the page ends, while entries follow.
+// Adds Link headers (next, prev). `last`: the end of the page, if entries follow.
 void add_page_links(Response& response, const Request& request, const Page& page,
                     const std::optional<ListPlace>& last);
-// Of lists that know offsets alone.
+// For lists that support offsets only.
 void add_page_links(Response& response, const Request& request, const Page& page,
                     std::int64_t total);
 
-// The number after which the page begins, of lists that are sorted by one; `first` where it begins
-// at the beginning. Refused (422, `after`): a place of another shape.
+// Returns the number after which the page begins, for lists sorted by one number; `first` without
+// `after`. Refuses (422, `after`) a place of another shape.
 Result<std::int64_t> number_after(const Page& page, std::int64_t first = 0);
 using store::wrong_place;
 
-// What was read in excess of the page is dropped: one more entry tells that the list goes on.
-// `place_of` the last one that stays is told.
+// Drops the rows after the page: callers read one more row to find out whether the list continues.
+// If it does, returns `place_of` the page's last row.
 template <class Rows, class PlaceOf>
 std::optional<ListPlace> end_page(Rows& rows, const Page& page, const PlaceOf& place_of) {
   if (rows.size() <= static_cast<std::size_t>(page.limit)) return std::nullopt;
@@ -55,14 +58,14 @@ std::optional<ListPlace> end_page(Rows& rows, const Page& page, const PlaceOf& p
   return ListPlace(place_of(rows.back()));
 }
 
-// The entries of a list in memory that a page holds.
+// The entries of a list in memory that belong to a page.
 struct Slice {
   std::size_t begin = 0, end = 0;
-  std::optional<ListPlace> last{};  // where entries follow
+  std::optional<ListPlace> last{};  // if entries follow
 };
 using NumberKey = std::vector<std::int64_t>;  // compared number by number
 Result<Slice> slice_of(const Page& page, std::span<const NumberKey> sorted);
-// The same of a list that the database sorts by names (store::Projects::names_until).
+// The same for a list that the database sorts by names (store::Projects::names_until).
 Result<Slice> slice_of(const Page& page, std::span<const store::NamedId> sorted,
                        store::Store& store);
 

@@ -13,12 +13,11 @@ Result<void> check_precondition(const RouteContext& context, const Request& requ
   if (!id) return {};
   const auto project = STRATA_TRY(context.store.projects().find(to_string(*id)));
   if (!project.require_if_match) return {};
-  return fail(
-      ErrorCode::version_required, "Version missing",
-      "The project " + project.name +
-          " takes changes only with the version that they were made for. Read the resource again and send its "
-          "ETag in `If-Match`.",
-      "If-Match");
+  return fail(ErrorCode::version_required, "Version missing",
+              "The project " + project.name +
+                  " requires the version with each change. Read the resource again and send its "
+                  "ETag in `If-Match`.",
+              "If-Match");
 }
 
 }  // namespace strata::net

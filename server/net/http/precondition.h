@@ -4,8 +4,8 @@
 
 namespace strata::net {
 
-// 428 (RFC 6585): the change names no version in If-Match, of something that has versions, in a
-// project that demands it.
+// 428 (RFC 6585): the change has no version in If-Match, although the entity has versions and the
+// project requires them.
 Result<void> check_precondition(const RouteContext& context, const Request& request,
                                 const Route& route);
 

@@ -5,7 +5,7 @@
 namespace strata::net {
 namespace {
 
-// So many processors for each question that computes: another's turn begins where all have one.
+// Processors per computing question; their number limits the simultaneous questions.
 constexpr unsigned kProcessorsForOne = 4;
 
 int questions_at_once() {
@@ -39,17 +39,18 @@ Result<void> QuestionDesk::post(const std::shared_ptr<Question>& question,
                                 std::function<void()> work) {
   const std::lock_guard lock(mutex_);
   if (stopping_)
-    return fail(ErrorCode::unavailable, "Server stops", "The server is shutting down.");
+    return fail(ErrorCode::unavailable, "Server is stopping",
+                "The server is shutting down. Try again when it is running again.");
   Person& person = people_[question->asker()];
   if (person.waiting.size() >= options_.of_one_waiting)
-    return fail(
-        ErrorCode::too_many_requests, "Too many questions",
-        std::to_string(options_.of_one_waiting) +
-            " questions of yours wait for their answers; ask again when some have been answered.");
+    return fail(ErrorCode::too_many_requests, "Too many questions",
+                std::to_string(options_.of_one_waiting) +
+                    " of your questions are waiting for an answer. Try again when the server has "
+                    "answered some of them.");
   if (waiting_ >= options_.waiting) {
     if (person.waiting.empty() && person.under_way == 0) people_.erase(question->asker());
-    return fail(ErrorCode::busy, "Too busy",
-                "Too many questions wait for their answers; ask again in a moment.");
+    return fail(ErrorCode::busy, "Server is busy",
+                "Too many questions are waiting for an answer. Try again in a moment.");
   }
   person.waiting.push_back({question, std::move(work)});
   ++waiting_;
@@ -62,7 +63,7 @@ QuestionDesk::People::iterator QuestionDesk::next() {
   for (auto person = people_.begin(); person != people_.end(); ++person) {
     const Person& its = person->second;
     if (its.waiting.empty()) continue;
-    // Who stops waits for nobody.
+    // A stopping desk ignores the limit.
     if (its.under_way >= options_.of_one_at_once && !stopping_) continue;
     const auto order = [](const Person& p) { return std::pair(p.under_way, p.last_begun); };
     if (first == people_.end() || order(its) < order(first->second)) first = person;
@@ -109,7 +110,10 @@ void QuestionDesk::end_all(const Error& why) {
 }
 
 void QuestionDesk::stop() {
-  end_all({ErrorCode::unavailable, "Server stops", "The server is shutting down.", {}});
+  end_all({ErrorCode::unavailable,
+           "Server is stopping",
+           "The server is shutting down. Try again when it is running again.",
+           {}});
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;

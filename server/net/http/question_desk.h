@@ -18,32 +18,31 @@
 
 namespace strata::net {
 
-// Where questions wait and are answered: those that read many texels or draw pictures
-// (Route::is_question). One person's questions do not hold up another's: few of a person are
-// answered at once, and whose next one begins is who has the fewest under way, then who waited
-// longest. While they compute they share the processors by time (domain/people/question_turns.h).
-// Thread-safe.
+// Queues and answers the questions that read many texels or render pictures (Route::is_question).
+// One user's questions do not delay those of others: a user has a few at a time, and the next one
+// is of the user with the fewest running questions, then of the one with the longest wait. While
+// they compute they share the processors by time (domain/people/question_turns.h). Thread-safe.
 class QuestionDesk {
  public:
   struct Options {
     int threads = 8;
     int of_one_at_once = 2;
     std::size_t of_one_waiting = 32;  // more are refused (429)
-    std::size_t waiting = 256;        // of all; more are refused (503)
+    std::size_t waiting = 256;        // of all users; more are refused (503)
   };
   explicit QuestionDesk(Options options);
   ~QuestionDesk() { stop(); }
 
-  // Of whoever asks, within the limits of their role there. It is ended with the others by
-  // `end_all`.
+  // Returns a question of the caller, within the limits of the caller's role. `end_all` ends it
+  // with the others.
   std::shared_ptr<Question> begin(const Request& request);
-  // Calls `work` on a thread of the desk, as the question's own (Question::current). An Error: it
+  // Calls `work` on a thread of the desk, with the question as Question::current. Error: `work`
   // will not be called.
   Result<void> post(const std::shared_ptr<Question>& question, std::function<void()> work);
 
-  // All that are asked now and later.
+  // Ends all current and later questions.
   void end_all(const Error& why);
-  void stop();  // ends them, and joins
+  void stop();  // ends all questions and joins
 
   std::size_t waiting() const;
   std::uint64_t steps() const { return turns_->steps(); }
@@ -68,7 +67,7 @@ class QuestionDesk {
   const std::shared_ptr<QuestionTurns> turns_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  People people_;  // who has something waiting or under way
+  People people_;  // users with waiting or running questions
   std::size_t waiting_ = 0, under_way_ = 0;
   std::uint64_t begun_ = 0;
   std::vector<std::weak_ptr<Question>> questions_;

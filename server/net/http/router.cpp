@@ -46,12 +46,12 @@ bool Router::matches(const Entry& entry, const std::vector<std::string>& segment
 }
 
 Router::Match Router::find(Method method, const std::vector<std::string>& segments) const {
-  const Method wanted = method == Method::head ? Method::get : method;
+  const Method effective = method == Method::head ? Method::get : method;
   Match match;
   for (const Entry& entry : entries_) {
     std::map<std::string, std::string> params;
     if (!matches(entry, segments, params)) continue;
-    if (entry.route.method == wanted) {
+    if (entry.route.method == effective) {
       match.route = &entry.route;
       match.params = std::move(params);
       return match;
@@ -79,8 +79,8 @@ Result<void> check_query(const Route& route, const Request& request) {
     std::string known;
     for (const auto& name : route.query) known += (known.empty() ? "" : ", ") + name;
     return fail(ErrorCode::malformed, "Unknown query parameter",
-                known.empty() ? "This address takes no query parameters."
-                              : "This address takes: " + known + ".",
+                known.empty() ? "This address accepts no query parameters."
+                              : "This address accepts: " + known + ".",
                 key);
   }
   return {};

@@ -6,7 +6,7 @@
 
 namespace strata::net {
 
-// Lets `per_second` things pass on average and `burst` at once. One thread at a time.
+// Allows `per_second` calls on average and `burst` at once. One thread at a time.
 class TokenBucket {
  public:
   using Clock = std::chrono::steady_clock;
@@ -19,18 +19,18 @@ class TokenBucket {
     tokens_ -= 1;
     return true;
   }
-  // Whether `take` would let it pass.
+  // Whether `take` would succeed.
   bool has_one(Clock::time_point now) {
     fill(now);
     return tokens_ >= 1;
   }
-  // As if nothing had ever been taken.
+  // Whether the bucket is in its initial state.
   bool is_full(Clock::time_point now) {
     fill(now);
     return tokens_ >= burst_;
   }
 
-  // How many would pass now, and after how many whole seconds all of them would again.
+  // Returns how many calls would succeed now, and after how many whole seconds the bucket is full.
   int left(Clock::time_point now) {
     fill(now);
     return static_cast<int>(tokens_);
@@ -40,7 +40,7 @@ class TokenBucket {
     return static_cast<int>(std::ceil((burst_ - tokens_) / per_second_));
   }
 
-  // What was taken last cost nothing.
+  // Returns the token of the last `take`.
   void give_back() { tokens_ = std::min(burst_, tokens_ + 1); }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file's bytes as a file of their own.
+// Copies a part of the form to a separate file.
 Result<Upload> keep_part(const FormFile& part, const fs::path& folder, const MappedFile& form) {
   constexpr std::size_t kWindowBytes = 4u << 20;
   Upload upload{folder / (to_string(random_uuid()) + ".part"), part.filename};
@@ -27,7 +27,8 @@ Result<Upload> keep_part(const FormFile& part, const fs::path& folder, const Map
   std::error_code ignored;
   fs::remove(upload.file, ignored);
   return fail(ErrorCode::storage_full, "Disk full",
-              "The upload could not be stored on the server's disk.");
+              "The server could not store the upload on its disk. Ask an administrator to "
+              "free disk space.");
 }
 
 Result<std::vector<Upload>> keep_parts(std::string_view content_type, const MappedFile& form,
@@ -40,7 +41,7 @@ Result<std::vector<Upload>> keep_parts(std::string_view content_type, const Mapp
     auto upload = keep_part(part, folder, form);
     if (!upload) {
       std::error_code ignored;
-      for (const Upload& kept : uploads) fs::remove(kept.file, ignored);
+      for (const Upload& stored : uploads) fs::remove(stored.file, ignored);
       return tl::unexpected(upload.error());
     }
     uploads.push_back(std::move(*upload));
@@ -59,7 +60,7 @@ Result<std::vector<Upload>> take_upload(const Request& request, const fs::path& 
   if (type.starts_with("multipart/form-data"))
     return keep_parts(request.header("content-type"), *mapped, folder, accepted);
   if (type.starts_with("multipart/"))
-    return fail(ErrorCode::unsupported, "Form not understood", accepted, "Content-Type");
+    return fail(ErrorCode::unsupported, "Invalid form", accepted, "Content-Type");
   std::string name =
       base_filename(header_parameter(request.header("content-disposition"), "filename"));
   if (name.empty() && type.starts_with("application/zip")) name = "scan.zip";

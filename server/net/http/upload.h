@@ -10,7 +10,7 @@ namespace strata::net {
 
 struct Upload {
   std::filesystem::path file;
-  // as the sender calls it, with the folders it names; empty when it did not say
+  // the sender's name with its folders; empty if the sender gives none
   std::string filename;
 };
 
@@ -18,9 +18,9 @@ constexpr const char* kScanUpload =
     "Send the scan as the body (PLY, OBJ, STL, glTF, GLB, or a zip of one scan with its textures), or the mesh and its "
     "material and picture files together in a multipart/form-data form.";
 
-// The files in a request whose body is in a file: the body itself, or those of a
-// multipart/form-data body (net/http/form_files; each cut out into a file of its own in `folder`;
-// none is left there after an Error). `accepted` is what a body without a file is told to be.
+// Returns the files of a request whose body is in a file: the body itself, or the files of a
+// multipart/form-data body (net/http/form_files), each copied to a separate file in `folder`; after
+// an Error no file remains there. `accepted`: the detail of the error for a body without a file.
 Result<std::vector<Upload>> take_upload(const Request& request, const std::filesystem::path& folder,
                                         const char* accepted = kScanUpload);
 

@@ -8,8 +8,8 @@
 
 namespace strata::net {
 
-// Threads for what may block (database, queries, encoding of pictures), so that the sockets'
-// threads never do.
+// Threads for work that may block (database, queries, encoding of pictures), so that the threads of
+// the sockets never block.
 class WorkerPool {
  public:
   WorkerPool(int threads, std::size_t max_waiting) : queue_(max_waiting) {
@@ -20,11 +20,11 @@ class WorkerPool {
   }
   ~WorkerPool() { stop(); }
 
-  // False when too much waits or the pool has stopped: the caller answers 503.
+  // False if the queue is full or the pool has stopped: the caller answers 503.
   bool post(std::function<void()> work) { return queue_.push(std::move(work)); }
   std::size_t waiting() const { return queue_.size(); }
 
-  // Runs what waits, then joins.
+  // Finishes the queued work, then joins.
   void stop() {
     queue_.close();
     for (auto& thread : threads_)

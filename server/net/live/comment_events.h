@@ -4,8 +4,8 @@
 
 namespace strata::net {
 
-// Another part of those who look sees the layer now: who ends to see the threads about it hears
-// that they are gone, who begins hears of them.
+// Call after the layer's visibility changed. Participants who no longer see the layer are notified
+// that its threads are gone; those who see it now receive the threads.
 void tell_threads(const RouteContext& context, const Layer& layer, Visibility before,
                   const std::string& user);
 

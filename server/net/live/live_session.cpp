@@ -25,29 +25,29 @@
 namespace strata::net {
 namespace {
 
-constexpr int kHistoryToSearch = 500;  // journal rows looked at for the end of a stroke's batch
+constexpr int kHistoryToSearch = 500;  // journal rows to search for the end of a stroke's batch
 
 Error need_hello() {
-  return {ErrorCode::conflict, "Say hello first", "The first message of a connection is `hello`.",
-          "op"};
+  return {ErrorCode::conflict, "Missing hello message",
+          "The first message of a connection must be `hello`.", "op"};
 }
 
 std::string ref_of(const std::optional<std::string>& id) { return id.value_or(std::string()); }
 
-constexpr std::size_t kMaxEditorsTold = 1000;  // in a message
+constexpr std::size_t kMaxEditorsSent = 1000;  // in one message
 
 std::vector<protocol::RecordEditors> editor_messages(
     const std::vector<app::RecordEditLocks::Entry>& entries) {
   std::vector<protocol::RecordEditors> messages;
   for (const auto& [record, editor] : entries) {
-    if (messages.empty() || messages.back().records.size() == kMaxEditorsTold)
+    if (messages.empty() || messages.back().records.size() == kMaxEditorsSent)
       messages.emplace_back();
-    protocol::RecordEditor& told = messages.back().records.emplace_back();
-    told.table = record.table.number();
-    told.key = record.key;
+    protocol::RecordEditor& entry = messages.back().records.emplace_back();
+    entry.table = record.table.number();
+    entry.key = record.key;
     if (!editor) continue;
-    told.session = editor->session;
-    told.user = editor->user;
+    entry.session = editor->session;
+    entry.user = editor->user;
   }
   return messages;
 }
@@ -79,7 +79,7 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
     refuse({ErrorCode::too_many_requests,
             "Too many messages",
             "At most " + std::to_string(static_cast<int>(shared_->limits.messages_per_second)) +
-                " messages a second are taken; send this one again later.",
+                " messages per second are allowed. Send this message again later.",
             {}},
            ref);
     if (++refusals_ > shared_->limits.max_refusals)
@@ -96,7 +96,8 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
     return {};
   }
   if (principal_.kiosk && !may_send_as_kiosk(*message)) {
-    refuse({ErrorCode::forbidden, "Not for kiosks", "A kiosk looks, and changes nothing.", "op"},
+    refuse({ErrorCode::forbidden, "Not allowed for kiosks",
+            "A kiosk can only show a model. It cannot change anything.", "op"},
            ref);
     return {};
   }
@@ -115,7 +116,7 @@ void LiveSession::on_binary() {
   ++shared_->metrics->messages_received;
   refuse({ErrorCode::unsupported,
           "Binary message",
-          "Clients send text messages: one JSON object each.",
+          "The server accepts text messages only. Send one JSON object in each message.",
           {}},
          std::string());
 }
@@ -127,8 +128,8 @@ void LiveSession::on_closed() {
     leaving = std::move(member_);
     pointer_.reset();
   }
-  // Not under our mutex, which those wait for who are told; leaving waits for the room's listeners,
-  // too.
+  // Releases `mutex_` first: other sessions' notifications lock it, and leaving the room waits for
+  // its listeners.
   if (leaving) shared_->editors->leave(leaving->session(), tell_project());
 }
 
@@ -136,17 +137,17 @@ void LiveSession::tell(const protocol::ServerMessage& message) {
   if (member()) send(message);
 }
 
-// --- messages
+// --- messages of the client
 
 void LiveSession::on(const protocol::Hello& message) {
   if (member())
-    return refuse(
-        {ErrorCode::conflict, "Hello said already", "A connection says hello once.", "op"},
-        std::string());
+    return refuse({ErrorCode::conflict, "Duplicate hello message",
+                   "A connection can send `hello` only once.", "op"},
+                  std::string());
   if (message.accept && std::none_of(message.accept->begin(), message.accept->end(),
                                      [](const auto& codec) { return codec == "jpeg"; }))
     return refuse({ErrorCode::not_acceptable, "No common picture format",
-                   "Pictures are sent as jpeg.", "accept"},
+                   "The server sends pictures as jpeg only. Add jpeg to the formats.", "accept"},
                   std::string());
 
   std::shared_ptr<room::Participant> joined = room_->participants().join(
@@ -209,7 +210,7 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
 
 LiveSession::Work LiveSession::on(const protocol::StrokeBegin& message) {
   if (!may_edit(message.id)) return {};
-  // to look for tool or record may block
+  // the look-up of a tool or record may block
   if (names_tool(message) || has_records(message.layer))
     return [self = shared_from_this(), message] { self->begin(message); };
   begin(message);
@@ -230,8 +231,8 @@ void LiveSession::begin(const protocol::StrokeBegin& message) {
 
 LiveSession::Work LiveSession::on(const protocol::StrokeExtend& message) {
   if (!may_edit(message.id)) return {};
-  // Only after a restart of the server: the batch before this one is in the journal, and reading it
-  // may block.
+  // Needed only after a restart of the server: the previous batch is in the journal, and reading
+  // the journal may block.
   if (shared_->strokes->lacks_start(owner_, message.stroke, message.n))
     return [self = shared_from_this(), message] {
       self->find_start(message);
@@ -267,7 +268,7 @@ void LiveSession::edit(const protocol::EditRequest& message) {
   submit(std::move(*request), std::nullopt);
 }
 
-// What is painted there are keys, which must have records.
+// Whether the layer's values are keys of records.
 bool LiveSession::has_records(const protocol::LayerRef& ref) const {
   const auto layer = layer_of(ref);
   return layer && layer->table;
@@ -290,10 +291,10 @@ void LiveSession::step_through_history(const Message& message) {
 void LiveSession::on(const protocol::Undo& message) { step_through_history(message); }
 void LiveSession::on(const protocol::Redo& message) { step_through_history(message); }
 
-// Somebody else may have the record: what all hear tells whose it is.
+// If another person already edits the record, the broadcast names that person.
 LiveSession::Work LiveSession::on(const protocol::RecordEdit& message) {
   if (!may_edit(ref_of(message.id))) return {};
-  // to look for the record blocks
+  // the look-up of the record blocks
   if (message.editing) return [self = shared_from_this(), message] { self->edit_record(message); };
   shared_->editors->end({TableId(message.table), message.key}, member()->session(), tell_project());
   return {};
@@ -326,7 +327,7 @@ void LiveSession::on(const protocol::PresenceUpdate& message) {
     return member()->pointer(std::nullopt);
   }
   auto camera = cameras_.find(message.view_id);
-  if (camera == cameras_.end()) return;  // nothing is drawn yet, so the pointer is over nothing
+  if (camera == cameras_.end()) return;  // nothing is drawn yet, so the pointer has no position
   {
     std::lock_guard lock(mutex_);
     pointer_ =
@@ -345,8 +346,8 @@ void LiveSession::on(const protocol::Pick& message) {
     if (auto found = cameras_.find(message.view_id); found != cameras_.end())
       camera = found->second;
   if (!camera)
-    return refuse({ErrorCode::conflict, "No camera yet",
-                   "Send a camera for this view first, or give one with the pick.", "camera"},
+    return refuse({ErrorCode::conflict, "No camera",
+                   "Send a camera for this view first, or send one with the pick.", "camera"},
                   ref_of(message.id));
   const bool posted =
       shared_->queries->post([self = shared_from_this(), message, camera = *camera] {
@@ -357,7 +358,10 @@ void LiveSession::on(const protocol::Pick& message) {
         self->send(to_picked(*point, message.id));
       });
   if (!posted)
-    refuse({ErrorCode::busy, "Too busy", "Too many questions wait for an answer; ask again.", {}},
+    refuse({ErrorCode::busy,
+            "Server is busy",
+            "Too many questions are waiting for an answer. Try again in a moment.",
+            {}},
            ref_of(message.id));
 }
 
@@ -376,8 +380,7 @@ void LiveSession::find_start(const protocol::StrokeExtend& message) {
   const auto tool = shared_->strokes->tool(owner_, message.stroke);
   if (!tool) return;
   auto page = shared_->store->journal().history(tool->layer_id, kHistoryToSearch, 0);
-  // the stroke starts with a gap rather than not at all; the edit itself will tell that the
-  // database is away
+  // starts the stroke with a gap; the edit itself reports that the database is unreachable
   if (!page) return;
   for (const auto& row : page->rows) {
     if (row.stroke != message.stroke || row.user != principal_.user || !row.record.is_object() ||
@@ -396,7 +399,7 @@ void LiveSession::submit(room::EditRequest request, std::optional<BatchName> bat
     own_edits_.emplace(id, false);
   }
   if (const auto here = member()) here->edits();
-  // The answer counts even when this connection is gone by then: the stroke book outlives it.
+  // The answer counts even if the connection is closed by then: the StrokeTracker outlives it.
   room_->edits().submit(
       std::move(request),
       [weak = weak_from_this(), shared = shared_, id, batch](const room::EditAnswer& answer) {
@@ -430,7 +433,7 @@ Message edit_message(const Uuid& id, bool is_batch, const Uuid& stroke, int n,
   return message;
 }
 
-// A change under the name that an event of the protocol has for it.
+// Returns the protocol's event of a change.
 template <class Name>
 Name named(room::Listener::LayerChange change) {
   switch (change) {
@@ -477,12 +480,12 @@ void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch
   send(unsaved);
 }
 
-// --- what the room tells
+// --- room::Listener
 
 void LiveSession::edit_applied(const Edit& edit) {
   {
     std::lock_guard lock(mutex_);
-    if (own_edits_.contains(edit.id)) return;  // the author is told by `applied`
+    if (own_edits_.contains(edit.id)) return;  // the author gets `applied`
   }
   protocol::LayerEvent event;
   event.event = protocol::LayerEventEvent::edited;
@@ -491,16 +494,16 @@ void LiveSession::edit_applied(const Edit& edit) {
   event.user = edit.user;
   if (edit.answer.provisional) event.provisional = true;
   if (edit.review) {
-    protocol::Reviewed& told = event.review.emplace();
-    told.decision = static_cast<protocol::ReviewDecision>(edit.review->decision);
-    told.authors = edit.review->authors;
-    if (!edit.review->reason.empty()) told.reason = edit.review->reason;
+    protocol::Reviewed& reviewed = event.review.emplace();
+    reviewed.decision = static_cast<protocol::ReviewDecision>(edit.review->decision);
+    reviewed.authors = edit.review->authors;
+    if (!edit.review->reason.empty()) reviewed.reason = edit.review->reason;
   }
   send(event);
 }
 
 void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
-  // Others see the layer go back; the authors hear of each id by the edit's own answer.
+  // Shows other people the restored layer; the authors get the answer of each edit.
   std::map<LayerId, std::int64_t> sequences;
   for (const auto& edit : edits)
     sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
@@ -553,7 +556,7 @@ void LiveSession::presence_changed() {
     const LiveLimits& limits = shared_->limits;
     if (presence_sent_) {
       const auto due = *presence_sent_ + limits.presence_every *
-                                             std::max(people_told_, limits.presence_people) /
+                                             std::max(people_sent_, limits.presence_people) /
                                              limits.presence_people;
       delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(
                                   due - std::chrono::steady_clock::now()));
@@ -581,7 +584,7 @@ void LiveSession::send_presence() {
   }
   protocol::Presence presence;
   for (auto& person : room_->participants().presence(own)) {
-    if (is_kiosk_name(person.user)) continue;  // nobody stands there whom one could talk to
+    if (is_kiosk_name(person.user)) continue;  // a kiosk is not a person
     protocol::PresenceUser user;
     user.session = person.session;
     user.name = std::move(person.user);
@@ -600,14 +603,14 @@ void LiveSession::send_presence() {
   }
   {
     std::lock_guard lock(mutex_);
-    people_told_ = static_cast<int>(presence.users.size());
+    people_sent_ = static_cast<int>(presence.users.size());
   }
   send(presence);
 }
 
 void LiveSession::resolve_pointer() {
   for (;;) {
-    Pointer asked;
+    Pointer pointer;
     std::shared_ptr<room::Participant> here;
     {
       std::lock_guard lock(mutex_);
@@ -615,13 +618,14 @@ void LiveSession::resolve_pointer() {
         pointer_busy_ = false;
         return;
       }
-      asked = *std::exchange(pointer_, std::nullopt);
+      pointer = *std::exchange(pointer_, std::nullopt);
       here = member_;
     }
-    // where, not what is there
-    auto point = room_->queries().pick(asked.camera, asked.pixel.x, asked.pixel.y, {});
-    here->pointer(point && point->hit ? std::optional(room::Pointing{point->position, asked.radius})
-                                      : std::nullopt);
+    // the position only, without values
+    auto point = room_->queries().pick(pointer.camera, pointer.pixel.x, pointer.pixel.y, {});
+    here->pointer(point && point->hit
+                      ? std::optional(room::Pointing{point->position, pointer.radius})
+                      : std::nullopt);
   }
 }
 
@@ -631,7 +635,7 @@ bool LiveSession::may_edit(const std::string& ref) {
   if (principal_.role >= Role::annotator) return true;
   refuse({ErrorCode::forbidden,
           "Not allowed",
-          "Your role is viewer: you may look, but not paint. Ask for the role annotator.",
+          "Your role is viewer, so you cannot paint. Ask an administrator for the role annotator.",
           {}},
          ref);
   return false;
@@ -646,10 +650,10 @@ app::RecordEditLocks::Tell LiveSession::tell_project() const {
 
 bool LiveSession::has_view(int view_id, const std::string& ref) {
   if (view_id < shared_->limits.views) return true;
-  refuse(
-      {ErrorCode::invalid, "Too many views",
-       "A connection has views 0 to " + std::to_string(shared_->limits.views - 1) + ".", "view_id"},
-      ref);
+  refuse({ErrorCode::invalid, "Too many views",
+          "A connection can have the views 0 to " + std::to_string(shared_->limits.views - 1) + ".",
+          "view_id"},
+         ref);
   return false;
 }
 
@@ -668,8 +672,9 @@ std::shared_ptr<room::Participant> LiveSession::member() const {
 
 void LiveSession::send(const protocol::ServerMessage& message) {
   if (principal_.kiosk) {
-    const auto told = told_to_kiosk(message);
-    if (auto socket = socket_.lock(); socket && told) socket->send_text(protocol::to_text(*told));
+    const auto filtered = filtered_for_kiosk(message);
+    if (auto socket = socket_.lock(); socket && filtered)
+      socket->send_text(protocol::to_text(*filtered));
     return;
   }
   if (auto socket = socket_.lock()) socket->send_text(protocol::to_text(message));

@@ -34,29 +34,29 @@
 
 namespace strata::net {
 
-// The connection as a session sees it. Thread-safe; nothing blocks. What is sent too fast for the
-// other side closes it.
+// The connection as a session uses it. Thread-safe; nothing blocks. The connection is closed if
+// messages are sent faster than the client reads them.
 class LiveSocket {
  public:
   virtual ~LiveSocket() = default;
   virtual void send_text(std::string text) = 0;
   virtual void send_frame(stream::FrameBytes frame) = 0;
   virtual void close(int code, std::string reason) = 0;
-  // on the socket's strand
+  // runs on the socket's strand
   virtual void run_after(std::chrono::milliseconds delay, std::function<void()> work) = 0;
 };
 
 class LiveSockets;
 
-// 404 (`table`, `key`) for a record that the project has not. May block.
+// Returns 404 (`table`, `key`) if the project does not have the record. May block.
 using CheckRecord =
     std::function<Result<void>(ProjectId project_id, const app::RecordEditLocks::Record& record)>;
 
-// What all sessions share; outlives the rooms' callbacks by being shared.
+// Shared by all sessions. Callbacks of rooms keep it alive.
 struct LiveShared {
   std::shared_ptr<Metrics> metrics;
   std::shared_ptr<app::StrokeTracker> strokes;
-  std::shared_ptr<WorkerPool> queries;  // picks: they may be slow the first time
+  std::shared_ptr<WorkerPool> queries;  // for picks, which may be slow the first time
   std::shared_ptr<LiveSockets> sockets;
   std::shared_ptr<app::RecordEditLocks> editors;
   store::Store* store = nullptr;
@@ -65,18 +65,18 @@ struct LiveShared {
   LiveLimits limits;
 };
 
-// One person at one model: subprotocol strata.v1, see protocol/messages. `on_text` and `on_closed`
-// are called on the socket's strand; what the room tells arrives on the room's.
+// One user at one model: subprotocol strata.v1, see protocol/messages. Call `on_text` and
+// `on_closed` on the socket's strand; the room calls the Listener functions on its own.
 class LiveSession final : public room::Listener, public std::enable_shared_from_this<LiveSession> {
  public:
-  // `personal_view`: what they keep of how they show the layers (net/api/models/personal_view.h).
+  // `personal_view`: the user's stored layer settings (net/api/models/personal_view.h).
   LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
               std::string project_slug, Principal principal, room::Portrait portrait,
               std::optional<protocol::PersonalView> personal_view,
               std::weak_ptr<LiveSocket> socket);
   ~LiveSession() override;
 
-  // Work that is returned must run on a worker, and end, before the next message is given.
+  // Run the returned work on a worker, and finish it before passing the next message.
   using Work = std::function<void()>;
   Work on_text(const std::string& text);
   void on_binary();
@@ -85,7 +85,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   ProjectId project_id() const { return room_->model().project_id; }  // of the model; any thread
   const std::string& user() const { return principal_.user; }
   Role role() const { return principal_.role; }  // in that project
-  // What concerns the whole site or project; only who was welcomed hears it. Any thread.
+  // Sends a message about the site or project, once the session is welcomed. Any thread.
   void tell(const protocol::ServerMessage& message);
 
   // --- room::Listener
@@ -159,10 +159,10 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
 
   mutable std::mutex mutex_;
   std::shared_ptr<room::Participant> member_;
-  std::unordered_map<Uuid, bool> own_edits_;  // on their way; true: applied
+  std::unordered_map<Uuid, bool> own_edits_;  // not yet durable; true: applied
   bool presence_scheduled_ = false;
   std::optional<std::chrono::steady_clock::time_point> presence_sent_;
-  int people_told_ = 0;  // by that one
+  int people_sent_ = 0;  // number of people in the last presence message
   struct Pointer {
     Camera camera;
     glm::dvec2 pixel;

@@ -16,28 +16,28 @@ namespace strata::net {
 class LiveSession;
 class LiveSocket;
 
-// The open WebSockets: what concerns the site is told to all, a stopping server says goodbye to
-// all, and who signs out is gone everywhere. Thread-safe.
+// The open WebSockets. Sends messages to all or some of them, closes all when the server stops, and
+// closes those of a user who signs out. Thread-safe.
 class LiveSockets {
  public:
-  // `secret`: what the person showed to come in.
+  // `secret`: the credential with which the person connected.
   void add(std::weak_ptr<LiveSocket> socket, std::weak_ptr<LiveSession> session,
            std::string secret);
-  // Whichever model they look at.
+  // Sends to all sessions.
   void tell_all(const protocol::ServerMessage& message);
-  // Whoever looks at the model.
+  // Sends to the sessions of the model.
   void tell_model(ModelId model_id, const protocol::ServerMessage& message);
-  // Whoever of them sees what is seen so.
+  // Only to those who see content of this visibility.
   void tell_model(ModelId model_id, Visibility visibility, const protocol::ServerMessage& message);
-  // Those of them who see what is seen so, and nothing that fewer see.
+  // Only to those whose most restricted visible content has this visibility.
   void tell_sight(ModelId model_id, Visibility sight, const protocol::ServerMessage& message);
-  // Whoever looks at a model of the project.
+  // Sends to the sessions of the project's models.
   void tell_project(ProjectId project_id, const protocol::ServerMessage& message);
-  // The same, of those who see columns that are seen so and no others.
+  // The same, only to those whose most restricted visible columns have this visibility.
   void tell_project(ProjectId project_id, Visibility sight, const protocol::ServerMessage& message);
   void close_all(int code, const std::string& reason);
   void close_those_of(const std::string& secret, int code, const std::string& reason);
-  // Of a person; those that may stay come back by themselves, as who the person is now.
+  // Closes a user's sessions. Clients with access reconnect automatically, with the new role.
   void close_user(const std::string& user, int code, const std::string& reason);
 
  private:

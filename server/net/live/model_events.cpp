@@ -12,13 +12,13 @@
 namespace strata::net {
 namespace {
 
-// A transaction has the time at which it began, and is seen when it ends: one that took no longer
-// than this is told.
+// A transaction has the time of its begin but becomes visible at its end. Transactions up to this
+// length are reported.
 constexpr std::chrono::microseconds kMaxLength = std::chrono::seconds(30);
 constexpr std::chrono::seconds kCheckEvery{10};
-constexpr int kFirstPage = 20;  // mostly nothing is new
+constexpr int kFirstPage = 20;  // usually there are no new events
 constexpr int kPage = 200;
-constexpr int kMaxPages = 51;  // of what a reader missed who comes back
+constexpr int kMaxPages = 51;  // for the events that a reconnecting reader missed
 
 std::int64_t microseconds(const store::Activity& line) {
   return std::chrono::duration_cast<std::chrono::microseconds>(line.time.time_since_epoch())
@@ -35,7 +35,7 @@ ModelEvents::ModelEvents(const RouteContext& context, const Request& request, co
       project_(model.project_id),
       model_(model.id),
       last_(after) {
-  if (after) told_us_[after->id] = after->time_us;
+  if (after) sent_us_[after->id] = after->time_us;
 }
 
 bool ModelEvents::is_still_welcome() {
@@ -48,7 +48,7 @@ bool ModelEvents::is_still_welcome() {
          net::is_still_welcome(context_.auth, secret_, project_, role_);
 }
 
-// Newest first; nothing: the database is away.
+// Newest first; nothing: the database is unreachable.
 std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us) {
   store::ActivityQuery query;
   query.model = model_;
@@ -67,25 +67,25 @@ std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us)
   return lines;
 }
 
-// What was there before anybody listened is not told.
+// Earlier events are not sent.
 void ModelEvents::remember(const Lines& lines) {
   last_ = store::ActivityPlace{};
   if (!lines.empty()) last_ = {microseconds(lines.front()), lines.front().id};
-  for (const store::Activity& line : lines) told_us_[line.id] = microseconds(line);
+  for (const store::Activity& line : lines) sent_us_[line.id] = microseconds(line);
 }
 
 std::string ModelEvents::tell(const Lines& lines) {
   std::string text;
   for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
     const std::int64_t time = microseconds(*line);
-    if (const auto told = told_us_.find(line->id); told != told_us_.end() && told->second >= time)
+    if (const auto sent = sent_us_.find(line->id); sent != sent_us_.end() && sent->second >= time)
       continue;
-    told_us_[line->id] = time;
+    sent_us_[line->id] = time;
     if (time >= last_->time_us) last_ = store::ActivityPlace{time, line->id};
     text += "event: " + line->kind + "\nid: " + to_text(*last_) +
             "\ndata: " + to_json(*line).dump() + "\n\n";
   }
-  std::erase_if(told_us_, [&](const auto& entry) {
+  std::erase_if(sent_us_, [&](const auto& entry) {
     return entry.second + 2 * kMaxLength.count() < last_->time_us;
   });
   return text;
@@ -99,7 +99,7 @@ std::optional<std::string> ModelEvents::next() {
   if (!lines) return std::string();
   if (last_) return tell(*lines);
   remember(*lines);
-  // Who is cut off before anything happens comes back to here.
+  // The place from which a reader continues that is disconnected before the first event.
   last_->time_us = std::max<std::int64_t>(last_->time_us, now.count());
   return "id: " + to_text(*last_) + "\n\n";
 }

@@ -14,17 +14,17 @@
 
 namespace strata::net {
 
-// What happens to a model, for scripts: lines of the activity as they are made or go on, once they
-// are durable. Each has the place in time that a reader who comes back names (Last-Event-ID); what
-// was said near it may come twice.
+// The events of a model, for scripts: lines of the activity that are made or extended, once they
+// are durable. Each has a place in time, which a reconnecting reader names (Last-Event-ID); events
+// near that time may be sent twice.
 class ModelEvents {
  public:
-  // From `after` on, or from now.
+  // Begins after `after`, or now.
   ModelEvents(const RouteContext& context, const Request& request, const Model& model,
               const std::optional<store::ActivityPlace>& after);
 
-  // As `text/event-stream`, empty where nothing is new. Nothing: who listens may no longer. Asks
-  // the database: on a worker.
+  // Returns the new events as `text/event-stream`; may be empty. Nothing: the reader has lost
+  // access. Queries the database: call on a worker.
   std::optional<std::string> next();
 
  private:
@@ -39,10 +39,10 @@ class ModelEvents {
   const Role role_;
   const ProjectId project_;
   const ModelId model_;
-  // up to where is known; nothing: nobody has asked yet
+  // end of the known events; nothing: `next` was not called yet
   std::optional<store::ActivityPlace> last_;
-  std::map<std::int64_t, std::int64_t> told_us_;  // lines by id, as they were told: their time
-  // that they are welcome
+  std::map<std::int64_t, std::int64_t> sent_us_;  // sent lines by id, with their time
+  // time of the last check of access
   std::chrono::steady_clock::time_point checked_ = std::chrono::steady_clock::now();
 };
 

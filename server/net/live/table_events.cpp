@@ -5,7 +5,7 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMaxTold = 100;  // records; more are told as a change of the table
+constexpr std::size_t kMaxRecords = 100;  // more are sent as a change of the table
 constexpr Visibility kSights[] = {Visibility::everyone, Visibility::team, Visibility::curators};
 
 }  // namespace
@@ -27,7 +27,7 @@ void TableEvents::records_changed(const store::TableChange& change, const std::s
   if (change.sequence == 0) return;
   rooms_.admit_keys(change.table.id, change.created);
   rooms_.records_changed(change.table.id);
-  if (change.columns_changed || change.records.size() + change.deleted.size() > kMaxTold)
+  if (change.columns_changed || change.records.size() + change.deleted.size() > kMaxRecords)
     return tell_table(sockets_, protocol::TableEventEvent::changed, change.table, user);
   protocol::RecordEvent message;
   message.table = change.table.id.number();

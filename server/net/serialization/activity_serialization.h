@@ -11,7 +11,7 @@ namespace strata::net {
 
 nlohmann::json to_json(const store::Activity& line);
 
-// "1777896570120000-7": the page after it, or what came since.
+// "1777896570120000-7": where the next page or the next events begin.
 std::string to_text(const store::ActivityPlace& place);
 std::optional<store::ActivityPlace> place_of(std::string_view text);
 

@@ -28,17 +28,17 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
   if (!at) return std::nullopt;
   if (const auto* sequence = std::get_if<std::int64_t>(&*at)) {
     if (*sequence >= 0 && *sequence <= room.edits().sequence()) return *sequence;
-    return fail(ErrorCode::invalid, "Not yet there",
-                "`at` is a sequence from 0 to " + std::to_string(room.edits().sequence()) +
+    return fail(ErrorCode::invalid, "Sequence not reached",
+                "`at` must be a sequence from 0 to " + std::to_string(room.edits().sequence()) +
                     ", the newest of this model.",
                 "at");
   }
   const auto utc = utc_timestamp(std::get<std::string>(*at));
   if (!utc)
-    return fail(
-        ErrorCode::invalid, "Not a time",
-        "`at` is a sequence of the model or a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
-        "at");
+    return fail(ErrorCode::invalid, "Invalid time",
+                "`at` must be a sequence of the model or a time such as 2026-05-04T12:00:00Z. "
+                "Write the + of a time zone as %2B.",
+                "at");
   auto sequence = context.store.journal().sequence_at(room.model().id, *utc);
   if (!sequence) return tl::unexpected(sequence.error());
   return *sequence;

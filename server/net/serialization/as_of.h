@@ -8,21 +8,21 @@
 
 namespace strata::net {
 
-// What a question's `at` says: a sequence of the model, or a time, whose last edit counts.
+// Returns a request's `at`: a sequence of the model, or a time, which selects its last edit.
 std::optional<protocol::At> as_of(const Request& request);  // the query parameter
-// As a sequence; nothing: now. Refused (422, `at`): what is neither, and a sequence that is not
-// there yet.
+// Converts it to a sequence; nothing: now. Refuses (422, `at`) other text, and a sequence that does
+// not exist yet.
 Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
                                                   const room::Room& room,
                                                   const std::optional<protocol::At>& at);
 
-// What a question about one layer names: the model and the layer of the path, as the role of the
-// request sees them, and the query's `at`.
+// The parts of a question about one layer: the model and the layer of the path, as visible to the
+// role of the request, and the query's `at`.
 struct LayerQuery {
   std::shared_ptr<room::Room> room;
   Layer layer;
   std::optional<std::int64_t> at;  // a sequence of the model; nothing: now
-  std::int64_t sequence = 0;       // that the answer gives
+  std::int64_t sequence = 0;       // of the state that the answer shows
 
   static Result<LayerQuery> from(const RouteContext& context, const Request& request);
 };

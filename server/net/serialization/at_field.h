@@ -7,7 +7,7 @@
 
 namespace strata::net {
 
-// What a body names and is not there is a fault of the body.
+// An entity that the request body names but that does not exist is a 422 on that field.
 inline tl::unexpected<Error> at_field(Error problem, std::string field) {
   if (problem.code == ErrorCode::not_found) problem.code = ErrorCode::invalid;
   problem.field = std::move(field);

@@ -19,10 +19,10 @@ Result<std::uint32_t> value_bits(const Layer& layer, double value, bool erase) {
     problem.field = "value";
     if (layer.kind == LayerKind::database && value > highest_value(layer.type))
       problem = {ErrorCode::invalid, "Key too large",
-                 layer.name + " holds keys up to " +
+                 layer.name + " can store keys up to " +
                      std::to_string(static_cast<std::int64_t>(highest_value(layer.type))) + " (" +
                      std::string(name(layer.type)) +
-                     "). Records beyond that are painted on a layer of a wider type, u32 at most.",
+                     "). For larger keys, use a layer of a wider type, up to u32.",
                  "value"};
     return tl::unexpected(std::move(problem));
   }
@@ -34,7 +34,7 @@ bool is_tool(const protocol::ToolShape& shape) {
   return !word || (*word != "disc" && *word != "square");
 }
 
-// Nothing for discs and squares.
+// Returns nothing for discs and squares.
 Result<app::FoundTool> tool_of(const protocol::ToolShape& shape, const app::FindTool& find_tool) {
   if (!is_tool(shape)) return app::FoundTool{};
   const std::string ref = protocol::to_ref(shape);
@@ -42,11 +42,11 @@ Result<app::FoundTool> tool_of(const protocol::ToolShape& shape, const app::Find
   if (found || found.error().code != ErrorCode::not_found) return found;
   return fail(ErrorCode::invalid, "Unknown tool",
               "There is no tool `" + ref.substr(0, 100) +
-                  "`. `shape` is disc, square, or a tool listed at /api/v1/tools.",
+                  "`. `shape` must be disc, square, or a tool from /api/v1/tools.",
               "shape");
 }
 
-// The brush members that EditStroke and StrokeBegin share.
+// Reads the brush members that EditStroke and StrokeBegin share.
 template <class Stroke>
 Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model,
                              const app::FoundTool& tool) {
@@ -78,15 +78,15 @@ Result<room::FillEdit> fill_of(const protocol::EditFill& body, const Layer& laye
   if (body.mode == Mode::where) {
     if (!body.where)
       return fail(ErrorCode::invalid, "Member missing",
-                  "Mode `where` needs a condition, not a place.", "where");
+                  "The mode `where` needs a condition, not a position.", "where");
     auto condition = STRATA_TRY(query::parse_condition(*body.where, "where"));
     if (condition.op != Expression::Op::truth || condition.number == 0)
       fill.region = room::FillEdit::Where{std::move(condition)};
     return fill;
   }
   if (!body.at)
-    return fail(ErrorCode::invalid, "Member missing", "This mode needs a place where it begins.",
-                "at");
+    return fail(ErrorCode::invalid, "Member missing",
+                "This mode needs the position where it begins.", "at");
   room::Place place = place_of(*body.at);
   if (body.mode == Mode::island)
     fill.region = room::FillEdit::Island{std::move(place)};

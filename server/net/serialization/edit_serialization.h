@@ -16,16 +16,16 @@ struct Layer;
 struct Model;
 }  // namespace strata
 
-// Edits between the protocol's values and the domain's. Values outside a layer's type are refused,
+// Converts edits between the protocol and the domain. Values outside a layer's type are refused,
 // not clamped.
 namespace strata::net {
 
-// Whether the brush is a tool of the site, so that `find_tool` will be called.
+// Whether the brush is a tool of the site, so that the conversion calls `find_tool`.
 bool names_tool(const protocol::Edit& edit);
 bool names_tool(const protocol::StrokeBegin& begin);
 
-// `edit` for the layer; its `record` is the edit as asked, with a tool's id in place of its slug. A
-// tool that is not there is refused (invalid, `shape`); without `find_tool`, any.
+// Converts `edit` for the layer; its `record` is the request with a tool's id instead of its slug.
+// Refuses a missing tool (invalid, `shape`); without `find_tool`, every tool.
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer,
                                        const Model& model, const Uuid& id, Author author,
                                        const app::FindTool& find_tool = {});
@@ -34,8 +34,8 @@ Result<app::StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const La
 room::EditRequest batch_request(app::StrokeTracker::Batch batch, const Uuid& stroke, const Uuid& id,
                                 int n, Author author);
 
-// Where the path of a stroke's batch ended, from its journal record; nothing when the record is of
-// another kind.
+// Returns the end of the path of a stroke's batch, from its journal record; nothing if the record
+// is of another kind.
 std::optional<app::StrokeTracker::End> end_of_path(const nlohmann::json& record);
 
 room::Place place_of(const protocol::SurfacePlace& place);

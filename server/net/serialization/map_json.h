@@ -6,7 +6,7 @@
 
 namespace strata::net {
 
-// As the contract's MapContents.
+// Converts to the contract's MapContents.
 nlohmann::json to_json(const app::MapContents& contents);
 
 }  // namespace strata::net

@@ -8,8 +8,8 @@ namespace strata::net {
 namespace {
 
 constexpr const char* kMapUpload =
-    "Send the map as the body (GeoJSON, TIFF, PNG, JPEG, or a zip), or its files together (such as .shp, .dbf and .prj) in "
-    "a multipart/form-data form.";
+    "Send the map as the body (GeoJSON, TIFF, PNG, JPEG, or a zip), or send its files together "
+    "(such as .shp, .dbf and .prj) in a multipart/form-data form.";
 constexpr double kMaxFloat = 3.4028234663852886e38;
 constexpr int kMaxBands = 65535;  // of a TIFF
 
@@ -33,7 +33,7 @@ Result<double> number_of(const Request& request, const std::string& name, double
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
     return fail(ErrorCode::invalid, "Parameter out of range",
-                "`" + name + "` is a number in its range.", name);
+                "`" + name + "` must be a number in the allowed range.", name);
   return value;
 }
 

@@ -10,7 +10,7 @@
 namespace strata::net {
 namespace {
 
-// Every object in `json` that says who somebody is.
+// Visits every object in `json` that names a person.
 void each_with_user(nlohmann::json& json,
                     const std::function<void(nlohmann::json&, const std::string&)>& found) {
   if (json.is_array() || json.is_object())

@@ -12,19 +12,19 @@
 
 namespace strata::net {
 
-// How somebody is shown: what they are called, and the colour of their account.
+// Returns a person's display name and color.
 room::Portrait portrait_of(const store::Person& person);
 
-// Puts `color` beside what names this person.
+// Adds `color` to the object that names this person.
 void add_color(nlohmann::json& json, const store::Person& person);
 
-// Who names in an answer are of. Whoever has no account any more, or never had one here, is called
-// by the name alone.
+// The accounts of the people that an answer names. A person without an account is shown by the name
+// only.
 class People {
  public:
   static Result<People> load(store::Store& store, const std::vector<std::string>& names);
-  // Those that `answer` names anywhere as `user`, and puts `full_name` (where there is one) and
-  // `color` beside them.
+  // Loads the people that `answer` names as `user` anywhere, and adds `full_name` (if set) and
+  // `color` next to each.
   static Result<void> add_to(store::Store& store, nlohmann::json& answer);
 
   void add(nlohmann::json& answer) const;

@@ -22,14 +22,14 @@ protocol::SurfacePoint to_protocol(const query::SurfacePoint& point) {
   out.position = point.position;
   out.normal = glm::dvec3(point.normal);
   out.uv = glm::dvec2(point.uv);
-  // as far as the contract goes: a camera may be farther away
+  // The contract's limit; a camera may be farther from the surface.
   out.distance = std::clamp(point.distance, 0.0, 1e15);
   out.values.emplace();
   for (const auto& value : point.values) {
     protocol::SurfaceValue& entry = (*out.values)[value.layer];
     entry.valid = value.valid;
-    // A float layer may hold what JSON cannot carry only if a raster brought it in; such a texel
-    // reads as valid, unnamed.
+    // Only a raster can bring a value that JSON cannot represent into a float layer; such a texel
+    // is valid in the answer, without a value.
     if (value.valid && std::isfinite(value.value)) entry.value = value.value;
   }
   return out;
@@ -57,17 +57,17 @@ std::string point_header(const std::vector<std::string>& layers) {
   return csv_line(cells, ',');
 }
 
-// A row is written beside the text and then put there: hundreds of thousands of rows have ten
-// numbers each.
+// Writes each row into a buffer and then appends it: the text has hundreds of thousands of rows
+// with ten numbers each.
 class RowWriter {
  public:
-  // Of a float no more digits than it has.
+  // Writes a float with the digits of a float only.
   template <class Number>
   void number(Number value) {
     end_ = std::to_chars(end_, digits_.data() + digits_.size(), value).ptr;
   }
   void comma() { *end_++ = ','; }
-  // Before more than a number and a comma are written again.
+  // Call before the buffer may be full.
   void move_to(std::string& text) {
     text.append(digits_.data(), end_);
     end_ = digits_.data();

@@ -23,10 +23,10 @@ bool take(std::string_view& text, std::string_view word) {
 
 Result<glm::dvec3> parse_point(std::string_view text) {
   auto wrong = [] {
-    return fail(
-        ErrorCode::invalid, "Not a point",
-        "Coordinates are written `POINT Z(x y z)`: three numbers with spaces between, in the model's unit.",
-        "coords");
+    return fail(ErrorCode::invalid, "Invalid point",
+                "Write coordinates as `POINT Z(x y z)`: three numbers, separated by spaces, in "
+                "the unit of the model.",
+                "coords");
   };
   skip_spaces(text);
   if (!take(text, "point")) return wrong();
@@ -42,7 +42,7 @@ Result<glm::dvec3> parse_point(std::string_view text) {
     if (error != std::errc() || !std::isfinite(point[i])) return wrong();
     const auto used = static_cast<std::size_t>(end - text.data());
     text.remove_prefix(used);
-    // "1 2.3.4" must not read as three numbers.
+    // Refuses "1 2.3.4", which would parse as three numbers.
     if (i < 2 && (text.empty() || (text.front() != ' ' && text.front() != '\t'))) return wrong();
   }
   skip_spaces(text);
@@ -60,11 +60,11 @@ Result<double> parse_length(std::string_view text, const std::string& field) {
   const auto known = parse_unit(unit);
   if (error == std::errc() && known) length *= metres_per(*known);
   if (error != std::errc() || !known || !(length >= 1e-6 && length <= 1e6))
-    return fail(
-        ErrorCode::invalid, "Not a length",
-        "`" + field +
-            "` is a length on the object with its unit, such as 5mm, 2.5cm or 1m, of 0.001 mm at least.",
-        field);
+    return fail(ErrorCode::invalid, "Invalid length",
+                "`" + field +
+                    "` must be a length on the object with its unit, such as 5mm, 2.5cm or 1m, and "
+                    "at least 0.001 mm.",
+                field);
   return length;
 }
 

@@ -21,7 +21,7 @@ Result<app::RecordPlace> record_place(const RouteContext& context, const Request
       STRATA_TRY(context.store.layers().find(model.id, request.param("layer"), request.role()));
   if (!layer.table)
     return fail(ErrorCode::invalid, "Numeric layer",
-                layer.name + " holds numbers; only database layers have records.", "layer");
+                layer.name + " stores numbers, so it has no records.", "layer");
   auto table = context.store.tables().find(to_string(*layer.table), request.role());
   if (!table) return tl::unexpected(table.error());
   return app::RecordPlace{std::move(*table), std::move(model), std::move(layer)};
@@ -44,9 +44,9 @@ Result<Record> stored_record(const RouteContext& context, const Table& table, Ro
   return page.records.front();
 }
 
-Result<std::optional<std::int64_t>> wished_record_version(const RouteContext& context,
-                                                          const Request& request,
-                                                          const Table& table, std::int64_t key) {
+Result<std::optional<std::int64_t>> expected_record_version(const RouteContext& context,
+                                                            const Request& request,
+                                                            const Table& table, std::int64_t key) {
   if (request.header("if-match").empty()) return std::optional<std::int64_t>();
   auto record = STRATA_TRY(stored_record(context, table, request.role(), key, {}));
   STRATA_TRY(check_if_match(request, record.version));

@@ -6,24 +6,24 @@
 #include "app/records/record_place.h"
 #include "net/api/route_help.h"
 
-// What the addresses of records have in common.
+// Parts that the routes of records share.
 namespace strata::net {
 
-// The table of the address: its own, or that of a layer.
+// Returns the table in the address, or the table of the layer in the address.
 Result<app::RecordPlace> record_place(const RouteContext& context, const Request& request);
 
-// Of the address; 404 for what is none.
+// Returns the key in the address; 404 if it is not a key.
 Result<std::int64_t> record_key(const Request& request);
 
-// With what the role sees of it; 404 where it is not there. `then` gets the table with the columns
-// of `at`.
+// Returns the record with the columns that the role sees; 404 if it does not exist. `then` receives
+// the table with the columns of `at`.
 Result<Record> stored_record(const RouteContext& context, const Table& table, Role seen_by,
                              std::int64_t key, std::optional<std::int64_t> at,
                              Table* then = nullptr);
 
-// By If-Match (412 where it is stale); nothing: any will do.
-Result<std::optional<std::int64_t>> wished_record_version(const RouteContext& context,
-                                                          const Request& request,
-                                                          const Table& table, std::int64_t key);
+// Returns the version in If-Match (412: stale); nothing: any version.
+Result<std::optional<std::int64_t>> expected_record_version(const RouteContext& context,
+                                                            const Request& request,
+                                                            const Table& table, std::int64_t key);
 
 }  // namespace strata::net

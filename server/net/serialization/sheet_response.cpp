@@ -5,17 +5,17 @@
 namespace strata::net {
 
 Result<SheetFormat> sheet_format(const Request& request) {
-  const auto asked = request.query.find("f");
-  if (asked == request.query.end()) {
+  const auto format = request.query.find("f");
+  if (format == request.query.end()) {
     const std::string_view accepted = request.header("accept");
     if (accepted.find("text/csv") != std::string_view::npos) return SheetFormat::csv;
     return accepted.find(app::kXlsxType) != std::string_view::npos ? SheetFormat::xlsx
                                                                    : SheetFormat::json;
   }
-  if (asked->second == "json") return SheetFormat::json;
-  if (asked->second == "csv") return SheetFormat::csv;
-  if (asked->second == "xlsx") return SheetFormat::xlsx;
-  return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, csv or xlsx.", "f");
+  if (format->second == "json") return SheetFormat::json;
+  if (format->second == "csv") return SheetFormat::csv;
+  if (format->second == "xlsx") return SheetFormat::xlsx;
+  return fail(ErrorCode::not_acceptable, "Unknown format", "`f` must be json, csv or xlsx.", "f");
 }
 
 Result<char> csv_separator(const Request& request) {
@@ -23,8 +23,8 @@ Result<char> csv_separator(const Request& request) {
   if (text == "comma") return ',';
   if (text == "semicolon") return ';';
   if (text == "tab") return '\t';
-  return fail(ErrorCode::invalid, "Unknown separator", "`separator` is comma, semicolon or tab.",
-              "separator");
+  return fail(ErrorCode::invalid, "Unknown separator",
+              "`separator` must be comma, semicolon or tab.", "separator");
 }
 
 Result<Response> sheet_response(const app::Sheet& sheet, SheetFormat format, char separator,

@@ -5,19 +5,19 @@
 #include "app/records/sheet.h"
 #include "net/http/http_types.h"
 
-// Tables that people take into a spreadsheet, as answers.
+// Answers with tables for spreadsheets.
 namespace strata::net {
 
 inline constexpr const char* kCsvType = "text/csv; charset=utf-8";
 
 enum class SheetFormat { json, csv, xlsx };
-// `f`, or where that is absent what Accept names; JSON where neither says anything. 406 for what is
-// none of them.
+// Returns the format in `f`, otherwise the one that `Accept` names, otherwise JSON. 406 for other
+// formats.
 Result<SheetFormat> sheet_format(const Request& request);
-// Of CSV: `separator`; 422 for what is none.
+// Returns the `separator` of CSV; 422 for a character that cannot be one.
 Result<char> csv_separator(const Request& request);
 
-// CSV or XLSX, for a download; XLSX is written in `folder`.
+// Returns CSV or XLSX as a download; writes the XLSX in `folder`.
 Result<Response> sheet_response(const app::Sheet& sheet, SheetFormat format, char separator,
                                 const std::filesystem::path& folder);
 

@@ -13,7 +13,7 @@ Result<Table> table_of_project(store::Store& store, ProjectId project_id,
   auto table = store.tables().find(name, Role::curator);
   if (!table && table.error().code != ErrorCode::not_found) return table;
   if (!table || table->project_id != project_id)
-    return fail(ErrorCode::invalid, "No such table", "The project has no table `" + name + "`.",
+    return fail(ErrorCode::invalid, "Table not found", "The project has no table `" + name + "`.",
                 field);
   return table;
 }
@@ -42,11 +42,11 @@ Result<Column> new_column(store::Store& store, ProjectId project_id,
 }
 
 Result<std::vector<Column>> new_columns(store::Store& store, ProjectId project_id,
-                                        const std::vector<protocol::ColumnCreate>& asked) {
+                                        const std::vector<protocol::ColumnCreate>& requested) {
   std::vector<Column> columns;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
+  for (std::size_t i = 0; i < requested.size(); ++i) {
     auto column =
-        new_column(store, project_id, asked[i], "columns[" + std::to_string(i) + "].target");
+        new_column(store, project_id, requested[i], "columns[" + std::to_string(i) + "].target");
     if (!column) return tl::unexpected(column.error());
     columns.push_back(std::move(*column));
   }
@@ -61,11 +61,11 @@ Result<std::map<ColumnId, nlohmann::json>> values_by_column(const Table& table,
     const Column* column = find_column(table.columns, ref);
     const std::string shown = mended_utf8(ref.substr(0, 100));
     if (!column)
-      return fail(ErrorCode::invalid, "No such column",
+      return fail(ErrorCode::invalid, "Column not found",
                   table.name + " has no column `" + shown + "`.", field + "." + shown);
     if (!by_column.emplace(column->id, value).second)
-      return fail(ErrorCode::invalid, "Column named twice",
-                  "`" + column->slug + "` stands here by its slug and by its id.",
+      return fail(ErrorCode::invalid, "Duplicate column",
+                  "`" + column->slug + "` appears twice, by its slug and by its id. Send it once.",
                   field + "." + ref);
   }
   return by_column;
@@ -100,14 +100,15 @@ nlohmann::json to_json(const Attachment& attachment) {
 
 Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text) {
   if (is_all_digits(text)) return parse_integer(text, 0, table.sequence, "at");
-  // A plus sign in a query is a space.
+  // A plus in a query is a space.
   std::string plain = text;
   if (const auto blank = plain.rfind(' '); blank != std::string::npos && blank > 11)
     plain[blank] = '+';
   const auto utc = utc_timestamp(plain);
   if (!utc)
-    return fail(ErrorCode::invalid, "Not a moment",
-                "`at` is a sequence of the table, or a time such as 2024-02-29T12:00:00Z.", "at");
+    return fail(ErrorCode::invalid, "Invalid time",
+                "`at` must be a sequence of the table, or a time such as 2024-02-29T12:00:00Z.",
+                "at");
   return store.tables().sequence_at(table.id, *utc);
 }
 

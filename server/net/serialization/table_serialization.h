@@ -9,10 +9,10 @@
 #include "store/store.h"
 #include "store/tables/table_changes.h"
 
-// Between the protocol's tables and the domain's.
+// Converts tables between the protocol and the domain.
 namespace strata::net {
 
-// The project's table that `ref` names, as curators see it; 422 with `field` where it has none.
+// Returns the project's table `ref`, as curators see it; 422 with `field` if it does not exist.
 Result<Table> table_of_project(store::Store& store, ProjectId project_id,
                                const protocol::TableRef& ref, const std::string& field);
 
@@ -20,9 +20,9 @@ Result<Column> new_column(store::Store& store, ProjectId project_id,
                           const protocol::ColumnCreate& body,
                           const std::string& target_field = "target");
 Result<std::vector<Column>> new_columns(store::Store& store, ProjectId project_id,
-                                        const std::vector<protocol::ColumnCreate>& asked);
+                                        const std::vector<protocol::ColumnCreate>& requested);
 
-// Values by slug or id of a column, as a body has them; 422 where the table has no such column.
+// Reads a body's values by slug or id of a column; 422 if the table has no such column.
 Result<std::map<ColumnId, nlohmann::json>> values_by_column(const Table& table,
                                                             const nlohmann::json& values,
                                                             const std::string& field);
@@ -30,7 +30,7 @@ Result<std::map<ColumnId, nlohmann::json>> values_by_column(const Table& table,
 nlohmann::json to_json(const store::TableEditRow& row);
 nlohmann::json to_json(const Attachment& attachment);
 
-// A sequence of the table, or the one that was there at a time (RFC 3339).
+// Returns a sequence of the table, or its sequence at a time (RFC 3339).
 Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text);
 
 }  // namespace strata::net

@@ -23,76 +23,78 @@ std::string at(const std::string& list, std::size_t place) {
 template <class Id>
 Result<void> once(std::set<Id>& known, Id id, const char* what, const std::string& field) {
   if (known.insert(id).second) return {};
-  return fail(ErrorCode::invalid, "Named twice",
-              "This " + std::string(what) + " is named before already.", field);
+  return fail(ErrorCode::invalid, "Duplicate name",
+              "This " + std::string(what) + " appears twice. Send it once.", field);
 }
 
-Result<nlohmann::json> kept_columns(const Table& table,
-                                    const std::vector<protocol::TourColumn>& columns,
-                                    const std::string& field) {
-  nlohmann::json kept = nlohmann::json::array();
+Result<nlohmann::json> stored_columns(const Table& table,
+                                      const std::vector<protocol::TourColumn>& columns,
+                                      const std::string& field) {
+  nlohmann::json stored = nlohmann::json::array();
   std::set<ColumnId> known;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string here = at(field, i) + ".column";
     const Column* column = find_column(table.columns, columns[i].column);
     if (!column)
-      return fail(ErrorCode::invalid, "No such column",
+      return fail(ErrorCode::invalid, "Column not found",
                   table.name + " has no column `" + columns[i].column + "`.", here);
     STRATA_TRY(once(known, column->id, "column", here));
-    kept.push_back({{"column", column->id}});
-    if (columns[i].labels) kept.back()["labels"] = *columns[i].labels;
+    stored.push_back({{"column", column->id}});
+    if (columns[i].labels) stored.back()["labels"] = *columns[i].labels;
   }
-  return kept;
+  return stored;
 }
 
-Result<nlohmann::json> kept_records(const RouteContext& context, const Model& model, Role role,
-                                    const std::vector<protocol::TourRecords>& all,
-                                    const std::string& field) {
-  nlohmann::json kept = nlohmann::json::array();
+Result<nlohmann::json> stored_records(const RouteContext& context, const Model& model, Role role,
+                                      const std::vector<protocol::TourRecords>& all,
+                                      const std::string& field) {
+  nlohmann::json stored = nlohmann::json::array();
   std::set<TableId> known;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const protocol::TourRecords& asked = all[i];
+    const protocol::TourRecords& requested = all[i];
     const std::string here = at(field, i);
-    auto table = context.store.tables().find(asked.table, role);
+    auto table = context.store.tables().find(requested.table, role);
     if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
     if (!table || table->project_id != model.project_id)
-      return fail(ErrorCode::invalid, "No such table",
-                  "The model's project has no table `" + asked.table + "`.", here + ".table");
+      return fail(ErrorCode::invalid, "Table not found",
+                  "The model's project has no table `" + requested.table + "`.", here + ".table");
     STRATA_TRY(once(known, table->id, "table", here + ".table"));
-    const auto missing = context.store.records().missing(table->id, asked.keys);
+    const auto missing = context.store.records().missing(table->id, requested.keys);
     if (!missing) return tl::unexpected(missing.error());
-    for (std::size_t k = 0; k < asked.keys.size(); ++k)
-      if (std::ranges::find(*missing, asked.keys[k]) != missing->end())
-        return fail(ErrorCode::invalid, "No such record",
-                    table->name + " has no record " + std::to_string(asked.keys[k]) + ".",
+    for (std::size_t k = 0; k < requested.keys.size(); ++k)
+      if (std::ranges::find(*missing, requested.keys[k]) != missing->end())
+        return fail(ErrorCode::invalid, "Record not found",
+                    table->name + " has no record " + std::to_string(requested.keys[k]) + ".",
                     at(here + ".keys", k));
-    auto columns = STRATA_TRY(kept_columns(*table, asked.columns, here + ".columns"));
-    kept.push_back({{"table", table->id}, {"keys", asked.keys}, {"columns", std::move(columns)}});
+    auto columns = STRATA_TRY(stored_columns(*table, requested.columns, here + ".columns"));
+    stored.push_back(
+        {{"table", table->id}, {"keys", requested.keys}, {"columns", std::move(columns)}});
   }
-  return kept;
+  return stored;
 }
 
-Result<nlohmann::json> kept_layers(const RouteContext& context, const Model& model, Role role,
-                                   const std::vector<std::string>& refs, const std::string& field) {
-  nlohmann::json kept = nlohmann::json::array();
+Result<nlohmann::json> stored_layers(const RouteContext& context, const Model& model, Role role,
+                                     const std::vector<std::string>& refs,
+                                     const std::string& field) {
+  nlohmann::json stored = nlohmann::json::array();
   std::set<LayerId> known;
   for (std::size_t i = 0; i < refs.size(); ++i) {
     const auto layer = context.store.layers().find(model.id, refs[i], role);
     if (!layer) return at_field(layer.error(), at(field, i));
     STRATA_TRY(once(known, layer->id, "layer", at(field, i)));
-    kept.push_back(layer->id);
+    stored.push_back(layer->id);
   }
-  return kept;
+  return stored;
 }
 
-// That `words` (by language) are in languages of the tour.
+// Checks that `words` (by language) use only languages of the tour.
 Result<void> check_words(const nlohmann::json& words, const nlohmann::json& languages,
                          const std::string& field) {
   for (const auto& [language, text] : words.items())
     if (std::ranges::find(languages, nlohmann::json(language)) == languages.end())
-      return fail(ErrorCode::invalid, "Not a language of the tour",
+      return fail(ErrorCode::invalid, "Language not in tour",
                   "The tour has no `" + language +
-                      "` among its languages: add it there, or leave these words out.",
+                      "` in its languages. Add the language to the tour, or leave these texts out.",
                   field + "." + language);
   return {};
 }
@@ -101,8 +103,8 @@ Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& langua
                         const std::string& field) {
   const auto first = languages.front().get<std::string>();
   if (!stop.at("title").contains(first))
-    return fail(ErrorCode::invalid, "No title",
-                "Each stop has a title in the tour's first language, `" + first + "`.",
+    return fail(ErrorCode::invalid, "Title missing",
+                "Each stop needs a title in the first language of the tour, `" + first + "`.",
                 field + ".title");
   for (const char* member : {"title", "text"})
     STRATA_TRY(check_words(stop.at(member), languages, field + "." + member));
@@ -117,7 +119,7 @@ Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& langua
   return {};
 }
 
-// Reads what tours name, each thing once.
+// Reads the entities that tours name, each of them once.
 class Seen {
  public:
   static Result<Seen> of(const RouteContext& context, ModelId model_id, Role role) {
@@ -129,41 +131,41 @@ class Seen {
     return seen;
   }
 
-  Result<nlohmann::json> stop(const nlohmann::json& kept) {
-    nlohmann::json told = kept;
-    told["layers"] = nlohmann::json::array();
-    told["records"] = nlohmann::json::array();
-    if (const auto view = views_.find(kept.at("view").get<NamedPartId>()); view != views_.end())
-      told["view"] = view->second;
+  Result<nlohmann::json> stop(const nlohmann::json& stored) {
+    nlohmann::json shown = stored;
+    shown["layers"] = nlohmann::json::array();
+    shown["records"] = nlohmann::json::array();
+    if (const auto view = views_.find(stored.at("view").get<NamedPartId>()); view != views_.end())
+      shown["view"] = view->second;
     else
-      told.erase("view");
-    for (const nlohmann::json& id : kept.at("layers"))
+      shown.erase("view");
+    for (const nlohmann::json& id : stored.at("layers"))
       if (const auto layer = layers_.find(id.get<LayerId>()); layer != layers_.end())
-        told["layers"].push_back(layer->second);
-    for (const nlohmann::json& each : kept.at("records")) {
+        shown["layers"].push_back(layer->second);
+    for (const nlohmann::json& each : stored.at("records")) {
       auto table = STRATA_TRY(find_table(each.at("table").get<TableId>()));
-      if (table) told["records"].push_back(records(each, *table));
+      if (table) shown["records"].push_back(records(each, *table));
     }
-    return told;
+    return shown;
   }
 
  private:
   Seen(const RouteContext& context, Role role) : context_(&context), role_(role) {}
 
-  static nlohmann::json records(const nlohmann::json& kept, const Table& table) {
-    nlohmann::json told{
-        {"table", table.slug}, {"keys", kept.at("keys")}, {"columns", nlohmann::json::array()}};
-    for (const nlohmann::json& each : kept.at("columns")) {
+  static nlohmann::json records(const nlohmann::json& stored, const Table& table) {
+    nlohmann::json shown{
+        {"table", table.slug}, {"keys", stored.at("keys")}, {"columns", nlohmann::json::array()}};
+    for (const nlohmann::json& each : stored.at("columns")) {
       const auto id = each.at("column").get<ColumnId>();
       const auto column = std::ranges::find(table.columns, id, &Column::id);
       if (column == table.columns.end()) continue;
-      told["columns"].push_back(each);
-      told["columns"].back()["column"] = column->slug;
+      shown["columns"].push_back(each);
+      shown["columns"].back()["column"] = column->slug;
     }
-    return told;
+    return shown;
   }
 
-  // Nothing: it is gone.
+  // Nothing: it was deleted.
   Result<std::optional<Table>> find_table(TableId id) {
     const auto known = tables_.find(id);
     if (known != tables_.end()) return known->second;
@@ -175,23 +177,23 @@ class Seen {
   const RouteContext* context_;
   Role role_;
   std::map<NamedPartId, std::string> views_;  // slugs, by id
-  std::map<LayerId, std::string> layers_;     // the same
+  std::map<LayerId, std::string> layers_;     // likewise
   std::map<TableId, std::optional<Table>> tables_;
 };
 
 }  // namespace
 
-Result<nlohmann::json> kept_stops(const RouteContext& context, const Model& model, Role role,
-                                  const std::vector<protocol::TourStopCreate>& stops) {
+Result<nlohmann::json> stored_stops(const RouteContext& context, const Model& model, Role role,
+                                    const std::vector<protocol::TourStopCreate>& stops) {
   nlohmann::json all = nlohmann::json::array();
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const protocol::TourStopCreate& stop = stops[i];
     const std::string here = at("stops", i);
     const auto view = context.store.views().find(model.id, stop.view);
     if (!view) return at_field(view.error(), here + ".view");
-    auto layers = STRATA_TRY(kept_layers(
+    auto layers = STRATA_TRY(stored_layers(
         context, model, role, stop.layers.value_or(std::vector<std::string>{}), here + ".layers"));
-    auto records = STRATA_TRY(kept_records(
+    auto records = STRATA_TRY(stored_records(
         context, model, role, stop.records.value_or(std::vector<protocol::TourRecords>{}),
         here + ".records"));
     all.push_back(
@@ -212,16 +214,16 @@ Result<void> check_languages(const nlohmann::json& content, bool stops_are_new) 
   for (std::size_t i = 0; i < languages.size(); ++i)
     if (std::find(languages.begin(), languages.begin() + static_cast<std::ptrdiff_t>(i),
                   languages[i]) != languages.begin() + static_cast<std::ptrdiff_t>(i))
-      return fail(ErrorCode::invalid, "Named twice", "This language is named before already.",
-                  at("languages", i));
+      return fail(ErrorCode::invalid, "Duplicate name",
+                  "This language appears twice. Send it once.", at("languages", i));
   const nlohmann::json& stops = content.at("stops");
   for (std::size_t i = 0; i < stops.size(); ++i)
     if (auto good = check_stop(stops[i], languages, at("stops", i)); !good) {
       if (stops_are_new) return good;
-      return fail(
-          ErrorCode::invalid, "Stops in other languages",
-          "Stop " + std::to_string(i + 1) + " does not fit these languages: " + good.error().detail,
-          "languages");
+      return fail(ErrorCode::invalid, "Stops in other languages",
+                  "Stop " + std::to_string(i + 1) +
+                      " does not match these languages: " + good.error().detail,
+                  "languages");
     }
   return {};
 }
@@ -245,8 +247,8 @@ Result<nlohmann::json> to_json(const RouteContext& context, const store::NamedPa
   json.erase("stop_count");
   json["idle_s"] = tour.content.at("idle_s");
   json["stops"] = nlohmann::json::array();
-  for (const nlohmann::json& kept : tour.content.at("stops")) {
-    auto stop = STRATA_TRY(seen.stop(kept));
+  for (const nlohmann::json& stored : tour.content.at("stops")) {
+    auto stop = STRATA_TRY(seen.stop(stored));
     json["stops"].push_back(std::move(stop));
   }
   return json;

@@ -8,19 +8,18 @@
 
 namespace strata::net {
 
-// What is kept of a tour, beside its name: languages, the time until it plays by itself, and stops,
-// whose views, layers, tables and columns are named by id, since slugs change and things go.
+// The stored content of a tour: languages, the time until it plays by itself, and
+// stops, which name views, layers, tables and columns by id, since slugs change.
 
-// The stops as they are kept. 422 at the member that names what is not there for the role, or in
-// the project, or twice.
-Result<nlohmann::json> kept_stops(const RouteContext& context, const Model& model, Role role,
-                                  const std::vector<protocol::TourStopCreate>& stops);
-// 422: a language is named twice, a stop has no title in the first one, or words in another than
-// these. Where only the languages are new, they are what is wrong.
+// Returns the stored form of the stops. 422 at the member that names an entity twice, or one that
+// is missing in the project or invisible to the role.
+Result<nlohmann::json> stored_stops(const RouteContext& context, const Model& model, Role role,
+                                    const std::vector<protocol::TourStopCreate>& stops);
+// 422: a language occurs twice, a stop has no title in the first language, or it has texts in other
+// languages. If only the languages are new, the error names them.
 Result<void> check_languages(const nlohmann::json& content, bool stops_are_new);
 
-// As the protocol's Tour has it: of what it names, what is there for the role. `user` is told as
-// given.
+// Returns the protocol's Tour with the named entities that the role can see. `user` is copied.
 Result<nlohmann::json> to_json(const RouteContext& context, const store::NamedPart& tour, Role role,
                                const std::string& user);
 nlohmann::json tour_entry(const store::NamedPart& tour, const std::string& user);

@@ -16,7 +16,7 @@
 namespace strata::net {
 namespace {
 
-// Takes out what names columns that are not there for the role.
+// Removes names of columns that do not exist for the role.
 void leave_out_columns(store::Store& store, Role role, TableId table_id, nlohmann::json& shown) {
   if (const auto palette = shown.find("palette");
       palette != shown.end() && palette->contains("column")) {
@@ -26,16 +26,16 @@ void leave_out_columns(store::Store& store, Role role, TableId table_id, nlohman
   }
   if (const auto highlight = shown.find("highlight");
       highlight != shown.end() && highlight->contains("filter")) {
-    store::RecordQuery asked;
-    asked.limit = 1;
+    store::RecordQuery record_query;
+    record_query.limit = 1;
     auto filter = query::parse_condition(highlight->at("filter").get<std::string>(), "filter",
                                          query::Names::columns);
-    if (filter) asked.filter = std::move(*filter);
-    if (!filter || !store.records().page(table_id, role, asked)) shown.erase(highlight);
+    if (filter) record_query.filter = std::move(*filter);
+    if (!filter || !store.records().page(table_id, role, record_query)) shown.erase(highlight);
   }
 }
 
-// Those that name, as `member`, none of what is there.
+// Removes the elements whose `member` names no existing entity.
 template <class There>
 void leave_out(nlohmann::json& list, const char* member, const There& there) {
   list.erase(std::remove_if(list.begin(), list.end(),
@@ -60,13 +60,13 @@ void leave_out_unseen(store::Store& store, Role role, const room::Room& room,
         leave_out_columns(store, role, *layer.table, shown);
 }
 
-nlohmann::json kept_layers(const std::vector<protocol::LayerOverride>& asked,
-                           const room::ViewSettings& settings) {
+nlohmann::json stored_layers(const std::vector<protocol::LayerOverride>& overrides,
+                             const room::ViewSettings& settings) {
   nlohmann::json layers = nlohmann::json::array();
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    nlohmann::json kept = protocol::to_json(asked[i]);
-    kept["layer"] = settings.layers[i].layer_id;
-    layers.push_back(std::move(kept));
+  for (std::size_t i = 0; i < overrides.size(); ++i) {
+    nlohmann::json stored = protocol::to_json(overrides[i]);
+    stored["layer"] = settings.layers[i].layer_id;
+    layers.push_back(std::move(stored));
   }
   return layers;
 }
@@ -80,21 +80,21 @@ nlohmann::json to_json(const RouteContext& context, const Request& request,
                {"slug", view.slug},
                {"name", view.name},
                {"text", view.text},
-               {"user", told_name(request, view.user)},
+               {"user", visible_name(request, view.user)},
                {"time", utc_text(view.time)},
                {"version", view.version}});
   return json;
 }
 
-Result<protocol::ViewCreate> as_asked(const RouteContext& context, const Request& request,
-                                      const store::NamedPart& view, const room::Room& room) {
+Result<protocol::ViewCreate> as_view_create(const RouteContext& context, const Request& request,
+                                            const store::NamedPart& view, const room::Room& room) {
   const nlohmann::json seen = to_json(context, request, view, room);
-  nlohmann::json asked{{"name", view.name},
-                       {"camera", seen.at("camera")},
-                       {"layers", seen.at("layers")},
-                       {"light", seen.at("light")}};
-  if (seen.contains("looks")) asked["looks"] = seen.at("looks");
-  return protocol::from_json<protocol::ViewCreate>(asked);
+  nlohmann::json body{{"name", view.name},
+                      {"camera", seen.at("camera")},
+                      {"layers", seen.at("layers")},
+                      {"light", seen.at("light")}};
+  if (seen.contains("looks")) body["looks"] = seen.at("looks");
+  return protocol::from_json<protocol::ViewCreate>(body);
 }
 
 }  // namespace strata::net

@@ -12,29 +12,29 @@
 
 namespace strata::net {
 
-// Of how layers are shown, as it is kept (`layers` of a view): takes out what names a layer or
-// column that is not there for the role. Blocks.
+// Removes the layers and columns that do not exist for the role from stored layer settings
+// (`layers` of a view). Blocks.
 void leave_out_unseen(store::Store& store, Role role, const room::Room& room,
                       nlohmann::json& shown_layers);
 
-// What was asked for, as it is kept: with ids, since slugs change. `settings`: what `view_settings`
-// made of it.
-nlohmann::json kept_layers(const std::vector<protocol::LayerOverride>& asked,
-                           const room::ViewSettings& settings);
+// Returns the stored form of the requested overrides: with ids, since slugs change. `settings`: the
+// result of `view_settings` for them.
+nlohmann::json stored_layers(const std::vector<protocol::LayerOverride>& overrides,
+                             const room::ViewSettings& settings);
 
-// A named view, for who asks: of what it names, what is there for them.
+// Returns a saved view with the named entities that the caller can see.
 nlohmann::json to_json(const RouteContext& context, const Request& request,
                        const store::NamedPart& view, const room::Room& room);
 
-// The same as what one would ask to keep: where from, and what is shown how.
-Result<protocol::ViewCreate> as_asked(const RouteContext& context, const Request& request,
-                                      const store::NamedPart& view, const room::Room& room);
+// Converts a saved view to a request that would store it: the camera and the shown settings.
+Result<protocol::ViewCreate> as_view_create(const RouteContext& context, const Request& request,
+                                            const store::NamedPart& view, const room::Room& room);
 
-// What the body of a request says is shown.
-template <class Asked>
-Result<room::ViewSettings> shown_settings(const room::Room& room, const Asked& asked) {
-  return view_settings(room, asked.layers.value_or(std::vector<protocol::LayerOverride>{}),
-                       asked.looks, asked.light);
+// Returns the shown settings of a request's body.
+template <class ViewBody>
+Result<room::ViewSettings> shown_settings(const room::Room& room, const ViewBody& body) {
+  return view_settings(room, body.layers.value_or(std::vector<protocol::LayerOverride>{}),
+                       body.looks, body.light);
 }
 
 }  // namespace strata::net

@@ -14,10 +14,10 @@ namespace strata::net {
 Result<room::Highlight> highlight_of(const protocol::Highlight& body, const Layer& layer,
                                      const std::string& field) {
   if (!layer.table)
-    return fail(
-        ErrorCode::invalid, "Layer has no records",
-        "'" + layer.name + "' holds numbers: only records of database layers can be highlighted.",
-        field);
+    return fail(ErrorCode::invalid, "Layer has no records",
+                "'" + layer.name +
+                    "' stores numbers. Only records of a layer of records can be highlighted.",
+                field);
   room::Highlight highlight;
   highlight.isolate = body.isolate;
   if (body.filter) {
@@ -34,11 +34,11 @@ Result<room::Highlight> highlight_of(const protocol::Highlight& body, const Laye
 }
 
 Result<std::vector<room::SurfaceImageView>> surface_image_views(
-    const room::Room& room, const std::vector<protocol::LookShown>& asked) {
+    const room::Room& room, const std::vector<protocol::LookShown>& requested) {
   std::vector<room::SurfaceImageView> views;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
+  for (std::size_t i = 0; i < requested.size(); ++i) {
     const std::string field = "looks[" + std::to_string(i) + "].look";
-    auto image = room.surface_images().find(protocol::to_ref(asked[i].look));
+    auto image = room.surface_images().find(protocol::to_ref(requested[i].look));
     if (!image) {
       Error problem = image.error();
       problem.field = field;
@@ -46,16 +46,17 @@ Result<std::vector<room::SurfaceImageView>> surface_image_views(
     }
     for (const room::SurfaceImageView& other : views)
       if (other.surface_image_id == image->id)
-        return fail(ErrorCode::invalid, "Look given twice", "A view shows each look once.", field);
-    views.push_back({image->id, asked[i].opacity});
+        return fail(ErrorCode::invalid, "Duplicate surface image",
+                    "A view can contain each surface image only once.", field);
+    views.push_back({image->id, requested[i].opacity});
   }
   return views;
 }
 
-Result<Background> background_of(const std::optional<protocol::Background>& asked) {
-  if (!asked) return Background{};
-  const auto top = parse_color(asked->top, "background.top"),
-             bottom = parse_color(asked->bottom, "background.bottom");
+Result<Background> background_of(const std::optional<protocol::Background>& requested) {
+  if (!requested) return Background{};
+  const auto top = parse_color(requested->top, "background.top"),
+             bottom = parse_color(requested->bottom, "background.bottom");
   if (!top) return tl::unexpected(top.error());
   if (!bottom) return tl::unexpected(bottom.error());
   return Background{*top, *bottom};
@@ -67,24 +68,25 @@ Result<room::ViewSettings> view_settings(
     const std::optional<Light>& light) {
   room::ViewSettings settings;
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    const protocol::LayerOverride& asked = layers[i];
+    const protocol::LayerOverride& requested = layers[i];
     const std::string field = "layers[" + std::to_string(i) + "]";
-    const auto layer = room.layers().find(protocol::to_ref(asked.layer));
+    const auto layer = room.layers().find(protocol::to_ref(requested.layer));
     if (!layer) {
       Error problem = layer.error();
       problem.field = field + ".layer";
       return tl::unexpected(std::move(problem));
     }
-    room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt, std::nullopt};
-    if (asked.palette) {
-      auto palette = STRATA_TRY(palette_from_json(*asked.palette, field + ".palette"));
+    room::LayerView view{layer->id, requested.visible, requested.opacity, std::nullopt,
+                         std::nullopt};
+    if (requested.palette) {
+      auto palette = STRATA_TRY(palette_from_json(*requested.palette, field + ".palette"));
       view.palette = std::move(palette);
     }
-    if (asked.highlight) {
-      auto highlight = STRATA_TRY(highlight_of(*asked.highlight, *layer, field + ".highlight"));
+    if (requested.highlight) {
+      auto highlight = STRATA_TRY(highlight_of(*requested.highlight, *layer, field + ".highlight"));
       view.highlight = std::move(highlight);
     }
-    if (asked.order) view.order = static_cast<int>(*asked.order);
+    if (requested.order) view.order = static_cast<int>(*requested.order);
     settings.layers.push_back(std::move(view));
   }
   if (images) {

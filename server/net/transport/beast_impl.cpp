@@ -1,4 +1,4 @@
-// The one unit that compiles Beast's own sources (BOOST_BEAST_SEPARATE_COMPILATION); Asio's are in
-// core, but for its TLS.
+// Compiles Beast's own sources (BOOST_BEAST_SEPARATE_COMPILATION) and those of Asio's TLS; core
+// compiles the other sources of Asio.
 #include <boost/asio/ssl/impl/src.hpp>
 #include <boost/beast/src.hpp>

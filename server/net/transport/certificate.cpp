@@ -14,24 +14,24 @@ namespace ssl = boost::asio::ssl;
 namespace fs = std::filesystem;
 
 Error unusable(const fs::path& file, const std::string& why, const char* option) {
-  return {ErrorCode::invalid, "Certificate not usable", "`" + file.string() + "`: " + why + ".",
+  return {ErrorCode::invalid, "Certificate cannot be used", "`" + file.string() + "`: " + why + ".",
           option};
 }
 
-// A file without rights would be told like one that is not PEM.
+// Without this check, a file without read permission gives the same error as one that is not PEM.
 Result<void> check_readable(const fs::path& file, const char* option) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))
-    return tl::unexpected(unusable(file, "there is no such file", option));
+    return tl::unexpected(unusable(file, "the file does not exist", option));
   if (!std::ifstream(file))
-    return tl::unexpected(unusable(file, "the server may not read it", option));
+    return tl::unexpected(unusable(file, "the server has no permission to read it", option));
   return {};
 }
 
 }  // namespace
 
 Certificate::Times Certificate::written() const {
-  std::error_code gone;  // then the time is that of a file that never was
+  std::error_code gone;  // ignored: a missing file has the minimum time
   return {fs::last_write_time(chain_, gone), fs::last_write_time(key_, gone)};
 }
 
@@ -42,24 +42,23 @@ Result<std::shared_ptr<ssl::context>> Certificate::read() const {
   boost::system::error_code error;
   context->set_options(
       ssl::context::default_workarounds | ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1, error);
-  // Of TLS 1.2 only what 1.3 has, too: keys that are made for each connection, and ciphers that
-  // authenticate what they encrypt. (RFC 9325, 4.2)
+  // Limits TLS 1.2 to methods of 1.3: ephemeral keys and authenticated encryption (RFC 9325, 4.2).
   SSL_CTX_set_cipher_list(context->native_handle(), "ECDHE+AESGCM:ECDHE+CHACHA20");
   if (!error) context->use_certificate_chain_file(chain_.string(), error);
   if (error)
-    return tl::unexpected(
-        unusable(chain_, "it holds no certificate in PEM: " + error.message(), "--tls-cert"));
-  // A key with a passphrase would be asked for at a terminal that nobody watches.
+    return tl::unexpected(unusable(
+        chain_, "it contains no certificate in PEM format: " + error.message(), "--tls-cert"));
+  // OpenSSL would ask for the passphrase of a key at a terminal that nobody watches.
   context->set_password_callback(
       [](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
   context->use_private_key_file(key_.string(), ssl::context::pem, error);
-  // A key of another kind is taken as that of a second certificate, which is not there.
+  // OpenSSL accepts a key of another kind as that of a second, missing certificate.
   const bool is_its_key = !error && SSL_CTX_check_private_key(context->native_handle()) == 1;
   ERR_clear_error();
   if (!is_its_key)
-    return tl::unexpected(
-        unusable(key_, "it is not the key of the certificate, in PEM and without a passphrase",
-                 "--tls-key"));
+    return tl::unexpected(unusable(
+        key_, "it is not the key of the certificate, is not in PEM format, or has a passphrase",
+        "--tls-key"));
   return context;
 }
 
@@ -79,7 +78,7 @@ std::shared_ptr<ssl::context> Certificate::context() {
     context_ = std::move(*context);
     log::info("read the renewed certificate " + chain_.string());
   } else {
-    log::warning("the certificate stays as it was: " + context.error().detail);
+    log::warning("the server keeps its current certificate: " + context.error().detail);
   }
   return context_;
 }

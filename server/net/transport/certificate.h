@@ -9,16 +9,16 @@
 
 namespace strata::net {
 
-// What the server shows to clients that speak TLS (1.2 or later): a certificate chain and its key,
+// The server's identity for clients that use TLS (1.2 or later): a certificate chain and its key,
 // PEM files as Let's Encrypt writes them.
 class Certificate {
  public:
-  // 422 `--tls-cert` or `--tls-key`: a file that cannot be read, or holds something else; a key of
-  // another certificate.
+  // 422 `--tls-cert` or `--tls-key`: a file is unreadable or has other content, or the key belongs
+  // to another certificate.
   static Result<Certificate> load(std::filesystem::path chain, std::filesystem::path key);
 
-  // For a new connection. The files are read anew when they have changed; what cannot be used then
-  // is logged, and what was there stays.
+  // Returns the context for a new connection. Reads the files again if they changed; if they are
+  // invalid, logs the error and keeps the previous context.
   std::shared_ptr<boost::asio::ssl::context> context();
 
  private:
@@ -26,7 +26,7 @@ class Certificate {
 
   Certificate(std::filesystem::path chain, std::filesystem::path key)
       : chain_(std::move(chain)), key_(std::move(key)) {}
-  Times written() const;  // when each file was
+  Times written() const;  // times of modification
   Result<std::shared_ptr<boost::asio::ssl::context>> read() const;
 
   std::filesystem::path chain_, key_;

@@ -33,7 +33,7 @@ struct ClientWatch::Watched : std::enable_shared_from_this<Watched> {
     if (!question) return;
     if (!has_gone(socket)) return look_later();
     question->end(
-        {ErrorCode::cancelled, "Client gone", "The client has closed its connection.", {}});
+        {ErrorCode::cancelled, "Client disconnected", "The client has closed its connection.", {}});
     on_gone();
   }
 

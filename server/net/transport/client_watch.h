@@ -9,11 +9,10 @@
 
 namespace strata::net {
 
-// SurfaceImages a few times a second whether the client of a connection is still there while its
-// question is worked on, and ends the question when it is not. It asks the system and reads
-// nothing, so it does not matter whether the connection speaks TLS, or has sent its next request
-// already. A client that closes its sending side alone counts as gone. Belongs to the connection's
-// strand.
+// While the server works on a client's question, checks the socket a few times a second, and ends
+// the question when the client is gone. Asks the operating system and reads nothing, so TLS and
+// pipelined requests do not matter. A client that only shuts down its sending side counts as gone.
+// Belongs to the connection's strand.
 class ClientWatch {
  public:
   // `socket`: of a connection that stays open as long as the watch.
@@ -28,7 +27,7 @@ class ClientWatch {
   const std::shared_ptr<Watched> watched_;
 };
 
-// Whether the other end has closed the connection, or it broke.
+// Whether the other end has closed the connection, or the connection broke.
 bool has_gone(int socket);
 
 }  // namespace strata::net

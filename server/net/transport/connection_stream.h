@@ -18,9 +18,8 @@
 
 namespace strata::net {
 
-// What follows when a read or a write ended, of one type whatever it is: otherwise each operation
-// of HTTP and WebSocket would compile TLS anew, which took more time than all other units of the
-// room.
+// A completion handler of one type for every read and write. Otherwise each operation of HTTP and
+// WebSocket would compile TLS again, which took longer than all other units of the module.
 class IoDone {
  public:
   template <class Handler>
@@ -41,7 +40,7 @@ class IoDone {
   std::unique_ptr<Held> held_;
 };
 
-// The first pieces of a sequence of buffers that hold something: enough to read or write *some*.
+// The first non-empty pieces of a sequence of buffers: enough to read or write *some*.
 template <class Buffer>
 class SomeBuffers {
  public:
@@ -63,8 +62,8 @@ class SomeBuffers {
   std::size_t count_ = 0;
 };
 
-// A TCP connection, with TLS or without: an asynchronous stream whose users need not know which.
-// Moved only while nothing is under way.
+// A TCP connection with or without TLS, as an asynchronous stream. Move it only while no operation
+// is pending.
 class ConnectionStream {
  public:
   using next_layer_type = boost::beast::tcp_stream;
@@ -76,11 +75,11 @@ class ConnectionStream {
   next_layer_type& next_layer() noexcept;
 
   bool has_tls() const noexcept { return std::holds_alternative<Tls>(stream_); }
-  // From here on the connection speaks TLS. `first`: bytes of the client that were read already;
-  // gives how many of them were used.
+  // Starts TLS on the connection. `first`: bytes of the client that were read already; returns how
+  // many of them were used.
   boost::asio::awaitable<std::tuple<boost::beast::error_code, std::size_t>> start_tls(
       boost::asio::ssl::context& context, boost::asio::const_buffer first);
-  // Tells the client that this was all; of a connection with TLS.
+  // Sends TLS's end of the connection (close_notify).
   boost::asio::awaitable<void> end_tls();
 
   template <class Buffers, class Token>
@@ -100,7 +99,7 @@ class ConnectionStream {
         token, SomeBuffers<boost::asio::const_buffer>(buffers));
   }
 
-  // How a WebSocket ends the connection below it; found by Beast.
+  // Called by Beast to close the connection under a WebSocket.
   template <class Handler>
   friend void async_teardown(boost::beast::role_type role, ConnectionStream& connection,
                              Handler&& handler) {

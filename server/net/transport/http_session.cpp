@@ -35,9 +35,9 @@ constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kEventPause{1}, kEventPing{15};
 constexpr int kMaxEventStreams = 256;
 constexpr std::uint32_t kMaxHead = 8192;
-// of a larger body; by itself it is read in the kilobytes of its head
+// of a larger body; the default is the size of its head, some kilobytes
 constexpr std::size_t kReadAtOnce = 64 * 1024;
-// of a refused request: read to keep the connection
+// of a refused request, read so that the connection can stay open
 constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;
 constexpr std::string_view kSubprotocol = "strata.v1";
 
@@ -63,19 +63,20 @@ Result<Request> request_of(const http::request<http::empty_body>& head) {
   return request;
 }
 
-// What two readers might take for different requests is none (RFC 9112, sections 3.2 and 6.1).
+// Refuses requests that two parsers could read differently (RFC 9112, sections 3.2 and 6.1).
 Result<void> check_framing(const Request& request, unsigned version) {
   const auto count = [&](std::string_view name) {
     return std::ranges::count_if(request.headers,
                                  [&](const auto& header) { return header.first == name; });
   };
   if (count("host") > 1 || (version >= 11 && count("host") == 0))
-    return fail(ErrorCode::malformed, "Host unclear", "A request names one Host.", "Host");
+    return fail(ErrorCode::malformed, "Host header unclear",
+                "A request must have exactly one Host header.", "Host");
   if (count("transfer-encoding") == 0) return {};
   if (version < 11 || count("transfer-encoding") > 1 ||
       to_lower(request.header("transfer-encoding")) != "chunked")
-    return fail(ErrorCode::not_implemented, "Transfer encoding unknown",
-                "Bodies come with a Content-Length or as `Transfer-Encoding: chunked`.",
+    return fail(ErrorCode::not_implemented, "Unknown transfer encoding",
+                "Send the body with a Content-Length or with `Transfer-Encoding: chunked`.",
                 "Transfer-Encoding");
   return {};
 }
@@ -87,7 +88,7 @@ std::string rate_policy(const ServerOptions& options) {
          ";w=" + std::to_string(window_s);
 }
 
-// How long a body may take: a fixed time, and a second more for each kilobyte that came.
+// Limits the time for a body: a fixed time, and a second more for each received kilobyte.
 class BodyClock {
  public:
   explicit BodyClock(seconds at_least) : at_least_(at_least) {}
@@ -96,7 +97,9 @@ class BodyClock {
   }
   static Error problem() {
     return {ErrorCode::timed_out, "Body too slow",
-            "The body comes with less than a kilobyte a second.", "body"};
+            "The server received less than one kilobyte of the body per second. Check the "
+            "network and try again.",
+            "body"};
   }
 
  private:
@@ -134,7 +137,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   asio::awaitable<void> run() {
-    auto self = shared_from_this();  // the frame keeps the session
+    auto self = shared_from_this();  // the coroutine frame keeps the session alive
     if (tls_) {
       const bool speaks_tls = co_await start_tls();
       if (!speaks_tls) co_return;
@@ -159,7 +162,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
  private:
   const Timeouts& timeouts() const { return api_.options().timeouts; }
 
-  // False: the connection is over. Who speaks plain HTTP here is told where to go.
+  // Returns false if the connection ends. Redirects a client that speaks plain HTTP here.
   asio::awaitable<bool> start_tls() {
     connection().expires_after(timeouts().head);
     auto [error, speaks_tls] = co_await beast::async_detect_ssl(connection(), buffer_, kUseResult);
@@ -177,7 +180,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       Response elsewhere =
           problem_response({ErrorCode::malformed,
                             "Plain HTTP",
-                            "This server speaks https: ask https:// in place of http://.",
+                            "This server requires HTTPS. Use https:// instead of http://.",
                             {}});
       const auto host = head.get()[http::field::host];
       if (!host.empty()) {
@@ -191,20 +194,20 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return false;
   }
 
-  // Objects that are built inside a co_await expression are destroyed twice by GCC 12 in some
-  // cases: what the functions below are given is always a named local of the caller, by reference.
+  // GCC 12 destroys some objects twice that are built inside a co_await expression, so the
+  // arguments of these functions are named locals of the caller, passed by reference.
   asio::awaitable<void> refuse_head(beast::error_code error) {
     Response refusal;
     if (error == http::error::header_limit) {
       refusal = problem_response({ErrorCode::head_too_large,
                                   "Header too large",
-                                  "The head of a request has at most 8 KiB.",
+                                  "The header of a request can have at most 8 KiB.",
                                   {}});
     } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
                error != http::error::end_of_stream && error != http::error::partial_message) {
       refusal = problem_response({ErrorCode::malformed,
                                   "Malformed request",
-                                  "This is not HTTP: " + error.message() + ".",
+                                  "The server cannot read this as HTTP: " + error.message() + ".",
                                   {}});
     } else {
       co_return;
@@ -212,7 +215,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_await send(refusal, Method::get, false);
   }
 
-  // One request; false: the connection ends.
+  // Serves one request; false: the connection ends.
   asio::awaitable<bool> serve(http::request_parser<http::empty_body>& head) {
     const CountAtWork at_work(connections_->requests_at_work);
     const bool keep_alive = head.keep_alive() && !connections_->stopping;
@@ -231,10 +234,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     by_https_ = came_by_https(*request);
     Response response;
     if (!bucket_.take()) {
-      response = problem_response({ErrorCode::too_many_requests,
-                                   "Too many requests",
-                                   "This connection asks too fast; wait a second.",
-                                   {}});
+      response =
+          problem_response({ErrorCode::too_many_requests,
+                            "Too many requests",
+                            "This connection sends too many requests. Wait a second and try again.",
+                            {}});
       co_return co_await refuse(head, *request, response, keep_alive);
     }
     if (beast::websocket::is_upgrade(head.get()) && Api::is_live_address(*request))
@@ -259,8 +263,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const bool has_body = !head.is_done();
     if (has_body) {
       if (beast::iequals(head.get()[http::field::expect], "100-continue")) {
-        const bool told = co_await send_continue();
-        if (!told) co_return false;
+        const bool is_sent = co_await send_continue();
+        if (!is_sent) co_return false;
       }
       if (!length || *length > kReadAtOnce) buffer_.reserve(kReadAtOnce);
       Error problem;
@@ -269,7 +273,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         is_read = co_await read_to_file(head, *request, max_body, problem);
       else
         is_read = co_await read_to_memory(head, *request, max_body, problem);
-      buffer_.shrink_to_fit();  // a connection that waits needs little memory
+      buffer_.shrink_to_fit();  // an idle connection needs little memory
       if (!is_read) {
         remove_body_file(*request);
         if (problem.title.empty()) co_return false;  // the connection broke
@@ -295,7 +299,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response = co_await on_worker(connections_, stream_.get_executor(), handle, at_desk);
     watch.reset();
     remove_body_file(*request);
-    // Of an answer that is made while it is sent the client's leaving is seen by the sending.
+    // While an answer is streamed, the sending detects that the client left.
     if (question) question->let_take_time();
     stream_question_ = response.stream ? std::move(question) : nullptr;
     co_return co_await send(response, request->method, keep_alive);
@@ -303,7 +307,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   static Error too_large(std::uint64_t max_body) {
     return {ErrorCode::too_large, "Body too large",
-            "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
+            "This address accepts at most " + std::to_string(max_body) + " bytes.", "body"};
   }
 
   static void remove_body_file(const Request& request) {
@@ -312,7 +316,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     std::filesystem::remove(request.body_file, gone_already);
   }
 
-  // Answers without the body being wanted. A small one is read, so that the connection can go on.
+  // Answers without using the body. Reads a small body, so that the connection can stay open.
   asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request,
                                Response& response, bool keep_alive) {
     const Method method = request.method;
@@ -336,7 +340,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // False: see the problem; one without a title says that the connection broke.
+  // False: see the problem; one without a title means that the connection broke.
   asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head,
                                        Request& request, std::uint64_t max_body, Error& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
@@ -373,7 +377,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (file_error) {
       log::error("upload folder not writable: " + file_error.message());
       problem = {ErrorCode::storage_full,
-                 "No room for uploads",
+                 "No space for uploads",
                  "The server cannot write its upload folder: " + file_error.message() + ".",
                  {}};
       co_return false;
@@ -383,10 +387,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       connection().expires_after(timeouts().stall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
-        problem = error == boost::system::errc::no_space_on_device
-                      ? Error{ErrorCode::storage_full, "Disk full",
-                              "The upload does not fit on the server's disk.", "body"}
-                      : body_problem(error);
+        problem =
+            error == boost::system::errc::no_space_on_device
+                ? Error{ErrorCode::storage_full, "Disk full",
+                        "The disk of the server has no space for this upload. Ask an administrator to "
+                        "free disk space.",
+                        "body"}
+                : body_problem(error);
         co_return false;
       }
       request.body_bytes += size;
@@ -401,7 +408,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     parser.get().body().close();
     std::error_code size_error;
-    // without a chunked body's framing
+    // excludes the framing of a chunked body
     request.body_bytes = std::filesystem::file_size(request.body_file, size_error);
     co_return true;
   }
@@ -412,7 +419,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         error != http::error::partial_message && error != http::error::end_of_stream;
     if (malformed)
       return {ErrorCode::malformed, "Malformed body",
-              "The body does not follow its framing: " + error.message() + ".", "body"};
+              "The server cannot read the body: " + error.message() + ".", "body"};
     return {};
   }
 
@@ -424,7 +431,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     message.set(http::field::server, "strata");
     for (const auto& [key, value] : security_headers())
       if (response.header(key).empty()) message.insert(key, value);
-    // From then on browsers ask by https alone (RFC 6797), whatever a link says.
+    // From then on browsers use https only (RFC 6797), for http links, too.
     if (by_https_) message.set(http::field::strict_transport_security, "max-age=31536000");
     const auto now = TokenBucket::Clock::now();
     message.insert("RateLimit-Policy", policy_);
@@ -448,7 +455,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return message.keep_alive();
   }
 
-  // False: the connection ends.
+  // Returns false if the connection ends.
   asio::awaitable<bool> send(Response& response, Method method, bool keep_alive) {
     api_.metrics().count_request(response.status);
     if (response.stream) co_return co_await send_stream(response, method, keep_alive);
@@ -464,7 +471,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         message.prepare_payload();
         co_return co_await write(message);
       }
-      response = problem_response({ErrorCode::not_found, "Not found", "The file is gone.", {}});
+      response = problem_response(
+          {ErrorCode::not_found, "Not found", "The file does not exist any more.", {}});
     }
     if (method == Method::head)
       co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()),
@@ -492,7 +500,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return co_await write(message);
   }
 
-  // The head of a body in chunks, and nothing of the body.
+  // Sends the head of a chunked body, without the body.
   asio::awaitable<bool> send_chunked_head(const Response& response) {
     http::response<http::empty_body> message;
     put_head(message, response, true);
@@ -503,18 +511,19 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // A worker makes the bytes and waits for each piece to be sent; few at once, so that slow readers
-  // leave workers for others. Where their number is not known they go in chunks; a client of
-  // HTTP/1.0 knows none, and reads until the connection ends.
+  // A worker makes the bytes and waits until each piece is sent; only a few at once, so that slow
+  // readers leave workers for others. A body of unknown length is sent in chunks; a client of
+  // HTTP/1.0, which has no chunks, reads until the connection ends.
   asio::awaitable<bool> send_stream(Response& response, Method method, bool keep_alive) {
     const auto length = response.stream->length;
     if (method == Method::head) co_return co_await send_head(response, length, keep_alive);
     const CountAtWork counted(connections_->streams_at_work);
     if (connections_->streams_at_work > std::max(1, api_.options().worker_threads / 2)) {
-      Response refusal = problem_response({ErrorCode::busy,
-                                           "Too many downloads",
-                                           "Ask again when another download has ended.",
-                                           {}});
+      Response refusal = problem_response(
+          {ErrorCode::busy,
+           "Too many downloads",
+           "Too many downloads are running. Try again when another download has ended.",
+           {}});
       co_return co_await send(refusal, method, keep_alive);
     }
     const bool in_chunks = !length && http_version_ >= 11;
@@ -533,7 +542,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       bool written = false;
       try {
         written = stream.write([&](std::span<const std::uint8_t> bytes) {
-          if (bytes.empty()) return true;  // an empty chunk would be the last one
+          if (bytes.empty()) return true;  // an empty chunk would end the body
           if ((stream.length && sent + bytes.size() > *stream.length) ||
               !send_piece(bytes, in_chunks))
             return false;
@@ -541,7 +550,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           return true;
         });
       } catch (const QuestionEnded&) {
-        // The server stops: the client sees that it does not have all.
+        // The server stops: the client detects that the answer is incomplete.
       }
       *whole = written && (!stream.length || sent == *stream.length) &&
                (!in_chunks || send_piece({}, true));
@@ -552,8 +561,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return done.status == 200 && *whole&& framed&& keep_alive;
   }
 
-  // Costs no thread while nothing happens. Now and then something is sent in any case, so that
-  // proxies keep the connection and one whose client is gone is found out.
+  // Uses no thread while there are no events. Sends something from time to time in any case, so
+  // that proxies keep the connection and a broken one is detected.
   asio::awaitable<bool> send_events(Response& response, Method method, bool keep_alive) {
     response.with("Content-Type", "text/event-stream")
         .with("Cache-Control", "no-store")
@@ -562,7 +571,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const CountAtWork counted(connections_->event_streams);
     if (connections_->event_streams > kMaxEventStreams) {
       Response refusal = problem_response(
-          {ErrorCode::busy, "Too many listeners", "Ask again when another listener has gone.", {}});
+          {ErrorCode::busy,
+           "Too many event streams",
+           "Too many clients receive events. Try again when another client has disconnected.",
+           {}});
       co_return co_await send(refusal, method, keep_alive);
     }
     const bool in_chunks = http_version_ >= 11;
@@ -573,16 +585,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       head_sent = co_await send_head(response, std::nullopt, false);
     if (!head_sent) co_return false;
     const Work ask = [next = response.events->next](const Respond& respond) {
-      auto told = next();
-      respond(told ? text_response(std::move(*told), "text/event-stream") : empty_response(204));
+      auto event = next();
+      respond(event ? text_response(std::move(*event), "text/event-stream") : empty_response(204));
     };
     asio::steady_timer pause(stream_.get_executor());
     auto last_sent = std::chrono::steady_clock::now();
     for (;;) {
-      const Response told = co_await on_worker(connections_, stream_.get_executor(), ask);
-      if (told.status == 204 || connections_->stopping) break;
-      // too busy just now: asked again
-      std::string text = told.status == 200 ? told.body : std::string();
+      const Response reply = co_await on_worker(connections_, stream_.get_executor(), ask);
+      if (reply.status == 204 || connections_->stopping) break;
+      // the server is too busy: retry
+      std::string text = reply.status == 200 ? reply.body : std::string();
       if (text.empty() && std::chrono::steady_clock::now() - last_sent >= kEventPing)
         text = ":\n\n";
       if (!text.empty()) {
@@ -611,7 +623,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // On a worker: waits until the piece is sent. As a chunk an empty one ends the body.
+  // Runs on a worker and waits until the piece is sent. An empty chunk ends the body.
   bool send_piece(std::span<const std::uint8_t> bytes, bool in_chunks) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto data = std::make_shared<std::string>(in_chunks ? as_chunk(text) : std::string(text));
@@ -634,10 +646,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::token_list offered(head.get()[http::field::sec_websocket_protocol]);
     Response response;
     if (!offered.exists(kSubprotocol)) {
-      response =
-          problem_response({ErrorCode::malformed, "Subprotocol missing",
-                            "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.",
-                            "Sec-WebSocket-Protocol"});
+      response = problem_response({ErrorCode::malformed, "Subprotocol missing",
+                                   "A live connection needs the subprotocol strata.v1. Send it in "
+                                   "Sec-WebSocket-Protocol.",
+                                   "Sec-WebSocket-Protocol"});
       co_return co_await send(response, Method::get, false);
     }
     auto entry = std::make_shared<Api::LiveEntry>();
@@ -656,8 +668,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return false;
   }
 
-  // Ends our side, and reads what is still under way for a moment: closing at once could destroy
-  // the answer in the client's hands.
+  // Shuts down the sending side, and reads pending data for a moment: closing at once could destroy
+  // the answer before the client has read it.
   asio::awaitable<void> say_goodbye() {
     connection().expires_after(seconds(2));
     if (stream_.has_tls()) co_await stream_.end_tls();
@@ -680,12 +692,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   Api& api_;
   beast::flat_buffer buffer_;
   TokenBucket bucket_;
-  const std::string policy_;    // what `bucket_` is called in RateLimit-Policy
-  std::string peer_;            // address at the other end
+  const std::string policy_;    // name of `bucket_` in RateLimit-Policy
+  std::string peer_;            // address of the other end
   unsigned http_version_ = 11;  // of the request: 10 or 11
-  bool by_https_ = false;       // the request came so, to here or to a proxy
+  bool by_https_ = false;       // the request used https, to this server or to a proxy
   bool handed_over_ = false;
-  std::shared_ptr<Question> stream_question_;  // whose answer is made while it is sent
+  std::shared_ptr<Question> stream_question_;  // the question whose answer is being streamed
 };
 
 }  // namespace

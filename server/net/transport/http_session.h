@@ -10,9 +10,9 @@
 
 namespace strata::net {
 
-// What every connection of one server shares. Answers under way hold `io`, so that one which comes
-// after the server has stopped finds a place to end; connections do not, since their frames live in
-// it.
+// Shared by all connections of one server. Pending answers hold `io`, so that an answer that
+// arrives after the server has stopped can still be discarded safely; connections do not, since
+// `io` owns their coroutine frames.
 struct Connections {
   std::weak_ptr<boost::asio::io_context> io;
   Api& api;
@@ -22,8 +22,8 @@ struct Connections {
   std::atomic<bool> stopping{false};
 };
 
-// Serves one TCP connection until it ends or becomes a WebSocket. The socket's executor is a strand
-// of its own. `tls`: the connection speaks it; nothing: it does not.
+// Serves one TCP connection until it ends or becomes a WebSocket. The socket's executor is a
+// separate strand. `tls`: null for plain HTTP.
 void start_http_session(boost::asio::ip::tcp::socket socket,
                         std::shared_ptr<Connections> connections,
                         std::shared_ptr<boost::asio::ssl::context> tls);

@@ -14,10 +14,10 @@ namespace strata::net {
 
 using Work = std::function<void(const Respond&)>;
 
-// Runs `work(respond)` on a worker and comes back to `executor` with the answer; 503 when too much
-// waits. A question's work runs where questions are answered (net/http/question_desk.h), and not at
-// all when it is over before its turn came. Give it a named function, not a lambda written into the
-// co_await: GCC 12 destroys captures of such temporaries twice.
+// Runs `work(respond)` on a worker and resumes on `executor` with the answer; 503 if the queue is
+// full. A question runs on the question desk (net/http/question_desk.h), or not at all if it ended
+// before its turn. Pass a named function, not a lambda inside the co_await: GCC 12 destroys
+// captures of such temporaries twice.
 template <class Executor>
 boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections,
                                            Executor executor, const Work& work,

@@ -30,7 +30,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr seconds kGoodbye{3};  // for live connections to close
-constexpr seconds kAnswers{5};  // for requests at work
+constexpr seconds kAnswers{5};  // for running requests
 
 template <class Done>
 void wait_until(Done done, milliseconds limit) {
@@ -39,12 +39,12 @@ void wait_until(Done done, milliseconds limit) {
     std::this_thread::sleep_for(milliseconds(5));
 }
 
-// Uploads of a server that was killed are of no use to anybody.
+// Deletes the uploads that a killed server left.
 Result<void> prepare_upload_dir(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    return fail(ErrorCode::internal, "Upload folder not usable",
+    return fail(ErrorCode::internal, "Upload folder unavailable",
                 "The folder " + folder.string() + " cannot be made: " + error.message() + ".");
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string extension = entry.path().extension().string();
@@ -95,7 +95,7 @@ struct Server::Impl {
       auto [error] = co_await acceptor.async_accept(socket, asio::as_tuple(asio::use_awaitable));
       if (connections->stopping) co_return;
       if (error) {
-        // Out of descriptors, mostly: let some close before the next try.
+        // Mostly the limit of descriptors: waits until some are closed.
         log::warning("a connection could not be accepted: " + error.message());
         asio::steady_timer pause(*io, milliseconds(100));
         co_await pause.async_wait(asio::as_tuple(asio::use_awaitable));
@@ -112,7 +112,7 @@ struct Server::Impl {
   std::shared_ptr<asio::io_context> io;
   std::shared_ptr<Connections> connections;
   tcp::acceptor acceptor;
-  std::optional<Certificate> certificate;  // used by `accept` alone
+  std::optional<Certificate> certificate;  // only `accept` uses it
   std::vector<std::thread> threads;
   std::uint16_t port = 0;
   bool stopped = false;
@@ -127,10 +127,10 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
                                               room::Rooms& rooms, jobs::JobQueue& jobs,
                                               render::Renderer& renderer) {
   if (!options.owner_token.empty() && options.owner_token.size() < kMinOwnerTokenLength)
-    return fail(
-        ErrorCode::invalid, "Owner token too short",
-        "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.",
-        "STRATA_OWNER_TOKEN");
+    return fail(ErrorCode::invalid, "Owner token too short",
+                "STRATA_OWNER_TOKEN must have at least 32 characters. Create one with `openssl "
+                "rand -hex 32`.",
+                "STRATA_OWNER_TOKEN");
   STRATA_TRY(prepare_upload_dir(options.upload_dir));
   auto templates = STRATA_TRY(app::TemplateRegistry::load(options.templates_dir));
   std::optional<Certificate> certificate;
@@ -167,8 +167,8 @@ void Server::stop() {
     impl.acceptor.close(ignored);
   });
   impl.api.questions().end_all({ErrorCode::unavailable,
-                                "Server stops",
-                                "The server is shutting down; ask again when it is back.",
+                                "Server is stopping",
+                                "The server is shutting down. Try again when it is running again.",
                                 {}});
   impl.api.live_sockets().close_all(kCloseGoingAway, "the server stops");
   wait_until([&] { return impl.api.metrics().open_sockets.load() == 0; }, kGoodbye);

@@ -13,19 +13,19 @@
 
 namespace strata::net {
 
-// The server's sockets: HTTP, the live connections and the page. What it is given must outlive it.
+// The server's sockets: HTTP, the live connections and the page. The arguments must outlive it.
 class Server {
  public:
-  // Listens when it returns. Refused with advice: an address in use, a short owner token, a
-  // certificate that cannot be used, an upload folder that cannot be written.
+  // Listens when it returns. Refuses with advice: an address in use, a short owner token, an
+  // invalid certificate, an upload folder without write permission.
   static Result<std::unique_ptr<Server>> start(ServerOptions options, store::Store& store,
                                                room::Rooms& rooms, jobs::JobQueue& jobs,
                                                render::Renderer& renderer);
   ~Server();
 
   std::uint16_t port() const;
-  // Takes no more connections, tells the live ones to come back later, answers what is at work, and
-  // joins. Rooms are drained by their owner afterwards. Idempotent.
+  // Accepts no more connections, asks live clients to reconnect later, finishes running requests,
+  // and joins. The owner of the rooms drains them afterwards. Idempotent.
   void stop();
 
  private:

@@ -26,13 +26,13 @@ using std::chrono::seconds;
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kHandshake{10};
 constexpr seconds kClosing{5};
-// Beyond the protocol's limit a message is refused with a problem; beyond this one the connection
-// ends.
+// The server refuses a message above the protocol's limit with a problem, and closes the connection
+// above this one.
 constexpr std::size_t kMaxMessage = 4u << 20;
 constexpr std::size_t kMaxQueuedTexts = 4096;
 constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-// Of pictures, as credit allows them: 3 frames of 16 rectangles for each of 4 views, or whole ones
-// of the largest size.
+// Limit that the client's credit implies: 3 frames of 16 rectangles for each of 4 views, or whole
+// frames of the largest size.
 constexpr std::size_t kMaxQueuedFrames = 256;
 constexpr std::size_t kMaxQueuedFrameBytes = 64u << 20;
 
@@ -49,7 +49,7 @@ class WebSocketSession final : public LiveSocket,
   }
 
   asio::awaitable<void> run(http::request<http::empty_body> request, Api::LiveEntry entry) {
-    auto self = shared_from_this();  // the frame keeps the session
+    auto self = shared_from_this();  // the coroutine frame keeps the session alive
     prepare();
     auto [accept_error] = co_await ws_.async_accept(request, kUseResult);
     if (!accept_error) {
@@ -117,7 +117,7 @@ class WebSocketSession final : public LiveSocket,
       auto [error, size] = co_await ws_.async_read(buffer, kUseResult);
       if (error) co_return;
       if (closing_) {
-        // Until the other side closes, too.
+        // Reads until the client closes, too.
       } else if (!ws_.got_text()) {
         live_->on_binary();
       } else if (auto work = live_->on_text(beast::buffers_to_string(buffer.data()))) {
@@ -132,10 +132,10 @@ class WebSocketSession final : public LiveSocket,
     }
   }
 
-  // A session may be ended, or a token revoked, by another server or by its age.
+  // Another server may end the session or revoke the token, or it may expire.
   asio::awaitable<void> watch_sign_in(std::string secret, ProjectId project_id, Role role) {
     auto self = shared_from_this();
-    // First at once: accounts may have changed while the model was opened.
+    // The first check is at once: accounts may have changed while the model was opened.
     while (!over_ && !closing_) {
       const Work ask = [&api = connections_->api, secret, project_id,
                         role](const Respond& respond) {
@@ -167,7 +167,7 @@ class WebSocketSession final : public LiveSocket,
     write_next();
   }
 
-  // Control messages go before pictures.
+  // Control messages have priority over frames.
   void write_next() {
     if (writing_ || over_) return;
     if (closing_) return do_close();
@@ -222,7 +222,7 @@ class WebSocketSession final : public LiveSocket,
     ws_.async_close(reason_, [self = shared_from_this()](beast::error_code) {});
   }
 
-  // The reader notices and ends the session.
+  // The reader detects this and ends the session.
   void drop() { beast::get_lowest_layer(ws_).close(); }
 
   websocket::stream<ConnectionStream> ws_;

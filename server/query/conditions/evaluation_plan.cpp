@@ -9,10 +9,10 @@ namespace {
 
 using Op = Expression::Op;
 
-// Below it the comparisons are as quick as the set.
+// With fewer members the comparisons are as fast as the set.
 constexpr std::size_t kMin = 3;
 
-// The parts of a chain of one operation, however it was nested.
+// Collects the parts of a chain of one operation, with any nesting.
 void flatten(const Expression& e, Op op, std::vector<const Expression*>& parts) {
   for (const Expression& part : e.parts) {
     if (part.op == op)
@@ -22,7 +22,7 @@ void flatten(const Expression& e, Op op, std::vector<const Expression*>& parts) 
   }
 }
 
-// `value op number`, whichever side the number stands on.
+// `value op number`, with the number on either side.
 struct Compared {
   const Expression* value = nullptr;
   double number = 0;
@@ -104,7 +104,7 @@ class Planner {
 
 constexpr int kNoSource = -1, kNoOneSource = -2;
 
-// kNoSource: it reads nothing; kNoOneSource: several, or the place.
+// kNoSource: it reads no source; kNoOneSource: several sources, or the position.
 int source_read(const PlanNode& node) {
   switch (node.op) {
     case Op::x:
@@ -134,9 +134,9 @@ Result<EvaluationPlan> plan_evaluation(const Expression& expression,
     const auto found = std::find_if(layers.begin(), layers.end(),
                                     [&](const auto& v) { return v.layer.slug == slug; });
     if (found == layers.end())
-      return fail(ErrorCode::invalid, "Expression not understood",
+      return fail(ErrorCode::invalid, "Invalid expression",
                   "This model has no layer '" + slug +
-                      "'. Layers are named by their slugs; a subtraction needs spaces.",
+                      "'. Use the slug of a layer, and write spaces around a minus sign.",
                   field);
     const Layer& layer = found->layer;
     plan.sources.push_back(

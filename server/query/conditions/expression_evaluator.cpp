@@ -32,7 +32,7 @@ Bits bits_where(Test test) {
   return bits;
 }
 
-// What an expression is at the 64 texels of a block.
+// The values of an expression at the 64 texels of a block.
 struct Numbers {
   std::array<double, kTexels> value{};  // finite where known
   Bits known = 0;
@@ -42,7 +42,7 @@ struct Truths {
   Bits known = 0;
 };
 
-// What a formula reads; constant while it is evaluated.
+// The inputs of a formula; constant during the evaluation.
 struct Inputs {
   const std::vector<PlanSource>& sources;
   const std::vector<RecordNumbers>& records;
@@ -50,7 +50,7 @@ struct Inputs {
   const Frame& frame;
 };
 
-// Values of layers that were decoded, so that a block decodes each of them once.
+// Decoded values of layers, so that a block decodes each layer once.
 class Decoded {
  public:
   explicit Decoded(std::size_t sources) : of_source_(sources) {}
@@ -83,7 +83,7 @@ class Block {
         by_(static_cast<int>(inputs.map.block_of_slot[slot]) / inputs.map.blocks_per_side) {
     decoded_.clear();
   }
-  // Of no place: the one source has 64 bit patterns from `first` on, or no value.
+  // Not a block of the map: the only source has 64 bit patterns from `first` on, or no value.
   Block(const Inputs& inputs, std::optional<std::uint32_t> first, Decoded& decoded)
       : inputs_(inputs),
         decoded_(decoded),
@@ -135,7 +135,7 @@ class Block {
     }
   }
 
-  // A condition is 1 where it holds, and nothing elsewhere.
+  // A condition is 1 where it holds, and unknown elsewhere.
   Numbers any(const PlanNode& e) const {
     if (!e.is_condition()) return numbers(e);
     Numbers result;
@@ -185,7 +185,7 @@ class Block {
     for (Bits rest = a.known; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const double value = a.value[static_cast<std::size_t>(i)];
-      if (value != last) {  // neighbours mostly hold one value
+      if (value != last) {  // neighbors mostly have the same value
         last = value;
         found = e.set->contains(value);
       }
@@ -265,7 +265,7 @@ class Block {
     return only_finite(std::move(result));
   }
 
-  // A number that is not known is 0, so that nothing that is computed from it is slow or traps.
+  // An unknown number is 0, so that computations with it are neither slow nor trap.
   static Numbers only_finite(Numbers result) {
     const Bits finite = bits_where([&](int i) { return std::isfinite(result.value[i]); });
     if (finite != kAll)
@@ -295,11 +295,11 @@ class Block {
     return result;
   }
 
-  // What is known of the records whose keys the layer holds.
+  // Looks up the records whose keys the layer holds.
   Numbers of_records(const PlanNode& e) const {
     const RecordNumbers& records = inputs_.records[e.index];
     Numbers result = layer(e.source);
-    // neighbours mostly hold one key
+    // neighbors mostly have the same key
     double last = -1, found = std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < kTexels; ++i) {
       if (((result.known >> i) & 1u) == 0) continue;
@@ -318,7 +318,7 @@ class Block {
     return decoded_.get(
         number, [&] { return decode(inputs_.sources[static_cast<std::size_t>(number)], true); });
   }
-  // Costs no decoding.
+  // Does not decode the layer.
   Bits validity(int number) const {
     return decode(inputs_.sources[static_cast<std::size_t>(number)], false).known;
   }
@@ -331,14 +331,14 @@ class Block {
       if (tile == nullptr || !tile->valid.test(texel)) return;
       const auto place = static_cast<std::size_t>(i);
       if (decoded) result.value[place] = decode_value(source.type, tile->bits(texel));
-      // A raster may have brought infinity into a float layer.
+      // An imported raster may contain infinity in a float layer.
       if (!decoded || std::isfinite(result.value[place])) result.known |= Bits{1} << i;
     });
     return decoded ? only_finite(std::move(result)) : result;
   }
 
-  // visit(texel of the block, tile or null, texel in the tile): what of a layer of another
-  // resolution lies under it.
+  // Calls visit(texel of the block, tile or null, texel in the tile) with the texels of a layer of
+  // another resolution at the same places.
   template <class Visit>
   void for_each_under(const PlanSource& source, Visit visit) const {
     for (int i = 0; i < kTexels; ++i) {
@@ -360,7 +360,7 @@ class Block {
     return only_finite(std::move(result));
   }
 
-  // Of a layer that has the map's own texels.
+  // For a layer with the map's resolution.
   Numbers same_block(const PlanSource& source, bool decoded) const {
     Numbers result;
     const TileData* tile = source.tiles.of_block(bx_, by_);
@@ -407,14 +407,14 @@ class Block {
   const std::optional<std::uint32_t> first_pattern_{};
 };
 
-// A block takes microseconds, a long condition some hundred.
+// A block takes microseconds, with a long condition some hundred.
 constexpr std::size_t kBlocksBetweenChecks = 64;
 
 void spend(std::uint64_t steps) {
   if (Question* question = Question::current()) question->spend(steps);
 }
 
-// Below it a condition is as quick as its table.
+// With fewer steps a condition is as fast as its table.
 constexpr std::uint64_t kMinSteps = 3;
 
 TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
@@ -435,8 +435,7 @@ TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
   return table;
 }
 
-// Makes tables of the largest conditions that have one, where there are texels enough to look them
-// up.
+// Makes tables of the largest suitable conditions, if there are enough texels to look them up.
 void make_tables(PlanNode& node, const Inputs& inputs) {
   if (node.is_condition() && steps_of(node) >= kMinSteps) {
     const int source = only_source(node);
@@ -456,11 +455,12 @@ void make_tables(PlanNode& node, const Inputs& inputs) {
   for (PlanNode& part : node.parts) make_tables(part, inputs);
 }
 
-// Numbers of one block become texels of its tile. The bits where a number does not fit the type.
-Bits write_block(const Numbers& numbers, Bits wanted, ValueType type, int block_x, int block_y,
+// Writes the numbers of one block to its tile. Returns the bits of the texels whose number does not
+// fit the type.
+Bits write_block(const Numbers& numbers, Bits mask, ValueType type, int block_x, int block_y,
                  TileData& tile) {
   Bits unfit = 0;
-  for (Bits rest = numbers.known & wanted; rest != 0; rest &= rest - 1) {
+  for (Bits rest = numbers.known & mask; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const double number = numbers.value[static_cast<std::size_t>(i)];
     const auto bits = encode_value(type, is_float(type) ? number : std::round(number));
@@ -484,11 +484,11 @@ Result<TexelSelection> select_where(const BoundExpression& condition,
   const Inputs inputs{plan.sources, condition.records, map, frame};
   make_tables(plan.root, inputs);
   const std::size_t slots = map.block_of_slot.size();
-  const auto wanted = [&](std::size_t slot) {
+  const auto candidates = [&](std::size_t slot) {
     return within ? map.surface_mask[slot] & (*within)[slot] : map.surface_mask[slot];
   };
   std::size_t blocks = 0;
-  for (std::size_t slot = 0; slot < slots; ++slot) blocks += wanted(slot) != 0;
+  for (std::size_t slot = 0; slot < slots; ++slot) blocks += candidates(slot) != 0;
   const std::uint64_t steps = steps_of(plan.root) * kTexels;
   spend(steps * blocks);
   TexelSelection selection(slots, 0);
@@ -500,10 +500,10 @@ Result<TexelSelection> select_where(const BoundExpression& condition,
         const QuestionTurn turn;
         std::size_t done = 0;
         for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
-          if (wanted(slot) == 0) continue;
+          if (candidates(slot) == 0) continue;
           if (++done % kBlocksBetweenChecks == 0) turn.check(steps * kBlocksBetweenChecks);
           const Block block(inputs, static_cast<std::uint32_t>(slot), decoded);
-          selection[slot] = block.truths(plan.root).holds & wanted(slot);
+          selection[slot] = block.truths(plan.root).holds & candidates(slot);
         }
       });
   return selection;

@@ -50,8 +50,9 @@ TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGr
     if (tile == nullptr || !tile->valid.test(in_tile)) return std::nullopt;
     return tile->bits(in_tile);
   };
-  const auto wanted = value_of(start);
-  return flood(map, graph, start, [&](std::uint32_t texel) { return value_of(texel) == wanted; });
+  const auto start_value = value_of(start);
+  return flood(map, graph, start,
+               [&](std::uint32_t texel) { return value_of(texel) == start_value; });
 }
 
 TexelSelection select_near(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,

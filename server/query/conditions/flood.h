@@ -6,19 +6,20 @@
 
 namespace strata::query {
 
-// What is connected across the surface with a surface texel (numbered as in TexelGraph), gutter
-// texels left out.
+// Selections of texels that are connected across the surface with a given surface texel (numbered
+// as in TexelGraph), without gutter texels.
 
-// The whole piece of the surface.
+// Selects the whole connected piece of the surface.
 TexelSelection select_piece(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                             std::uint32_t start);
 
-// What holds the same value as it, or like it none. `tiles` are a layer's of the map's resolution.
+// Selects the connected texels with the same value as `start`, or without a value if it has none.
+// `tiles` belong to a layer of the map's resolution.
 TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                                 const TileMap& tiles, std::uint32_t start);
 
-// What lies within `radius` (model units, straight) of `place` and is connected with `start`, which
-// is there, within that distance: the other side of a thin wall is not.
+// Selects the texels within `radius` (model units, Euclidean) of `place` that are connected with
+// `start`, which is at `place`, within that distance: this excludes the other side of a thin wall.
 TexelSelection select_near(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                            std::uint32_t start, const glm::vec3& place, float radius);
 

@@ -8,11 +8,10 @@
 
 namespace strata::query {
 
-// Numbers to be found among many, in a time that does not grow with how many there are: hashed,
-// open addressing, at most half full.
+// A set of numbers with look-up in constant time: hashed, open addressing, at most half full.
 class NumberSet {
  public:
-  // Finite numbers, in any order, also several times.
+  // Finite numbers, in any order, possibly repeated.
   explicit NumberSet(std::span<const double> numbers) {
     while (places_.size() < 2 * numbers.size()) places_.resize(places_.size() * 2);
     shift_ = 64 - std::countr_zero(places_.size());
@@ -29,7 +28,7 @@ class NumberSet {
   bool contains(double number) const { return used_[place_of(number)] != 0; }
 
  private:
-  // Where it stands, or would stand. 0 and -0 are one number.
+  // The place of a number, or the free place for it. 0 and -0 are equal.
   std::size_t place_of(double number) const {
     const auto bits = std::bit_cast<std::uint64_t>(number == 0 ? 0.0 : number);
     std::size_t place = bits * 0x9e3779b97f4a7c15u >> shift_;

@@ -5,6 +5,7 @@
 
 #include "core/compensated_sum.h"
 #include "mesh/parallel.h"
+#include "mesh/texels/surface_map.h"
 
 namespace strata::query {
 namespace {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/texels/surface_map.h"
 #include "query/conditions/texel_selection.h"
 #include "query/sampling/values.h"
 
@@ -13,8 +14,8 @@ namespace strata::query {
 
 constexpr int kBlocksPerTile = kTileSize / kBlockSize;
 
-// Ascending by address: sums of floats depend on their order, and the same layer is to have the
-// same sums.
+// Sorts tiles by address: sums of floats depend on the order, and the sums of a layer must be
+// reproducible.
 std::vector<std::pair<TileAddress, const TileData*>> sorted_tiles(const TileMap& tiles);
 
 // The 64 flags of a block of a mask, bit y * 8 + x.
@@ -29,7 +30,7 @@ inline std::uint64_t block_bits(const TileMask& mask, int block_x, int block_y) 
 }
 
 // Calls visit(slot, texel in the block, bits of the value) for each valid surface texel of a tile,
-// of those in `within` (null: all), block by block. `Bits` is the unsigned type of the layer's
+// restricted to `within` (null: all), block by block. `Bits` is the unsigned type of the layer's
 // texels.
 template <class Bits, class Visit>
 void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::SurfaceMap& map,
@@ -58,12 +59,12 @@ void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::Su
   }
 }
 
-// The values of all bit patterns of a type of one or two bytes: halves are slow to decode. Null for
-// longer types.
+// The decoded values of all bit patterns of a type of one or two bytes, because half floats are
+// slow to decode. Null for longer types.
 const double* values_of_bits(ValueType type);
 
-// visit(slot, texel in the block, bits, value) for each texel of for_each_texel_of whose value is
-// finite: a raster may have brought others.
+// Calls visit(slot, texel in the block, bits, value) for each texel of for_each_texel_of whose
+// value is finite: an imported raster may contain other values.
 template <class Visit>
 void for_each_value(const TileData& tile, TileAddress address, ValueType type,
                     const mesh::SurfaceMap& map, const TexelSelection* within, Visit&& visit) {

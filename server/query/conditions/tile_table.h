@@ -6,7 +6,7 @@
 
 namespace strata::query {
 
-// A layer's tiles as a dense table: one lookup a block or texel. Keeps no tile alive.
+// A layer's tiles as a dense table: one lookup a block or texel. Does not own the tiles.
 class TileTable {
  public:
   TileTable(const TileMap& tiles, int resolution) : tiles_per_side_(resolution / kTileSize) {
@@ -16,11 +16,11 @@ class TileTable {
         tiles_[std::size_t(address.y) * tiles_per_side_ + address.x] = tile.get();
   }
 
-  // Null where nothing is valid.
+  // Null if the tile has no valid texel.
   const TileData* of_texel(int x, int y) const {
     return tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];
   }
-  // Along one axis: the layer's texel that holds the centre of a texel of a map of another
+  // Along one axis: the layer's texel that contains the center of a texel of a map with another
   // resolution.
   int texel_under(int texel, int map_resolution) const {
     return static_cast<int>((2 * std::int64_t{texel} + 1) *

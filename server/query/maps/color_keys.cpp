@@ -9,7 +9,7 @@ namespace strata::query {
 namespace {
 
 constexpr double kMinShare = 0.005;
-constexpr int kBinBits = 5;  // of a channel in the first count
+constexpr int kBinBits = 5;  // of a channel in the first histogram
 
 struct Lab {
   float l = 0, a = 0, b = 0;
@@ -37,7 +37,7 @@ Lab lab_of(const std::uint8_t* rgb) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// Pixels of much the same colour.
+// Pixels of similar color.
 struct Bin {
   std::array<std::uint64_t, 3> sum{};
   std::uint64_t count = 0, at_border = 0;
@@ -55,7 +55,7 @@ struct Bin {
   }
 };
 
-// The fullest first.
+// The bins with the most pixels first.
 std::vector<Bin> bins_of(const Picture& picture) {
   std::vector<Bin> bins(std::size_t{1} << (3 * kBinBits));
   const std::uint8_t* rgba = picture.rgba.data();
@@ -76,7 +76,7 @@ std::vector<Bin> bins_of(const Picture& picture) {
   return bins;
 }
 
-// Puts each bin to its nearest centre within the tolerance; without one it becomes a centre where
+// Adds each bin to the nearest center within the tolerance; without one it becomes a center if
 // `may_grow`.
 std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres, float tolerance,
                           bool may_grow) {
@@ -102,21 +102,21 @@ std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres
 
 Result<std::vector<ColorKey>> parse_color_keys(std::string_view text, const std::string& field) {
   const auto refuse = [&](const std::string& what) {
-    return fail(ErrorCode::invalid, "Colours not understood", what, field);
+    return fail(ErrorCode::invalid, "Invalid colors", what, field);
   };
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || json.empty() || json.size() > kMaxColorKeys)
-    return refuse("Give an object of 1 to " + std::to_string(kMaxColorKeys) +
-                  " colours with their values, such as {\"#c02020\": 1}.");
+    return refuse("Send an object of 1 to " + std::to_string(kMaxColorKeys) +
+                  " colors with their values, such as {\"#c02020\": 1}.");
   std::vector<ColorKey> keys;
   for (const auto& [color, value] : json.items()) {
     if (!value.is_number())
-      return refuse("The colour " + color.substr(0, 20) + " has no number as its value.");
-    // A legend of one point: colours are written the same there.
+      return refuse("The color " + color.substr(0, 20) + " has a value that is not a number.");
+    // Parsed as a legend of one point: both use the same color syntax.
     const auto legend = palette_from_json(
         {{"mode", "categorical"}, {"points", {{{"at", value}, {"color", color}}}}}, field);
     if (!legend)
-      return refuse("\"" + color.substr(0, 20) + "\" is no colour; write it as \"#rrggbb\".");
+      return refuse("\"" + color.substr(0, 20) + "\" is not a color. Write it as \"#rrggbb\".");
     keys.push_back({legend->points[0].color, value.get<double>()});
   }
   return keys;
@@ -158,7 +158,7 @@ std::vector<FoundColor> find_colors(const Picture& picture, double tolerance) {
     return groups;
   };
   auto groups = large(gathered(bins, {}, static_cast<float>(tolerance), true));
-  // Once more around the middles of what was found: the first centre of a group is only its fullest
+  // A second pass around the means of the groups: the first center of a group is only its fullest
   // bin.
   std::vector<Lab> centres;
   for (const Bin& group : groups) centres.push_back(lab_of(group.mean().data()));

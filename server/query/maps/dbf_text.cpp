@@ -8,7 +8,7 @@
 namespace strata::query {
 namespace {
 
-// Closes what iconv_open gives, which is no pointer to something.
+// Closes the result of iconv_open, which is not a real pointer.
 class Converter {
  public:
   explicit Converter(const std::string& encoding)
@@ -19,10 +19,10 @@ class Converter {
     if (is_open()) iconv_close(handle_);
   }
   bool is_open() const { return handle_ != reinterpret_cast<iconv_t>(-1); }
-  // Empty: it is not valid in that encoding.
+  // Empty if the text is not valid in that encoding.
   std::string convert(std::string_view text) const {
     std::string out(text.size() * 4, '\0');
-    char* from = const_cast<char*>(text.data());  // iconv's interface is older than const
+    char* from = const_cast<char*>(text.data());  // iconv's interface is not const-correct
     char* to = out.data();
     std::size_t left = text.size(), room = out.size();
     if (iconv(handle_, &from, &left, &to, &room) == static_cast<std::size_t>(-1)) return {};

@@ -15,12 +15,13 @@ namespace {
 
 constexpr int kMaxGrids = 6;  // each twice as coarse as the one before
 
-// GEOS's, of this thread. Its objects know no context: any may work with them.
+// The GEOS context of this thread. GEOS objects do not depend on a context: any thread may use
+// them.
 class Context {
  public:
   Context() : handle_(GEOS_init_r()) {
     static std::once_flag once;
-    // Called within long operations: what it throws ends them.
+    // Called within long operations: an exception ends them.
     std::call_once(once, [] { GEOS_interruptRegisterCallback(&check_question); });
     GEOSContext_setErrorMessageHandler_r(
         handle_,
@@ -71,21 +72,21 @@ Owned closed_ring(const FlatRing& ring) {
   return owned(GEOSGeom_createLinearRing_r(geos(), corners));
 }
 
-// Lines and points that are left where areas only touch are no areas.
+// Removes lines and points, which result where areas only touch.
 Owned areas_alone(Owned geometry) {
   const int type = GEOSGeomTypeId_r(geos(), geometry.get());
   if (type == GEOS_POLYGON || type == GEOS_MULTIPOLYGON) return geometry;
-  std::vector<GEOSGeometry*> kept;
+  std::vector<GEOSGeometry*> areas;
   const int count = GEOSGetNumGeometries_r(geos(), geometry.get());
   for (int i = 0; type == GEOS_GEOMETRYCOLLECTION && i < count; ++i) {
     const GEOSGeometry* part = GEOSGetGeometryN_r(geos(), geometry.get(), i);
     const int of_part = GEOSGeomTypeId_r(geos(), part);
-    if (of_part == GEOS_POLYGON) kept.push_back(GEOSGeom_clone_r(geos(), part));
+    if (of_part == GEOS_POLYGON) areas.push_back(GEOSGeom_clone_r(geos(), part));
     for (int k = 0; of_part == GEOS_MULTIPOLYGON && k < GEOSGetNumGeometries_r(geos(), part); ++k)
-      kept.push_back(GEOSGeom_clone_r(geos(), GEOSGetGeometryN_r(geos(), part, k)));
+      areas.push_back(GEOSGeom_clone_r(geos(), GEOSGetGeometryN_r(geos(), part, k)));
   }
-  return owned(GEOSGeom_createCollection_r(geos(), GEOS_MULTIPOLYGON, kept.data(),
-                                           static_cast<unsigned>(kept.size())));
+  return owned(GEOSGeom_createCollection_r(geos(), GEOS_MULTIPOLYGON, areas.data(),
+                                           static_cast<unsigned>(areas.size())));
 }
 
 Owned made_valid(Owned polygon) {
@@ -94,7 +95,7 @@ Owned made_valid(Owned polygon) {
     GEOSMakeValidParams* params = GEOSMakeValidParams_create_r(geos());
     ~Params() { GEOSMakeValidParams_destroy_r(geos(), params); }
   } const made;
-  // What rings go round twice stays: a surface that folds over itself covers it.
+  // Regions that rings enclose twice are kept: a surface that folds over itself covers them.
   GEOSMakeValidParams_setMethod_r(geos(), made.params, GEOS_MAKE_VALID_STRUCTURE);
   return areas_alone(owned(GEOSMakeValidWithParams_r(geos(), polygon.get(), made.params)));
 }
@@ -119,7 +120,7 @@ FlatRing ring_of(const GEOSGeometry* line, bool counter_clockwise) {
 double ring_area(const FlatRing& ring) {
   double twice = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    // From the first corner, so that large coordinates cost no digits.
+    // Relative to the first corner, so that large coordinates do not cost precision.
     const glm::dvec3 a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
     twice += a.x * b.y - b.x * a.y;
   }
@@ -171,8 +172,7 @@ FlatArea FlatArea::joined(std::vector<FlatArea> areas, double grid) {
     if (!area.is_empty()) parts.push_back(area.held_->geometry.release());
   const Owned all = owned(GEOSGeom_createCollection_r(geos(), GEOS_GEOMETRYCOLLECTION, parts.data(),
                                                       static_cast<unsigned>(parts.size())));
-  // Rarely lines that lie in each other on one grid are too much for GEOS, and not on a coarser
-  // one.
+  // In rare cases GEOS fails for coincident lines on one grid, but not on a coarser one.
   for (int tries = 1;; ++tries, grid *= 2) {
     try {
       return FlatArea(std::make_unique<Held>(

@@ -5,11 +5,10 @@
 #include <memory>
 #include <vector>
 
-// Areas in a plane and what is computed with them, by GEOS. Nothing of its headers is seen outside.
+// Areas in a plane and operations on them, by GEOS. Its headers are not exposed.
 namespace strata::query {
 
-// A ring's corners, without a repeated last one. `z` is carried along, and interpolated where lines
-// cross.
+// A ring's corners, without a repeated last one. `z` is kept, and interpolated where lines cross.
 using FlatRing = std::vector<glm::dvec3>;
 double ring_area(const FlatRing& ring);  // negative: clockwise
 
@@ -17,14 +16,14 @@ struct FlatPolygon {
   std::vector<FlatRing> rings;  // the outer one first
 };
 
-// Polygons that may have holes and do not overlap, always valid as OGC simple features have it.
-// Move-only. Every operation stops where the current question is over (QuestionEnded), and throws
-// std::runtime_error where GEOS gives up.
+// Polygons that may have holes and do not overlap, always valid as OGC simple features. Move-only.
+// Every operation throws QuestionEnded when the current question is over, and std::runtime_error
+// when GEOS fails.
 class FlatArea {
  public:
   FlatArea();  // empty
-  // The first ring is the outer one, in any direction; where rings cross or touch, what the outer
-  // one goes round without the holes.
+  // The first ring is the outer one, in any direction. Where rings cross or touch, the area is the
+  // one enclosed by the outer ring without the holes.
   explicit FlatArea(const FlatPolygon& polygon);
   FlatArea(FlatArea&&) noexcept;
   FlatArea& operator=(FlatArea&&) noexcept;
@@ -33,13 +32,13 @@ class FlatArea {
   bool is_empty() const;
   double area() const;
   FlatArea cut_with(const FlatArea& other) const;
-  // Closed polygons: outer rings counter-clockwise, holes clockwise.
+  // Closed polygons: outer rings counterclockwise, holes clockwise.
   std::vector<FlatPolygon> polygons() const;
 
-  // What any of them covers, with corners on a grid, which is made coarser where GEOS cannot work
-  // with it.
+  // The union of the areas, with corners on a grid, which is made coarser if GEOS fails.
   static FlatArea joined(std::vector<FlatArea> areas, double grid);
-  // With fewer corners, none farther from the line than `distance`. No polygon and no hole goes.
+  // Removes corners; no removed corner is farther than `distance` from the line. Keeps all polygons
+  // and holes.
   FlatArea simplified(double distance) const;
 
  private:
@@ -49,7 +48,7 @@ class FlatArea {
   std::unique_ptr<Held> held_;
 };
 
-// Finds areas by their boxes. `areas` must live as long and stay where they are.
+// Finds areas by their boxes. `areas` must outlive the tree and stay at their addresses.
 class FlatAreaTree {
  public:
   explicit FlatAreaTree(const std::vector<FlatArea>& areas);
@@ -57,7 +56,7 @@ class FlatAreaTree {
   FlatAreaTree(const FlatAreaTree&) = delete;
   FlatAreaTree& operator=(const FlatAreaTree&) = delete;
 
-  // Those whose boxes meet the box of `area`.
+  // Visits the areas whose boxes intersect the box of `area`.
   void find(const FlatArea& area, const std::function<void(const FlatArea&)>& visit) const;
 
  private:

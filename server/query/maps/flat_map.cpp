@@ -8,7 +8,7 @@ namespace strata::query {
 namespace {
 
 constexpr int kMaxCells = 512;  // a side
-// areas that lie across everything stand in every cell
+// limit of the grid's entries: areas that cover everything are in every cell
 constexpr std::size_t kMaxEntries = std::size_t{1} << 22;
 
 }  // namespace

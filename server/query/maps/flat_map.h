@@ -13,12 +13,13 @@ struct MapArea {
   double value = 0;
 };
 
-// Areas in a plane with a value each, asked by place: a grid tells which of thousands may be there.
+// Areas in a plane with a value each, looked up by position. A grid narrows thousands of areas to a
+// few.
 class FlatMap {
  public:
   explicit FlatMap(std::vector<MapArea> areas);
 
-  // Of the last area that the point lies in: later ones lie on top.
+  // The value of the last area that contains the point: later ones are on top.
   std::optional<double> value_at(const glm::dvec2& point) const;
   const std::vector<MapArea>& areas() const { return areas_; }
 
@@ -28,7 +29,7 @@ class FlatMap {
   };
   Cells cells_of(const PolygonArea& area) const;
   int cell(double at, double low, double size) const;
-  std::size_t entries() const;  // of the grid, at its side
+  std::size_t entries() const;  // of the grid, with side_
 
   std::vector<MapArea> areas_;
   glm::dvec2 low_, size_;

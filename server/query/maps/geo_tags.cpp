@@ -14,7 +14,7 @@ constexpr std::uint16_t kModelType = 1024, kRasterType = 1025, kProjected = 3072
 constexpr std::uint16_t kGeographic = 2, kPixelIsPoint = 2;
 constexpr std::uint16_t kUserDefined = 32767;
 
-// libtiff reads tags that it does not know as lists of the type that the file says.
+// libtiff reads unknown tags as lists of the type given in the file.
 template <class T>
 std::span<const T> list_of(TIFF* tiff, std::uint32_t tag, TIFFDataType type) {
   const TIFFField* field = TIFFFindField(tiff, tag, TIFF_ANY);
@@ -49,7 +49,7 @@ GeoKeys read_keys(TIFF* tiff) {
   return keys;
 }
 
-// How the centre of the first pixel lies to the raster's origin.
+// The position of the first pixel's center relative to the raster's origin.
 WorldFile shifted(WorldFile world, double half) {
   world.x += half * (world.x_per_column + world.x_per_row);
   world.y += half * (world.y_per_column + world.y_per_row);
@@ -70,7 +70,7 @@ std::optional<double> nodata_of(TIFF* tiff) {
 }
 
 void set_nodata(TIFF* tiff, const char* number) {
-  static char name[] = "GDALNoDataValue";  // libtiff keeps no copy
+  static char name[] = "GDALNoDataValue";  // libtiff does not copy it
   static const TIFFFieldInfo field{kNodata, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
   TIFFMergeFieldInfo(tiff, &field, 1);
   TIFFSetField(tiff, kNodata, number);

@@ -12,7 +12,7 @@ using nlohmann::json;
 constexpr int kMaxDepth = 16;
 
 tl::unexpected<Error> refuse(const std::string& where, const std::string& what) {
-  return fail(ErrorCode::invalid, "Map not understood", what,
+  return fail(ErrorCode::invalid, "Map cannot be read", what,
               where.empty() ? "body" : "body." + where);
 }
 
@@ -28,7 +28,7 @@ class Reader {
  public:
   Result<void> read(const json& node, const std::string& where, int depth = 0) {
     if (!node.is_object() || !node.contains("type") || !node["type"].is_string())
-      return refuse(where, "A GeoJSON object with a `type` is expected here.");
+      return refuse(where, "Expected a GeoJSON object with a `type` here.");
     if (depth > 4) return refuse(where, "It is nested too deeply.");
     const auto& type = node["type"].get_ref<const std::string&>();
     if (type == "FeatureCollection") return each(node, "features", where, depth);
@@ -37,8 +37,8 @@ class Reader {
     if (type == "Polygon")
       return polygon(member(node, "coordinates"), inside(where, "coordinates"));
     if (type == "MultiPolygon") return polygons(member(node, "coordinates"), where);
-    return refuse(where,
-                  "Only Polygon and MultiPolygon are painted, not " + type.substr(0, 40) + ".");
+    return refuse(
+        where, "The server paints Polygon and MultiPolygon only, not " + type.substr(0, 40) + ".");
   }
 
   FeatureMap take() { return std::move(map_); }
@@ -52,24 +52,24 @@ class Reader {
 
   Result<void> each(const json& node, const char* name, const std::string& where, int depth) {
     const json& list = member(node, name);
-    if (!list.is_array()) return refuse(where, "It lacks the list `" + std::string(name) + "`.");
+    if (!list.is_array()) return refuse(where, "It has no list `" + std::string(name) + "`.");
     for (std::size_t i = 0; i < list.size(); ++i)
       STRATA_TRY(read(list[i], element(inside(where, name), i), depth + 1));
     return {};
   }
 
-  // Of its own, or the whole text's where that is a bare geometry.
+  // The current feature, or a feature for the whole text if that is a bare geometry.
   MapFeature& current() {
     if (map_.features.empty()) map_.features.push_back({{}, {}, "body"});
     return map_.features.back();
   }
 
   Result<void> feature(const json& node, const std::string& where, int depth) {
-    if (!node.contains("geometry")) return refuse(where, "A feature has a `geometry`.");
+    if (!node.contains("geometry")) return refuse(where, "A feature must have a `geometry`.");
     if (node["geometry"].is_null()) return {};
     if (map_.features.size() == kMaxMapFeatures)
-      return refuse(where, "A map has at most " + std::to_string(kMaxMapFeatures) +
-                               " features; send it in parts.");
+      return refuse(where, "A map can have at most " + std::to_string(kMaxMapFeatures) +
+                               " features. Send the map in parts.");
     map_.features.push_back({{}, {}, "body" + (where.empty() ? "" : "." + where)});
     STRATA_TRY(properties(member(node, "properties"), where));
     return read(node["geometry"], inside(where, "geometry"), depth + 1);
@@ -86,7 +86,7 @@ class Reader {
       if (value.is_string()) read = value.get<std::string>();
       const auto [column, is_new] = columns_.try_emplace(name, map_.columns.size());
       if (is_new && map_.columns.size() == kMaxMapColumns)
-        return refuse(where, "A map has at most " + std::to_string(kMaxMapColumns) +
+        return refuse(where, "A map can have at most " + std::to_string(kMaxMapColumns) +
                                  " different properties.");
       if (is_new) map_.columns.push_back(name);
       if (values.size() <= column->second) {
@@ -101,30 +101,31 @@ class Reader {
 
   Result<void> polygons(const json& list, const std::string& where) {
     if (!list.is_array())
-      return refuse(where, "A MultiPolygon has a list of polygons as `coordinates`.");
+      return refuse(where, "The `coordinates` of a MultiPolygon must be a list of polygons.");
     for (std::size_t i = 0; i < list.size(); ++i)
       STRATA_TRY(polygon(list[i], element(inside(where, "coordinates"), i)));
     return {};
   }
 
   Result<void> polygon(const json& rings, const std::string& where) {
-    if (!rings.is_array() || rings.empty()) return refuse(where, "A polygon is a list of rings.");
+    if (!rings.is_array() || rings.empty())
+      return refuse(where, "A polygon must be a list of rings.");
     MapFeature::Rings read_rings;
     for (std::size_t r = 0; r < rings.size(); ++r) {
       const std::string place = element(where, r);
       if (!rings[r].is_array() || rings[r].size() < 3)
-        return refuse(place, "A ring has at least three points.");
+        return refuse(place, "A ring must have at least three points.");
       auto& ring = read_rings.emplace_back();
       for (std::size_t p = 0; p < rings[r].size(); ++p) {
         const json& point = rings[r][p];
         if (!point.is_array() || point.size() < 2 || !point[0].is_number() || !point[1].is_number())
-          return refuse(element(place, p), "A point is a list of numbers: x, y.");
+          return refuse(element(place, p), "A point must be a list of numbers: x, y.");
         const glm::dvec2 at(point[0].get<double>(), point[1].get<double>());
         if (!std::isfinite(at.x) || !std::isfinite(at.y))
-          return refuse(element(place, p), "Coordinates are finite numbers.");
+          return refuse(element(place, p), "Coordinates must be finite numbers.");
         if (++points_ > kMaxMapPoints)
-          return refuse(place, "A map has at most " + std::to_string(kMaxMapPoints) +
-                                   " points; send it in parts.");
+          return refuse(place, "A map can have at most " + std::to_string(kMaxMapPoints) +
+                                   " points. Send the map in parts.");
         ring.push_back(at);
       }
     }
@@ -149,10 +150,10 @@ Result<FeatureMap> parse_geojson(std::string_view text) {
       },
       false);
   if (too_deep)
-    return fail(ErrorCode::invalid, "Map not understood", "It is nested too deeply to be GeoJSON.",
+    return fail(ErrorCode::invalid, "Map cannot be read", "It is nested too deeply to be GeoJSON.",
                 "body");
   if (parsed.is_discarded())
-    return fail(ErrorCode::malformed, "Malformed JSON", "The body is no JSON text.", "body");
+    return fail(ErrorCode::malformed, "Malformed JSON", "The body is not JSON.", "body");
   Reader reader;
   STRATA_TRY(reader.read(parsed, ""));
   return reader.take();

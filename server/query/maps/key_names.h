@@ -9,24 +9,24 @@
 
 namespace strata::query {
 
-// Keys by their names, as a layer's legend has them and a map adds to them.
+// Keys by their names, from a layer's legend and from an imported map.
 class KeyNames {
  public:
-  // The names are the labels of a categorical palette. Keys in `taken` mean something already,
-  // though they may have no name.
+  // The names are the labels of a categorical palette. Keys in `taken` are in use, even those
+  // without a name.
   KeyNames(const Palette& palette, const std::set<double>& taken);
 
-  // The key of that name; a new name gets the lowest number from 1 that has no name and is not
-  // taken.
+  // Returns the key with that name; a new name gets the lowest number from 1 that has no name and
+  // is not in use.
   double key_of(const std::string& name);
-  // Gives a key its name, and its colour where one is told; those that it has in the legend stay.
+  // Sets the name or the color of a key, unless the legend has one for it.
   void name(double key, const std::string& name);
   void color(double key, const Rgba& color);
 
-  // What the legend lacks. Names alone, and all.
+  // The names that the legend lacks, and whether anything is new.
   const std::vector<std::string>& added_names() const { return added_names_; }
   bool has_changed() const { return changed_; }
-  // The legend with it, points ascending.
+  // The legend with the additions, points ascending.
   Palette extended() const;
 
  private:

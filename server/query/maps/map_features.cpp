@@ -6,7 +6,7 @@
 namespace strata::query {
 namespace {
 
-constexpr std::size_t kMaxSampleLength = 200;  // longer texts are no names of anything
+constexpr std::size_t kMaxSampleLength = 200;  // longer texts are not names
 
 std::string text_of(const MapValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -26,14 +26,14 @@ Result<std::size_t> column_named(const FeatureMap& map, const std::string& name,
   std::string known;
   for (const std::string& column : map.columns) known += (known.empty() ? "" : ", ") + column;
   return fail(
-      ErrorCode::invalid, "No such attribute",
+      ErrorCode::invalid, "Attribute not found",
       "The map has no attribute '" + name + "'" +
           (known.empty() ? "; it has none at all." : "; it has " + known.substr(0, 500) + "."),
       field);
 }
 
 tl::unexpected<Error> refuse(const MapFeature& feature, const std::string& what) {
-  return fail(ErrorCode::invalid, "Map not understood", feature.place + ": " + what, "body");
+  return fail(ErrorCode::invalid, "Map cannot be read", feature.place + ": " + what, "body");
 }
 
 }  // namespace
@@ -45,8 +45,8 @@ std::string number_text(double value) {
 }
 
 std::string too_many_values() {
-  return "A map has at most " + std::to_string(kMaxMapValues / 1'000'000) +
-         " million attribute values; leave out attributes, or send it in parts.";
+  return "A map can have at most " + std::to_string(kMaxMapValues / 1'000'000) +
+         " million attribute values. Leave out attributes, or send the map in parts.";
 }
 
 std::vector<MapColumn> columns_of(const FeatureMap& map) {
@@ -96,11 +96,13 @@ Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyName
       else if (text && !text->empty() && keys)
         number = keys->key_of(*text);
       else if (text && !text->empty())
-        return refuse(feature, "the attribute '" + choice.attribute + "' holds no number but \"" +
+        return refuse(feature, "the attribute '" + choice.attribute +
+                                   "' contains, instead of a number, the text \"" +
                                    text->substr(0, 60) +
-                                   "\". Names need a layer whose legend is categorical.");
+                                   "\". To use names, choose a layer with a categorical legend.");
       else
-        return refuse(feature, "the attribute '" + choice.attribute + "' holds no number.");
+        return refuse(feature,
+                      "the attribute '" + choice.attribute + "' does not contain a number.");
     }
     if (!choice.names.empty() && keys)
       if (std::string name = text_of(value_in(feature, name_column)); !name.empty())
@@ -109,7 +111,7 @@ Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyName
       areas.push_back({PolygonArea(rings), number});
   }
   if (areas.empty())
-    return fail(ErrorCode::invalid, "No polygons", "The map holds no polygon.", "body");
+    return fail(ErrorCode::invalid, "No polygons", "The map contains no polygon.", "body");
   return FlatMap(std::move(areas));
 }
 

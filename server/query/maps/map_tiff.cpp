@@ -12,7 +12,7 @@ namespace strata::query {
 namespace {
 
 tl::unexpected<Error> refuse(const std::string& what) {
-  return fail(ErrorCode::invalid, "TIFF refused", what, "body");
+  return fail(ErrorCode::invalid, "TIFF not accepted", what, "body");
 }
 
 tl::unexpected<Error> damaged(const TiffMemory& file) {
@@ -36,14 +36,14 @@ std::optional<ValueType> sample_type(int bits, int format) {
   }
 }
 
-// Of scanned maps and photographs.
+// Compressions of scanned maps and photographs.
 bool is_picture_codec(int compression) {
   return is_lossless(compression) || compression == COMPRESSION_JPEG ||
          compression == COMPRESSION_CCITTRLE || compression == COMPRESSION_CCITTFAX3 ||
          compression == COMPRESSION_CCITTFAX4;
 }
 
-// Samples that libtiff converts to RGBA in whole pictures.
+// Samples that libtiff can convert to RGBA as a whole picture.
 bool can_be_rgba(TIFF* tiff, int bits, int format) {
   char why[1024];
   return bits <= 16 && format != SAMPLEFORMAT_IEEEFP && format != SAMPLEFORMAT_INT &&
@@ -56,7 +56,7 @@ bool is_nodata(const MapTiff& info, double value) {
                                      : value == *info.nodata;
 }
 
-// Takes one band out of rows of samples.
+// Extracts one band from rows of samples.
 class BandReader {
  public:
   BandReader(const MapTiff& info, int band, TIFF* tiff)
@@ -80,7 +80,7 @@ class BandReader {
     return is_separate_ ? width_ : width_ * static_cast<std::size_t>(info_.bands);
   }
 
-  // `count` pixels that begin at `samples` are those from (x, row) on.
+  // `samples` are `count` pixels from (x, row) on.
   void put(const std::uint8_t* samples, std::uint32_t x, std::uint32_t row, std::uint32_t count) {
     const std::uint8_t* from =
         samples + (is_separate_ ? 0 : width_ * static_cast<std::size_t>(band_));
@@ -97,7 +97,7 @@ class BandReader {
       }
       const double value = decode_value(info_.type, bits);
       if (!std::isfinite(value) || is_nodata(info_, value)) continue;
-      raster_.bits[to] = *encode_value(info_.type, value);  // as layers keep them
+      raster_.bits[to] = *encode_value(info_.type, value);  // as in layers
       raster_.valid[to] = 1;
     }
   }
@@ -118,7 +118,7 @@ Result<void> read_tiles(TIFF* tiff, const TiffMemory& file, const MapTiff& info,
   const std::uint64_t row_bytes = tile_width * band.pixel_bytes();
   if (tile_width == 0 || tile_height == 0 || row_bytes > kMaxTiffTileBytes / tile_height)
     return refuse("The TIFF's tiles are " + std::to_string(tile_width) + " × " +
-                  std::to_string(tile_height) + "; save it with tiles of 256 × 256.");
+                  std::to_string(tile_height) + ". Save it with tiles of 256 × 256.");
   std::vector<std::uint8_t> tile(row_bytes * tile_height);
   if (TIFFTileSize64(tiff) != tile.size()) return damaged(file);
   const auto width = static_cast<std::uint32_t>(info.width),
@@ -150,7 +150,7 @@ Result<MapTiff> describe(TIFF* tiff, int largest_side) {
              height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH);
   if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint32_t>(largest_side))
     return refuse("The TIFF has " + std::to_string(width) + " × " + std::to_string(height) +
-                  " pixels; 1 to " + std::to_string(largest_side) + " a side are taken.");
+                  " pixels. Each side must have 1 to " + std::to_string(largest_side) + " pixels.");
   info.width = static_cast<int>(width);
   info.height = static_cast<int>(height);
   info.bands = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL);
@@ -163,7 +163,8 @@ Result<MapTiff> describe(TIFF* tiff, int largest_side) {
   const int orientation = tiff_tag<std::uint16_t>(tiff, TIFFTAG_ORIENTATION);
   if (orientation != ORIENTATION_TOPLEFT)
     return refuse("The TIFF is stored turned or mirrored (orientation " +
-                  std::to_string(orientation) + "), so its place is not certain; save it upright.");
+                  std::to_string(orientation) +
+                  "), so its position is not clear. Save it upright.");
   const auto type = sample_type(bits, format);
   const bool is_readable = is_picture_codec(compression) &&
                            TIFFIsCODECConfigured(static_cast<std::uint16_t>(compression));
@@ -176,7 +177,8 @@ Result<MapTiff> describe(TIFF* tiff, int largest_side) {
     return refuse("The TIFF has " + std::to_string(info.bands) + " bands of " +
                   std::to_string(bits) + "-bit samples with compression " +
                   std::to_string(compression) +
-                  "; save it with 8, 16 or 32 bits a band, and deflate, LZW, zstd or none.");
+                  ". Save it with 8, 16 or 32 bits per band and with deflate, LZW, zstd or no "
+                  "compression.");
   STRATA_TRY(read_geo_tags(tiff, info));
   return info;
 }
@@ -204,7 +206,7 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, const M
   const Tiff tiff = open_tiff(file, "rm");
   if (!tiff) return damaged(file);
   if (!info.has_colors)
-    return refuse("The TIFF holds numbers, no colours; choose one of its bands.");
+    return refuse("The TIFF contains numbers instead of colors. Choose one of its bands.");
   const auto width = static_cast<std::uint32_t>(info.width),
              height = static_cast<std::uint32_t>(info.height);
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
@@ -218,7 +220,7 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, const M
     const std::uint32_t colors[] = {TIFFGetR(packed), TIFFGetG(packed), TIFFGetB(packed)};
     bool is_empty = info.nodata.has_value();
     for (int c = 0; c < 3; ++c) {
-      // libtiff multiplies alpha in.
+      // libtiff returns colors multiplied by alpha.
       rgba[c] = static_cast<std::uint8_t>(
           alpha == 0 ? 0 : std::min(255u, (colors[c] * 255 + alpha / 2) / alpha));
       is_empty = is_empty && rgba[c] == *info.nodata;
@@ -231,11 +233,12 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, const M
 Result<BandRaster> decode_tiff_band(std::span<const std::uint8_t> bytes, const MapTiff& info,
                                     int band) {
   if (band < 1 || band > info.bands)
-    return fail(ErrorCode::invalid, "No such band",
+    return fail(ErrorCode::invalid, "Band not found",
                 "The TIFF has the bands 1 to " + std::to_string(info.bands) + ".", "band");
   if (!info.has_numbers)
-    return fail(ErrorCode::invalid, "No numbers",
-                "The TIFF's bands are no numbers of 8, 16 or 32 bits that are kept without loss.",
+    return fail(ErrorCode::invalid, "No usable numbers",
+                "The bands of the TIFF are not numbers of 8, 16 or 32 bits with lossless "
+                "compression. Save it in such a form.",
                 "band");
   TiffMemory file{bytes, nullptr, 0, {}};
   const Tiff tiff = open_tiff(file, "rm");

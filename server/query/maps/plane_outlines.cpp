@@ -18,14 +18,15 @@
 namespace strata::query {
 namespace {
 
-constexpr double kGridOfTexel = 1.0 / 256;  // in which seams meet
+constexpr double kGridOfTexel = 1.0 / 256;  // of the corners at seams
 constexpr double kSimplifiedTexels = 0.5;
 constexpr double kSliverTexels = 1.0 / 64;
-constexpr std::size_t kBytesOfCorner = 400;    // that GEOS and the rings take, at most
-constexpr std::size_t kBytesOfTriangle = 110;  // of the rims and the lookup, while they are made
+constexpr std::size_t kBytesOfCorner = 400;    // limit for GEOS and the rings
+constexpr std::size_t kBytesOfTriangle = 110;  // of the rims and the lookup, while built
 
-// Texels of one class whose surface turns the same side to the plane have a label: what folds over
-// itself in the plane would otherwise have rings that take away what they go round.
+// A label stands for the texels of one class whose surface faces the same side of the plane: a
+// surface that folds over itself in the plane would otherwise have rings that cancel the area they
+// enclose.
 class Labels {
  public:
   Labels(const LayerView& view, const mesh::SurfaceMap& map, const ValueClasses& classes,
@@ -44,7 +45,7 @@ class Labels {
                            2 * known->second + (turned ? 1 : 0) + 1;
                      });
     }
-    // Charts reach into the texels around those whose middle they hold.
+    // Charts extend into the texels around those whose centers they contain.
     mesh::for_each_gutter_texel(map, [&](mesh::SlotTexel gutter, mesh::SlotTexel owner) {
       of_texel_[std::size_t{gutter.slot} * 64 + static_cast<std::size_t>(gutter.texel)] =
           of_texel_[std::size_t{owner.slot} * 64 + static_cast<std::size_t>(owner.texel)];
@@ -85,8 +86,8 @@ class Labels {
   std::vector<std::uint32_t> of_texel_;
 };
 
-// Lobes of a chart that meet in one vertex have an outer ring each. Outer rings run in the
-// direction of the widest ring, holes against it.
+// Lobes of a chart that meet in one vertex have separate outer rings. Outer rings have the
+// direction of the widest ring, holes the opposite one.
 void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& chart,
                      double resolution, std::vector<FlatArea>& areas) {
   std::vector<FlatRing> rings;
@@ -103,7 +104,7 @@ void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& char
     const std::vector<std::vector<glm::dvec2>> flat{{outer.begin(), outer.end()}};
     const PolygonArea inside(flat);
     FlatPolygon polygon{{std::move(outer)}};
-    // Rings may share corners, never an edge.
+    // Rings may share corners, but not edges.
     for (const FlatRing& hole : holes)
       if (inside.contains(glm::dvec2(hole[0] + hole[1]) / 2.0)) polygon.rings.push_back(hole);
     areas.emplace_back(polygon);
@@ -119,7 +120,7 @@ FlatArea region_area(const TexelRegion& region) {
   return FlatArea(polygon);
 }
 
-// What is cut out of the atlas, laid on the plane; model space.
+// Projects pieces of the atlas onto the plane; model space.
 class Laying {
  public:
   Laying(const mesh::Geometry& geometry, double resolution, const OutlinePlane& plane)
@@ -141,7 +142,7 @@ class Laying {
   const OutlinePlane plane_;
 };
 
-// What is left between lines that are the same but for rounding.
+// Removes areas between lines that are equal except for rounding.
 void drop_slivers(std::vector<FlatPolygon>& polygons, double least_area) {
   const auto is_sliver = [&](const FlatRing& ring) {
     return std::abs(ring_area(ring)) < least_area;
@@ -199,11 +200,11 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
   if (labels.classes().empty()) return PlaneOutlines{};
   std::vector<TexelRegion> regions;
   if (!find_regions(map, labels.of_texel(), kMaxOutlineCorners, regions))
-    return fail(
-        ErrorCode::invalid, "Outlines too long",
-        "The borders of what is painted have more than " + std::to_string(kMaxOutlineCorners) +
-            " corners of texels. Ask for texels.tif instead, or for outlines of a layer with fewer areas.",
-        "layer");
+    return fail(ErrorCode::invalid, "Outlines too long",
+                "The borders of the painted areas have more than " +
+                    std::to_string(kMaxOutlineCorners) +
+                    " corners. Request texels.tif instead, or choose a layer with fewer areas.",
+                "layer");
   std::size_t corners = 0;
   for (const TexelRegion& region : regions)
     for (const auto& ring : region.rings) corners += ring.size();
@@ -212,11 +213,10 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
     return outlines_of(labels, regions, geometry, map, plane);
   } catch (const std::runtime_error& error) {
     log::error(std::string("outlines of a layer: ") + error.what());
-    return fail(
-        ErrorCode::internal, "Outlines not made",
-        "The areas could not be laid on the plane. Ask for outlines along another axis, or for texels.tif; the "
-        "server's log says more.",
-        "along");
+    return fail(ErrorCode::internal, "Outlines not possible",
+                "The server could not project the areas onto the plane. Request outlines along "
+                "another axis, or request texels.tif. See the log of the server for the reason.",
+                "along");
   }
 }
 

@@ -2,15 +2,19 @@
 
 #include <map>
 
-#include "mesh/surface/geometry.h"
 #include "query/maps/flat_area.h"
 #include "query/sampling/values.h"
 #include "query/statistics/value_classes.h"
 
+namespace strata::mesh {
+struct Geometry;
+struct SurfaceMap;
+}  // namespace strata::mesh
+
 namespace strata::query {
 
-// A plane that outlines are laid on: which of the world's coordinates lie to the right and upwards,
-// and which is kept beside them.
+// A plane for outlines: the indices of the world coordinates that point to the right and upwards,
+// and of the third one, which is kept.
 struct OutlinePlane {
   int right = 0, up = 1, depth = 2;
 };
@@ -18,14 +22,14 @@ struct OutlinePlane {
 // of texels, before they are simplified
 inline constexpr std::size_t kMaxOutlineCorners = 4'000'000;
 
-// What the areas of each class (ValueClasses::of) cover in the plane, as valid polygons with holes:
-// world coordinates, in the order of the plane. Classes that nothing is painted of are not there;
-// one that is seen edge-on has no polygon.
+// The areas of each class (ValueClasses::of) in the plane, as valid polygons with holes: world
+// coordinates, in the order of the plane. Classes without painted texels are left out; one that is
+// seen edge-on has no polygon.
 //
-// Areas end where the texels end: at their edges, and at the surface's own. Texels are cut with the
-// charts of the atlas, whose rims are the same lines in space on both sides of a seam, so that
-// areas go on over seams without a gap. Lines are simplified by half a mean texel at most. What
-// lies behind another part of the same class is one area with it.
+// Areas end at the edges of texels, and at the surface's own edges. Texels are cut with the charts
+// of the atlas, whose rims are the same lines in space on both sides of a seam, so areas continue
+// across seams without a gap. Lines are simplified by half a mean texel at most. Parts of one class
+// that are behind each other are merged.
 //
 // `map` is of the layer's resolution. Refused (invalid): more than kMaxOutlineCorners corners.
 using PlaneOutlines = std::map<std::uint32_t, std::vector<FlatPolygon>>;

@@ -32,11 +32,11 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
 }
 
 tl::unexpected<Error> refuse(int line, const std::string& what) {
-  return fail(ErrorCode::invalid, "Readings not understood",
+  return fail(ErrorCode::invalid, "Readings cannot be read",
               "Line " + std::to_string(line) + ": " + what, "body");
 }
 
-// The first of the separators that stands in the line of names.
+// The first separator found in the line of names.
 char separator_of(std::string_view names) {
   for (const char separator : {'\t', ';', ','})
     if (names.find(separator) != std::string_view::npos) return separator;
@@ -75,8 +75,9 @@ Result<std::vector<PointMeasurement>> parse_point_measurements(std::string_view 
         const auto found = std::find_if(names.begin(), names.end(),
                                         [&](auto name) { return to_lower(name) == kColumns[i]; });
         if (found == names.end())
-          return refuse(line_number, "there is no column '" + std::string(kColumns[i]) +
-                                         "'; the first line names the columns x, y, z and value.");
+          return refuse(line_number,
+                        "there is no column '" + std::string(kColumns[i]) +
+                            "'. The first line must name the columns x, y, z and value.");
         column[i] = static_cast<std::size_t>(found - names.begin());
       }
       continue;
@@ -84,24 +85,26 @@ Result<std::vector<PointMeasurement>> parse_point_measurements(std::string_view 
     const auto fields = fields_of(line, separator);
     if (fields.size() != columns)
       return refuse(line_number, "it has " + std::to_string(fields.size()) +
-                                     " fields where the first line has " + std::to_string(columns) +
+                                     " fields, but the first line has " + std::to_string(columns) +
                                      ".");
     std::array<double, kColumns.size()> numbers{};
     for (std::size_t i = 0; i < kColumns.size(); ++i) {
       const auto number = number_of(fields[column[i]]);
       if (!number)
         return refuse(line_number,
-                      "the column '" + std::string(kColumns[i]) + "' holds no number.");
+                      "the column '" + std::string(kColumns[i]) + "' does not contain a number.");
       numbers[i] = *number;
     }
     if (measurements.size() == kMaxPointMeasurements)
       return refuse(line_number, "there are more than " + std::to_string(kMaxPointMeasurements) +
-                                     " readings; send them in parts.");
+                                     " readings. Send them in parts.");
     measurements.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3], line_number});
   }
   if (measurements.empty())
     return fail(ErrorCode::invalid, "No readings",
-                "Send lines of x, y, z and value below a line that names these columns.", "body");
+                "The body contains no readings. Send a first line with the column names x, y, "
+                "z and value, and then one line for each reading.",
+                "body");
   return measurements;
 }
 

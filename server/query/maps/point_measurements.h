@@ -18,10 +18,10 @@ struct PointMeasurement {
 };
 
 // Reads a table of measurements. The first line names the columns: x, y, z and value, in any order
-// and case, others are passed over. Columns are parted by commas, semicolons or tabs, numbers have
-// a decimal point; quotes around a field are taken off; empty lines are passed over. Refused
-// (invalid with the line): a missing column, a field that is no finite number, lines of another
-// count of fields, no reading at all, more than kMaxPointMeasurements.
+// and case; others are skipped. Columns are separated by commas, semicolons or tabs, numbers have a
+// decimal point; quotes around a field are removed; empty lines are skipped. Refused (invalid with
+// the line): a missing column, a field that is not a finite number, lines with another number of
+// fields, no measurement at all, more than kMaxPointMeasurements.
 Result<std::vector<PointMeasurement>> parse_point_measurements(std::string_view csv);
 
 }  // namespace strata::query

@@ -70,7 +70,8 @@ Result<std::map<TileAddress, TileData>> paint_point_splats(const mesh::SurfaceMa
   std::vector<std::uint32_t> open;
   for (const PointSplat& splat : point_splats) {
     seen.clear();
-    // The texel at the place is always reached: a dab smaller than a texel is not lost.
+    // The texel at the position itself is always reached, so that a dab smaller than a texel is not
+    // lost.
     const auto reach = [&](std::uint32_t texel, bool always) {
       const std::uint32_t slot = texel / kTexels, i = texel % kTexels;
       const float distance = glm::distance(map.position(slot, static_cast<int>(i)), splat.position);
@@ -90,9 +91,10 @@ Result<std::map<TileAddress, TileData>> paint_point_splats(const mesh::SurfaceMa
     }
     reached_in_all += seen.size();
     if (reached_in_all > kMaxDabTexels)
-      return fail(ErrorCode::invalid, "Too much to paint",
-                  "So many places of this radius cover too much; take a smaller radius.",
-                  "radius_mm");
+      return fail(
+          ErrorCode::invalid, "Painted area too large",
+          "So many points with this radius cover too large an area. Choose a smaller radius.",
+          "radius_mm");
   }
 
   std::map<TileAddress, TileData> tiles;

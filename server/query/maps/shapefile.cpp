@@ -18,7 +18,7 @@ constexpr std::size_t kShpHeader = 100, kRecordHeader = 8, kShxRecord = 8, kDbfH
 constexpr std::size_t kMaxSkipped = 100'000;  // records without a shape
 
 tl::unexpected<Error> refuse(const std::string& what) {
-  return fail(ErrorCode::invalid, "Shapefile not understood", what, "body");
+  return fail(ErrorCode::invalid, "Shapefile cannot be read", what, "body");
 }
 
 std::uint32_t big_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -53,31 +53,31 @@ std::string shape_name(std::uint32_t type) {
   }
 }
 
-// The index of the shapes, which tells shapelib where each lies. Only what lies within the file is
-// in it.
+// Makes the index with the position of each shape for shapelib, of the shapes within the file only.
 Result<std::vector<std::uint8_t>> index_of(std::span<const std::uint8_t> shp) {
-  if (shp.size() < kShpHeader || !is_shapefile(shp)) return refuse("The .shp is no shapefile.");
+  if (shp.size() < kShpHeader || !is_shapefile(shp))
+    return refuse("The .shp file is not a shapefile.");
   const std::uint32_t type = little_endian(shp, 32);
   if (type != SHPT_NULL && !is_polygon(type))
-    return refuse("Only polygons are painted; the .shp holds " + shape_name(type) + ".");
-  const std::uint64_t told = std::uint64_t{big_endian(shp, 24)} * 2;
-  if (told > shp.size())
-    return refuse("The .shp is cut off: it should have " + std::to_string(told) +
+    return refuse("The server paints polygons only. The .shp contains " + shape_name(type) + ".");
+  const std::uint64_t declared_length = std::uint64_t{big_endian(shp, 24)} * 2;
+  if (declared_length > shp.size())
+    return refuse("The .shp is incomplete: it should have " + std::to_string(declared_length) +
                   " bytes and has " + std::to_string(shp.size()) + ".");
   std::vector<std::uint8_t> shx(shp.begin(), shp.begin() + kShpHeader);
   std::size_t records = 0;
-  for (std::size_t at = kShpHeader; at < told; ++records) {
+  for (std::size_t at = kShpHeader; at < declared_length; ++records) {
     const std::string record = "Record " + std::to_string(records + 1) + " of the .shp ";
     if (records == kMaxMapFeatures)
-      return refuse("A map has at most " + std::to_string(kMaxMapFeatures) +
-                    " features; send it in parts.");
-    if (told - at < kRecordHeader + 4) return refuse(record + "is cut off.");
+      return refuse("A map can have at most " + std::to_string(kMaxMapFeatures) +
+                    " features. Send the map in parts.");
+    if (declared_length - at < kRecordHeader + 4) return refuse(record + "is incomplete.");
     const std::uint64_t length = std::uint64_t{big_endian(shp, at + 4)} * 2;
-    if (length < 4 || length > told - at - kRecordHeader)
+    if (length < 4 || length > declared_length - at - kRecordHeader)
       return refuse(record + "is longer than the file.");
     const std::uint32_t shape = little_endian(shp, at + kRecordHeader);
     if (shape != SHPT_NULL && shape != type)
-      return refuse(record + "is of another type than the file.");
+      return refuse(record + "has another type than the file.");
     put_big_endian(shx, static_cast<std::uint32_t>(at / 2));
     put_big_endian(shx, static_cast<std::uint32_t>(length / 2));
     at += kRecordHeader + length;
@@ -87,22 +87,22 @@ Result<std::vector<std::uint8_t>> index_of(std::span<const std::uint8_t> shp) {
   return shx;
 }
 
-// Records and the bytes they take are those that are there.
+// Checks that the records and their bytes are in the file.
 Result<void> check_dbf(std::span<const std::uint8_t> dbf, std::size_t shapes) {
-  if (dbf.size() < kDbfHeader) return refuse("The .dbf is cut off.");
+  if (dbf.size() < kDbfHeader) return refuse("The .dbf is incomplete.");
   const std::uint64_t records = little_endian(dbf, 4);
   const std::uint64_t header = little_endian(dbf, 8) & 0xffff, record = little_endian(dbf, 8) >> 16;
   if (header <= kDbfHeader || record < 1)
     return refuse("The .dbf is damaged: its header has no fields.");
   if (header + records * record > dbf.size())
-    return refuse("The .dbf is cut off: it should hold " + std::to_string(records) +
+    return refuse("The .dbf is incomplete: it should contain " + std::to_string(records) +
                   " records of " + std::to_string(record) + " bytes.");
   if (records != shapes)
     return refuse("The .shp has " + std::to_string(shapes) + " shapes and the .dbf " +
                   std::to_string(records) + " records: they do not belong together.");
   const std::uint64_t fields = (header - kDbfHeader) / kDbfHeader;
   if (fields > kMaxMapColumns)
-    return refuse("A map has at most " + std::to_string(kMaxMapColumns) + " attributes.");
+    return refuse("A map can have at most " + std::to_string(kMaxMapColumns) + " attributes.");
   if (fields * records > kMaxMapValues) return refuse(too_many_values());
   return {};
 }
@@ -180,20 +180,20 @@ class Reader {
     };
     points_ += static_cast<std::size_t>(shape.nVertices);
     if (points_ > kMaxMapPoints)
-      return refuse("A map has at most " + std::to_string(kMaxMapPoints) +
-                    " points; send it in parts.");
+      return refuse("A map can have at most " + std::to_string(kMaxMapPoints) +
+                    " points. Send the map in parts.");
     MapFeature::Rings rings;
     for (int part = 0; part < shape.nParts; ++part) {
       const int begin = shape.panPartStart[part];
       const int end = part + 1 < shape.nParts ? shape.panPartStart[part + 1] : shape.nVertices;
       if (begin < 0 || begin > end || end > shape.nVertices)
-        return bad("has rings that lie outside of it.");
+        return bad("has rings outside its outline.");
       if (end - begin < 3) return bad("has a ring of fewer than three points.");
       auto& ring = rings.emplace_back();
       for (int v = begin; v < end; ++v) {
         const glm::dvec2 at(shape.padfX[v], shape.padfY[v]);
         if (!std::isfinite(at.x) || !std::isfinite(at.y))
-          return bad("has a coordinate that is no finite number.");
+          return bad("has a coordinate that is not a finite number.");
         ring.push_back(at);
       }
     }
@@ -241,7 +241,7 @@ std::string epsg_of(std::string_view wkt) {
   const auto digits = rest.find_first_not_of("0123456789");
   if (digits == 0 || digits == std::string_view::npos || digits > 6 || rest[digits] != '"')
     return {};
-  // The last authority is the whole system's only where nothing else follows it.
+  // The last authority is that of the whole system only if nothing else follows it.
   if (rest.substr(digits + 1).find_first_not_of("] \r\n\t") != std::string_view::npos) return {};
   return "EPSG:" + std::string(rest.substr(0, digits));
 }

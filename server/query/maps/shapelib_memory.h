@@ -9,18 +9,18 @@
 
 namespace strata::query {
 
-// Files in memory for shapelib, and its first complaint about them. While one lives, its thread's
-// shapelib calls through `hooks` see these files alone; nothing is written anywhere.
+// Files in memory for shapelib, and its first error message about them. During its lifetime,
+// shapelib calls of the same thread through `hooks` see only these files; nothing is written.
 class ShapelibMemory {
  public:
   using Files = std::map<std::string, std::span<const std::uint8_t>>;
-  explicit ShapelibMemory(Files files);  // by name; one without bytes is not there
+  explicit ShapelibMemory(Files files);  // by name; a file without bytes does not exist
   ~ShapelibMemory();
   ShapelibMemory(const ShapelibMemory&) = delete;
   ShapelibMemory& operator=(const ShapelibMemory&) = delete;
 
   SAHooks* hooks() { return &hooks_; }
-  // "WHAT: the library's words." for a message.
+  // "WHAT: the message of the library." for an error message.
   std::string complaint(const std::string& what) const;
 
   struct OpenFile {

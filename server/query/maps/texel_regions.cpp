@@ -11,8 +11,8 @@ namespace {
 constexpr std::uint32_t kNoRegion = 0xffffffffu;
 constexpr std::size_t kMinCorners = 4;  // of a region
 constexpr glm::ivec2 kSteps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-// Of a corner, the texels to the left and to the right of the edge that goes on in each direction,
-// as their lower left corners.
+// At a corner: the texels to the left and to the right of the edge that continues in each
+// direction, as their lower left corners.
 constexpr glm::ivec2 kLeftOf[] = {{0, 0}, {-1, 0}, {-1, -1}, {0, -1}};
 constexpr glm::ivec2 kRightOf[] = {{0, -1}, {0, 0}, {-1, 0}, {-1, -1}};
 
@@ -57,7 +57,7 @@ class Regions {
     return {block % map_.blocks_per_side * kBlockSize + texel % kBlockSize,
             block / map_.blocks_per_side * kBlockSize + texel / kBlockSize};
   }
-  // kNoSlot: nothing is there.
+  // kNoSlot: no texel is there.
   mesh::SlotTexel texel_at(glm::ivec2 at) const {
     if (at.x < 0 || at.y < 0) return {mesh::kNoSlot, 0};
     return {mesh::slot_at(map_, at.x / kBlockSize, at.y / kBlockSize),
@@ -88,8 +88,8 @@ class Regions {
     }
   }
 
-  // From the lower left corner of a texel along its lower edge, the region always on the left;
-  // given up once it has more than `most` corners.
+  // Walks from the lower left corner of a texel along its lower edge, with the region always on the
+  // left; stops after more than `most` corners.
   std::vector<glm::ivec2> walk(glm::ivec2 start, std::uint32_t region, std::size_t most) {
     std::vector<glm::ivec2> ring;
     glm::ivec2 at = start;
@@ -121,7 +121,7 @@ class Regions {
   const mesh::SurfaceMap& map_;
   const std::vector<std::uint32_t>& labels_;
   std::vector<std::uint32_t> region_of_;
-  // a slot: bits of the texels whose lower edge is on a ring that is found
+  // a slot: bits of the texels whose lower edge is on a ring found before
   std::vector<std::uint64_t> walked_;
 };
 

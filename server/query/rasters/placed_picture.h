@@ -8,12 +8,12 @@
 
 namespace strata::query {
 
-// Which pixel of a picture of this size lies at a place; nothing outside of it.
+// Finds the pixel of a picture of this size at a position; nothing outside of the picture.
 class PixelFinder {
  public:
   PixelFinder(int width, int height, const WorldFile& world);
   std::optional<std::size_t> pixel_at(const glm::dvec2& point) const;  // row · width + column
-  // In pixels, centres at whole numbers; also outside of the picture.
+  // In pixels, centers at integers; also outside of the picture.
   glm::dvec2 place_of(const glm::dvec2& point) const {
     return pixel_from_plane_ * (point - first_centre_);
   }
@@ -24,14 +24,14 @@ class PixelFinder {
   glm::dvec2 first_centre_;
 };
 
-// A picture's colours by places in the plane.
+// A picture's colors by positions in the plane.
 class PlacedPicture {
  public:
   PlacedPicture(Picture picture, const WorldFile& world);
 
-  // The pixel there, RGBA; nothing outside of the picture or where less than half is opaque.
+  // The RGBA pixel at a position; null outside of the picture or where it is less than half opaque.
   const std::uint8_t* pixel_at(const glm::dvec2& point) const;
-  // Its luminance 0…255 (Rec. 709 weights of the sRGB numbers, rounded).
+  // The luminance 0…255 (Rec. 709 weights of the sRGB numbers, rounded).
   std::optional<int> luminance_at(const glm::dvec2& point) const;
   const Picture& picture() const { return picture_; }
 

@@ -13,7 +13,7 @@ namespace strata::query {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr std::size_t kMaxHeader = 4096;  // ours have about 120 bytes; NumPy pads to 64
+constexpr std::size_t kMaxHeader = 4096;  // Strata writes about 120 bytes; NumPy pads to 64
 
 std::string dtype_of(ValueType type) {
   static constexpr const char* kNames[] = {"|u1", "<u2", "<u4", "|i1", "<i2", "<i4", "<f2", "<f4"};
@@ -27,7 +27,7 @@ struct Header {
   std::size_t data_at = 0;
 };
 
-// The text of a key's value in a Python dictionary without blanks: up to the comma or brace that
+// The text of a key's value in a Python dictionary without blanks, up to the comma or brace that
 // ends it.
 std::optional<std::string> value_of(const std::string& dictionary, const std::string& key) {
   const auto at = dictionary.find("'" + key + "':");
@@ -51,7 +51,7 @@ Result<Header> read_header(std::span<const std::uint8_t> bytes) {
     return damaged();
   const int version = bytes[6];
   if (version < 1 || version > 3)
-    return refuse_raster("NumPy format version " + std::to_string(version) + " is not known.");
+    return refuse_raster("NumPy format version " + std::to_string(version) + " is not supported.");
   const std::size_t start = version == 1 ? 10 : 12;
   std::size_t length = bytes[8] | bytes[9] << 8;
   if (version > 1) length |= std::size_t(bytes[10]) << 16 | std::size_t(bytes[11]) << 24;
@@ -72,7 +72,7 @@ Result<Header> read_header(std::span<const std::uint8_t> bytes) {
 Result<void> check_shape(const Layer& layer, const Header& header) {
   const std::string side = std::to_string(layer.resolution);
   if (header.shape == "(" + side + "," + side + ")") return {};
-  return refuse_raster("The array's shape is " + header.shape.substr(0, 100) +
+  return refuse_raster("The shape of the array is " + header.shape.substr(0, 100) +
                        ", but the layer needs " + raster_needs(layer) + ".");
 }
 
@@ -100,7 +100,7 @@ std::optional<SampleForm> form_of(std::string_view dtype) {
                                                                 : std::nullopt;
 }
 
-// What an element holds: a value, and after it in a structured array whether it is valid.
+// The form of an element: a value, followed in a structured array by a valid flag.
 struct Element {
   SampleForm value;
   std::optional<SampleForm> valid;
@@ -122,10 +122,9 @@ Result<Element> element_of(const std::string& descr) {
                valid = form_of(text.substr(text.size() - kLast.size() - kType, kType));
     if (value && valid && valid->bytes == 1) return Element{*value, valid};
   }
-  return refuse_raster(
-      "The array's type is " + descr.substr(0, 200) +
-      "; a layer takes bool, whole numbers of 1 to 8 bytes and floating-point ones of 2 to 8, alone or as "
-      "[('value', …), ('valid', '|b1')].");
+  return refuse_raster("The type of the array is " + descr.substr(0, 200) +
+                       ". A layer accepts bool, whole numbers of 1 to 8 bytes and floating-point "
+                       "numbers of 2 to 8 bytes, alone or as [('value', …), ('valid', '|b1')].");
 }
 
 }  // namespace
@@ -170,12 +169,12 @@ Result<TileMap> decode_npy(const Layer& layer, std::span<const std::uint8_t> byt
   const auto side = static_cast<std::size_t>(layer.resolution), stride = element.bytes();
   const std::span<const std::uint8_t> data = bytes.subspan(header.data_at);
   if (data.size() != side * side * stride)
-    return refuse_raster("The file holds " + std::to_string(data.size()) +
-                         " bytes of texels, but its header promises " +
-                         std::to_string(side * side * stride) + ". It was cut or is damaged.");
+    return refuse_raster("The file contains " + std::to_string(data.size()) +
+                         " bytes of texels, but its header declares " +
+                         std::to_string(side * side * stride) + ". It is incomplete or damaged.");
   TileMapBuilder builder(layer);
   const SampleReader reader(layer, element.value);
-  // In the order of the file: memory is read from its begin to its end.
+  // In the order of the file, so that memory is read sequentially.
   const std::uint8_t* texel = data.data();
   for (std::size_t slow = 0; slow < side; ++slow)
     for (std::size_t fast = 0; fast < side; ++fast, texel += stride) {

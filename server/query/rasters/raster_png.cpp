@@ -36,8 +36,8 @@ bool fits_png(ValueType type) { return type == ValueType::u8 || type == ValueTyp
 
 std::string describe(int color_type, int bit_depth) {
   const char* kind = "colour";
-  if (color_type == PNG_COLOR_TYPE_GRAY) kind = "grey without alpha";
-  if (color_type == PNG_COLOR_TYPE_GRAY_ALPHA) kind = "grey with alpha";
+  if (color_type == PNG_COLOR_TYPE_GRAY) kind = "gray without alpha";
+  if (color_type == PNG_COLOR_TYPE_GRAY_ALPHA) kind = "gray with alpha";
   if (color_type == PNG_COLOR_TYPE_PALETTE) kind = "palette";
   return std::to_string(bit_depth) + "-bit " + kind;
 }
@@ -46,9 +46,9 @@ std::string describe(int color_type, int bit_depth) {
 
 Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& tiles) {
   if (!fits_png(layer.type))
-    return fail(ErrorCode::not_acceptable, "Not possible as PNG",
-                "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " +
-                    std::string(name(layer.type)) + ". Ask for texels.tif or texels.npy.");
+    return fail(ErrorCode::not_acceptable, "PNG not possible",
+                "PNG can store whole numbers from 0 to 65535 only. The values of this layer are " +
+                    std::string(name(layer.type)) + ". Request texels.tif or texels.npy.");
   const int width = bytes_per_texel(layer.type);
   const TileRows rows(layer, tiles);
   std::vector<std::uint32_t> bits(layer.resolution);
@@ -88,8 +88,8 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
 
 Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> bytes) {
   if (!fits_png(layer.type))
-    return fail(ErrorCode::unsupported, "Not possible as PNG",
-                "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " +
+    return fail(ErrorCode::unsupported, "PNG not possible",
+                "PNG can store whole numbers from 0 to 65535 only. The values of this layer are " +
                     std::string(name(layer.type)) + ". Send texels.tif or texels.npy.",
                 "texels");
   const int width = bytes_per_texel(layer.type);
@@ -117,7 +117,7 @@ Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> byt
                          ", but the layer needs " + describe(PNG_COLOR_TYPE_GRAY_ALPHA, 8 * width) +
                          " (" + raster_needs(layer) + "; opaque where a texel is valid).");
   if (png_get_interlace_type(png, reader.info) != PNG_INTERLACE_NONE)
-    return refuse_raster("The PNG is interlaced; save it without interlacing.");
+    return refuse_raster("The PNG is interlaced. Save it without interlacing.");
 
   TileMapBuilder builder(layer);
   std::vector<std::uint8_t> line(std::size_t(layer.resolution) * 2 * width);

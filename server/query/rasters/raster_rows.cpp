@@ -55,7 +55,7 @@ Result<void> TileMapBuilder::put(int x, int file_row, const std::uint8_t* value)
   if (is_float(type_) && !std::isfinite(decode_value(type_, bits)))
     return refuse_raster("The value in column " + std::to_string(x) + " of row " +
                          std::to_string(file_row) +
-                         " is not a finite number. Mark such texels as not valid.");
+                         " is not a finite number. Mark such texels as invalid.");
   const int y = resolution_ - 1 - file_row;
   auto& tile = tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];
   if (!tile) tile = std::make_shared<TileData>(type_);
@@ -74,7 +74,7 @@ TileMap TileMapBuilder::finish() {
 }
 
 tl::unexpected<Error> refuse_raster(std::string detail) {
-  return fail(ErrorCode::invalid, "Raster refused", std::move(detail), "texels");
+  return fail(ErrorCode::invalid, "Raster not accepted", std::move(detail), "texels");
 }
 
 std::string raster_needs(const Layer& layer) {
@@ -85,9 +85,10 @@ std::string raster_needs(const Layer& layer) {
 Result<void> check_raster_size(const Layer& layer, std::uint64_t width, std::uint64_t height) {
   const auto side = static_cast<std::uint64_t>(layer.resolution);
   if (width == side && height == side) return {};
-  return refuse_raster("The file is " + std::to_string(width) + " × " + std::to_string(height) +
-                       ", but the layer needs " + raster_needs(layer) +
-                       ". Export the layer first to see its form, or resample the file.");
+  return refuse_raster(
+      "The file is " + std::to_string(width) + " × " + std::to_string(height) +
+      ", but the layer needs " + raster_needs(layer) +
+      ". Resample the file, or export the layer first to see the required format.");
 }
 
 }  // namespace strata::query

@@ -11,11 +11,12 @@
 
 namespace strata::query {
 
-// A layer's texels by the rows of a file: row 0 is v = 1 (top), while tiles count from the bottom.
+// Reads a layer's texels by the rows of a file: row 0 is v = 1 (top), while tiles count from the
+// bottom.
 class TileRows {
  public:
   TileRows(const Layer& layer, const TileMap& tiles);  // keeps a reference to `tiles`
-  // Both spans have `resolution` places. Invalid texels have bits 0.
+  // Both spans have `resolution` entries. Invalid texels have bits 0.
   void read(int file_row, std::span<std::uint32_t> bits, std::span<std::uint8_t> valid) const;
 
  private:
@@ -24,12 +25,12 @@ class TileRows {
   std::vector<const TileData*> tiles_;
 };
 
-// The reverse: tiles from texels in any order. Tiles without a valid texel are left out.
+// The reverse: builds tiles from texels in any order. Tiles without a valid texel are left out.
 class TileMapBuilder {
  public:
   explicit TileMapBuilder(const Layer& layer);
-  // A valid texel from its little-endian storage; a float that is not finite is an Error that
-  // names its place.
+  // Sets a valid texel from its little-endian storage. A float that is not finite is an Error with
+  // its position.
   Result<void> put(int x, int file_row, const std::uint8_t* value);
   TileMap finish();
 
@@ -41,11 +42,11 @@ class TileMapBuilder {
   std::vector<std::shared_ptr<TileData>> tiles_;
 };
 
-// Every refusal of a raster: `invalid` "Raster refused".
+// Common to all raster errors: `invalid` "Raster not accepted".
 tl::unexpected<Error> refuse_raster(std::string detail);
 // "2048 × 2048 texels of u16", as the layer needs it.
 std::string raster_needs(const Layer& layer);
-// Refuses another width or height than the layer's.
+// Refuses a width or height that differs from the layer's.
 Result<void> check_raster_size(const Layer& layer, std::uint64_t width, std::uint64_t height);
 
 }  // namespace strata::query

@@ -24,7 +24,7 @@ double half_of(std::uint64_t bits) {
   return decode_value(ValueType::f16, static_cast<std::uint32_t>(bits));
 }
 
-// As the file would keep it.
+// Rounds as the file stores it.
 long double rounded(double nodata, const SampleForm& form) {
   if (form.kind == Kind::real && form.bytes == 4) return static_cast<float>(nodata);
   if (form.kind == Kind::real && form.bytes == 2)
@@ -100,10 +100,10 @@ Result<void> SampleReader::put(TileMapBuilder& builder, int x, int file_row,
   if (!bits) {
     const bool is_inexact = is_float(type_) && form_.kind != Kind::real;
     return refuse_raster("The value " + number_text(value) + " in column " + std::to_string(x) +
-                         " of row " + std::to_string(file_row) + " does not fit into a layer of " +
-                         std::string(name(type_)) +
+                         " of row " + std::to_string(file_row) +
+                         " cannot be stored in a layer of " + std::string(name(type_)) +
                          (is_inexact ? " without rounding."
-                                     : std::string(", which holds ") +
+                                     : std::string(", which stores ") +
                                            (is_float(type_) ? "numbers" : "whole numbers") +
                                            " from " + number_text(lowest_value(type_)) + " to " +
                                            number_text(highest_value(type_)) + "."));

@@ -32,7 +32,7 @@ void set_tiles(TIFF* tiff, const Layer& layer) {
   TIFFSetField(tiff, TIFFTAG_ZIPQUALITY, 3);
 }
 
-// No whole number can say "not painted", as all may be painted; of floats NaN never is.
+// Integers have no value for "not painted", as any may be painted; in floats NaN is never painted.
 void describe_values(TIFF* tiff, const Layer& layer) {
   const std::uint16_t not_alpha = EXTRASAMPLE_UNSPECIFIED;
   set_tiles(tiff, layer);
@@ -47,7 +47,7 @@ void describe_values(TIFF* tiff, const Layer& layer) {
   if (is_float(layer.type)) set_nodata(tiff, "nan");
 }
 
-// As GDAL writes an internal mask.
+// In GDAL's form of an internal mask.
 void describe_mask(TIFF* tiff, const Layer& layer) {
   set_tiles(tiff, layer);
   TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_MASK);
@@ -117,7 +117,7 @@ class TiffTiles {
   }
 
   const int side_, width_;
-  const std::uint32_t one_, nothing_;  // bits of valid, and of a value that is none
+  const std::uint32_t one_, nothing_;  // bits of valid, and of a missing value
   const TileRows rows_;
   std::vector<std::uint32_t> bits_;
   std::vector<std::uint8_t> valid_;

@@ -10,7 +10,7 @@
 namespace strata::query {
 namespace {
 
-constexpr int kMaxDirectories = 64;  // in which a mask is looked for
+constexpr int kMaxDirectories = 64;  // limit of the search for a mask
 
 tl::unexpected<Error> damaged(const TiffMemory& file) {
   return refuse_raster("The TIFF cannot be read: " +
@@ -20,14 +20,14 @@ tl::unexpected<Error> damaged(const TiffMemory& file) {
 std::optional<SampleForm> sample_form(int bits, int format) {
   if (bits != 8 && bits != 16 && bits != 32 && bits != 64) return std::nullopt;
   const int bytes = bits / 8;
-  // libtiff turns samples into the order of the machine.
+  // libtiff converts samples to the byte order of the machine.
   if (format == SAMPLEFORMAT_UINT) return SampleForm{SampleForm::Kind::unsigned_whole, bytes};
   if (format == SAMPLEFORMAT_INT) return SampleForm{SampleForm::Kind::signed_whole, bytes};
   if (format == SAMPLEFORMAT_IEEEFP && bits > 8) return SampleForm{SampleForm::Kind::real, bytes};
   return std::nullopt;
 }
 
-// A value, and after it where there are two whether it is painted.
+// A value, and in the second sample, if any, whether it is painted.
 struct TiffForm {
   SampleForm sample;
   int samples = 1;
@@ -40,7 +40,7 @@ Result<void> check_compression(TIFF* tiff) {
   const auto compression = tiff_tag<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
   if (is_lossless(compression) && TIFFIsCODECConfigured(compression)) return {};
   return refuse_raster("The TIFF's compression (code " + std::to_string(compression) +
-                       ") is not accepted; save it with deflate, LZW, zstd or none.");
+                       ") is not supported. Save it with deflate, LZW, zstd or no compression.");
 }
 
 Result<TiffForm> form_of(const Layer& layer, TIFF* tiff) {
@@ -56,18 +56,20 @@ Result<TiffForm> form_of(const Layer& layer, TIFF* tiff) {
     return refuse_raster(
         "The TIFF's samples have " + std::to_string(bits) + " bits and format " +
         std::to_string(format) +
-        "; save it with whole numbers of 8 to 64 bits, or floating-point ones of 16 to 64.");
+        ". Save it with whole numbers of 8 to 64 bits, or floating-point numbers of 16 "
+        "to 64 bits.");
   if (samples != 1 && samples != 2)
     return refuse_raster(
         "The TIFF has " + std::to_string(samples) + " samples of " + describe(*sample) +
-        " a pixel; a layer takes one (the value), or two (the value, then 0 where nothing is painted).");
+        " per pixel. A layer needs one sample (the value), or two (the value, and 0 "
+        "where nothing is painted).");
   STRATA_TRY(check_compression(tiff));
   return TiffForm{
       *sample, samples,
       samples > 1 && tiff_tag<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE};
 }
 
-// visit(x, row, count, samples) for all pixels of one plane of the directory.
+// Calls visit(x, row, count, samples) for all pixels of one plane of the directory.
 template <class Visit>
 Result<void> visit_tiles(TIFF* tiff, const TiffMemory& file, std::uint32_t side, int pixel_bits,
                          std::uint16_t plane, Visit visit) {
@@ -77,7 +79,7 @@ Result<void> visit_tiles(TIFF* tiff, const TiffMemory& file, std::uint32_t side,
       (std::uint64_t{tile_width} * static_cast<unsigned>(pixel_bits) + 7) / 8;
   if (tile_width == 0 || tile_height == 0 || row_bytes > kMaxTiffTileBytes / tile_height)
     return refuse_raster("The TIFF's tiles are " + std::to_string(tile_width) + " × " +
-                         std::to_string(tile_height) + "; save it with tiles of 256 × 256.");
+                         std::to_string(tile_height) + ". Save it with tiles of 256 × 256.");
   std::vector<std::uint8_t> tile(row_bytes * tile_height);
   if (TIFFTileSize64(tiff) != tile.size()) return damaged(file);
   for (std::uint32_t top = 0; top < side; top += tile_height)
@@ -108,7 +110,7 @@ Result<void> visit_plane(TIFF* tiff, const TiffMemory& file, std::uint32_t side,
   return {};
 }
 
-// Which texels are painted: read first where the file keeps that apart from the values.
+// Which texels are painted: read first if the file stores this separately from the values.
 class Painted {
  public:
   explicit Painted(int side) : side_(static_cast<std::size_t>(side)) {}
@@ -137,7 +139,7 @@ Result<void> read_valid_plane(TIFF* tiff, const TiffMemory& file, const Layer& l
                      });
 }
 
-// Whether there is one, which is then the current directory.
+// Looks for a mask. If there is one, it becomes the current directory.
 Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
   for (int i = 1; i < kMaxDirectories && !TIFFLastDirectory(tiff); ++i) {
     if (!TIFFSetDirectory(tiff, static_cast<std::uint16_t>(i))) return damaged(file);
@@ -147,8 +149,8 @@ Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
   return false;
 }
 
-// The internal mask of GDAL, of 1 or 8 bits. The first directory is the current one again
-// afterwards.
+// Reads the internal mask of GDAL, of 1 or 8 bits. Afterwards the first directory is the current
+// one again.
 Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted& painted) {
   const auto has_mask = STRATA_TRY(find_mask(tiff, file));
   if (has_mask) {
@@ -158,7 +160,7 @@ Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted
       return size;
     const int bits = tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE);
     if (tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL) != 1 || (bits != 1 && bits != 8))
-      return refuse_raster("The TIFF's mask is not one of 1 or 8 bits a pixel.");
+      return refuse_raster("The mask of the TIFF does not have 1 or 8 bits per pixel.");
     STRATA_TRY(check_compression(tiff));
     STRATA_TRY(visit_plane(
         tiff, file, static_cast<std::uint32_t>(layer.resolution), bits, 0,

@@ -10,11 +10,10 @@ Result<WorldFile> checked(const WorldFile& world, const std::string& field) {
   for (const double number :
        {world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row, world.x, world.y})
     if (!std::isfinite(number))
-      return fail(ErrorCode::invalid, "World file not understood", "Its numbers are not finite.",
-                  field);
+      return fail(ErrorCode::invalid, "Invalid world file", "Its numbers are not finite.", field);
   const double area = world.x_per_column * world.y_per_row - world.x_per_row * world.y_per_column;
   if (!std::isnormal(area))
-    return fail(ErrorCode::invalid, "World file not understood", "Its pixels have no area.", field);
+    return fail(ErrorCode::invalid, "Invalid world file", "Its pixels have no area.", field);
   return world;
 }
 
@@ -22,10 +21,10 @@ Result<WorldFile> parse_world_file(std::string_view text, const std::string& fie
   std::array<double, 6> numbers{};
   std::size_t count = 0;
   const auto wrong = [&] {
-    return fail(
-        ErrorCode::invalid, "World file not understood",
-        "Give its six numbers: width and turn of a pixel in x and y, then the centre of the first pixel.",
-        field);
+    return fail(ErrorCode::invalid, "Invalid world file",
+                "A world file must have six numbers: size and rotation of a pixel in x and y, "
+                "then the center of the first pixel.",
+                field);
   };
   const auto is_gap = [](char c) {
     return c == ',' || c == ' ' || c == '\n' || c == '\r' || c == '\t';

@@ -7,16 +7,16 @@
 
 namespace strata::query {
 
-// How a picture stands in the plane: the six lines of a world file. The centre of pixel (column,
-// row) lies at (x_per_column · column + x_per_row · row + x, y_per_column · column + y_per_row ·
-// row + y).
+// The position of a picture in the plane: the six lines of a world file. The center of pixel
+// (column, row) lies at (x_per_column · column + x_per_row · row + x, y_per_column · column +
+// y_per_row · row + y).
 struct WorldFile {
   double x_per_column = 1, y_per_column = 0, x_per_row = 0, y_per_row = -1, x = 0, y = 0;
 };
-// "1,0,0,-1,0,0" in the order of a world file's lines, parted by commas, blanks or line ends.
+// "1,0,0,-1,0,0" in the order of a world file's lines, separated by commas, blanks or line ends.
 // Refused (invalid at `field`): another count, no finite numbers, a picture without area.
 Result<WorldFile> parse_world_file(std::string_view text, const std::string& field);
-// The same check, for what came from elsewhere.
+// The same check for values from another source.
 Result<WorldFile> checked(const WorldFile& world, const std::string& field);
 
 }  // namespace strata::query

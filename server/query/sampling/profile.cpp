@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "domain/scene/camera.h"
+#include "mesh/surface/search_tree.h"
+
 namespace strata::query {
 namespace {
 
-// Points on a line in steps of at most `step`, its corners among them.
+// Points on a line in steps of at most `step`, including its corners.
 template <class Point>
 Result<std::vector<Point>> steps_of(std::span<const Point> corners, double step,
                                     const char* field) {
   const auto too_many = fail(ErrorCode::invalid, "Too many samples",
                              "A profile has at most " + std::to_string(kMaxProfileSamples) +
-                                 " samples; take longer steps or a shorter line.",
+                                 " samples. Choose longer steps or a shorter line.",
                              field);
   std::vector<Point> points{corners.front()};
   for (std::size_t i = 1; i < corners.size(); ++i) {

@@ -2,7 +2,9 @@
 
 #include <mutex>
 
+#include "domain/scene/camera.h"
 #include "mesh/parallel.h"
+#include "mesh/surface/search_tree.h"
 
 namespace strata::query {
 

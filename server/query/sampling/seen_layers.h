@@ -4,19 +4,24 @@
 #include <set>
 #include <vector>
 
-#include "domain/scene/camera.h"
-#include "mesh/surface/search_tree.h"
 #include "query/sampling/values.h"
+
+namespace strata {
+struct Camera;
+}
+namespace strata::mesh {
+class SearchTree;
+}
 
 namespace strata::query {
 
-// What a picture shows of layers that lie over each other.
+// Which of several overlying layers a picture shows.
 
-enum class Cover { nothing, some, all };  // how much of what lies below a value is drawn over
+enum class Cover { nothing, some, all };  // how much a value hides of the layers below it
 
 struct LayerCover {
   std::function<Cover(double value)> of;  // called by several threads
-  bool tells_values = false;              // which of its values are seen is asked, too
+  bool tells_values = false;              // also collect which of its values are seen
 };
 
 struct SeenLayer {
@@ -24,8 +29,9 @@ struct SeenLayer {
   std::set<double> values;
 };
 
-// Of each layer (bottom to top) what is seen in the middle of some cell of a grid over the camera's
-// window: where it is drawn and no layer above it covers it wholly. `covers`: one for each layer.
+// For each layer (bottom to top), finds whether it is visible at the center of a cell of a grid
+// over the camera's window: where it is drawn and no layer above covers it completely. `covers`:
+// one for each layer.
 std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec3& origin,
                                    const Camera& camera, int columns, int rows,
                                    const std::vector<LayerView>& layers,

@@ -32,7 +32,7 @@ struct CellSum {
   std::vector<std::pair<std::uint32_t, double>> keys;  // few in one cell
 };
 
-// Texels without an area count where there is nothing else in the cell.
+// Texels without an area count only if the cell has no others.
 double weight_of(const TexelSample& sample) { return std::max(sample.area_m2, 1e-200); }
 
 void add_key(CellSum& sum, std::uint32_t bits, double weight) {
@@ -61,7 +61,7 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
   bool countable = true;
   for_each_sample(texels, [&](const TexelSample& sample) {
     const glm::dvec3 index = glm::floor(sample.position / edge);
-    // NaN and infinity are not
+    // excludes NaN and infinity
     for (int axis = 0; axis < 3; ++axis) countable &= std::abs(index[axis]) < 1e15;
     if (!countable) return false;
     CellSum& sum = cells[{static_cast<std::int64_t>(index.z), static_cast<std::int64_t>(index.y),
@@ -79,7 +79,7 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
   if (!countable || cells.size() > kMaxCells)
     return fail(ErrorCode::invalid, "Cells too small",
                 "The surface has more than " + std::to_string(kMaxCells) +
-                    " cells of this size. Ask for larger ones.",
+                    " cells of this size. Choose larger cells.",
                 "cell");
   std::vector<Cell> order;
   order.reserve(cells.size());

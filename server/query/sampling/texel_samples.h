@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "domain/people/question.h"
+#include "mesh/texels/surface_map.h"
 #include "query/conditions/texel_selection.h"
 #include "query/conditions/texel_values.h"
 #include "query/sampling/values.h"
 
 namespace strata::query {
 
-// One layer with the places of its texels, as it was or is.
+// One layer with the positions of its texels, now or at an earlier time.
 struct SurfaceTexels {
   LayerView view;
   std::shared_ptr<const mesh::SurfaceMap> map;  // of the layer's resolution
@@ -27,8 +28,8 @@ struct TexelSample {
   double value = 0;
 };
 
-// visit(sample) for each valid surface texel that is selected, tile by tile ascending, until it
-// says false.
+// Calls visit(sample) for each valid surface texel that is selected, tile by tile ascending, until
+// it returns false.
 template <class Visit>
 void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
   const double m2_per_unit2 = texels.metres_per_unit * texels.metres_per_unit;
@@ -50,11 +51,11 @@ void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
 
 inline constexpr std::size_t kMaxCells = 2'000'000;
 
-// The same texels by the cubes of a grid through the world's origin, with edges of `edge` model
-// units: the centroid, weighted by area, the sum of areas and the mean of values, weighted by area;
-// of keys (`classes_of` tells each value apart) the one with most area, of several the lowest.
-// Ascending by z, y and x. Refused (invalid at `cell`): more than kMaxCells cells, or an edge too
-// small to count them.
+// Groups the same texels by the cubes of a grid through the world's origin, with edges of `edge`
+// model units: the centroid, weighted by area, the sum of areas and the mean of values, weighted by
+// area. For keys (`classes_of` makes each value a class) the value is the key with the largest
+// area, among equals the lowest. Ascending by z, y and x. Refused (invalid at `cell`): more than
+// kMaxCells cells, or an edge too small for the cell indices.
 Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, double edge);
 
 }  // namespace strata::query

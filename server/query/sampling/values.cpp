@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "domain/layers/texel_lookup.h"
+#include "domain/scene/camera.h"
 #include "mesh/parallel.h"
+#include "mesh/surface/search_tree.h"
 #include "query/sampling/nearest_points.h"
 
 namespace strata::query {
@@ -48,8 +50,8 @@ SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origi
 
 namespace {
 
-// Along a curve through the box of the points (Morton 1966): neighbours on it are mostly neighbours
-// in space.
+// Index along a curve through the box of the points (Morton 1966): neighbors on it are mostly
+// neighbors in space.
 std::uint64_t curve_index(const glm::dvec3& place) {
   std::uint64_t index = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -85,7 +87,8 @@ std::vector<SurfacePoint> nearest_points(const mesh::SearchTree& tree, const glm
   mesh::parallel_for(
       threads, static_cast<int>((order.size() + kPointsAtOnce - 1) / kPointsAtOnce), [&](int part) {
         const std::size_t first = static_cast<std::size_t>(part) * kPointsAtOnce;
-        std::optional<glm::vec3> last;  // a place on the surface: none that is farther is wanted
+        // a point on the surface: the nearest one cannot be farther
+        std::optional<glm::vec3> last;
         for (std::size_t i = first; i < std::min(order.size(), first + kPointsAtOnce); ++i) {
           const std::uint32_t number = order[i].second;
           const glm::vec3 in_model(world_points[number] - origin);
@@ -93,7 +96,7 @@ std::vector<SurfacePoint> nearest_points(const mesh::SearchTree& tree, const glm
             points[number] = off_the_model(layers);
             continue;
           }
-          // A little more than the distance, which is rounded.
+          // A little more than the distance, because that is rounded.
           const float limit =
               last ? std::min(kFar, glm::distance(in_model, *last) * 1.0001f + 1e-30f) : kFar;
           auto hit = tree.nearest(in_model, limit);
@@ -109,15 +112,15 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
                   double x, double y, const std::vector<LayerView>& layers) {
   if (!(x >= 0 && y >= 0 && x <= camera.width && y <= camera.height)) return off_the_model(layers);
   const Ray ray = ray_through_pixel(camera, x, y);
-  const RaySpan kept = kept_span(camera, ray);
-  if (kept.begin > kept.end) return off_the_model(layers);
-  const glm::vec3 start(ray.origin + kept.begin * ray.direction - origin), direction(ray.direction);
+  const RaySpan span = uncut_span(camera, ray);
+  if (span.begin > span.end) return off_the_model(layers);
+  const glm::vec3 start(ray.origin + span.begin * ray.direction - origin), direction(ray.direction);
   if (!is_finite(start) || !is_finite(direction)) return off_the_model(layers);
   auto hit = tree.first_hit(start, direction);
-  if (!hit || kept.begin + hit->distance > kept.end) return off_the_model(layers);
+  if (!hit || span.begin + hit->distance > span.end) return off_the_model(layers);
   if (eye_is_cut_away(camera) && glm::dot(hit->normal, direction) > 0)
-    return off_the_model(layers);  // a solid's inside
-  hit->distance += static_cast<float>(kept.begin);
+    return off_the_model(layers);  // inside of a solid
+  hit->distance += static_cast<float>(span.begin);
   return surface_point(*hit, origin, layers);
 }
 

@@ -1,19 +1,23 @@
 #pragma once
 
-#include <memory>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
-#include "domain/scene/camera.h"
-#include "mesh/surface/search_tree.h"
-#include "mesh/texels/surface_map.h"
+
+namespace strata {
+struct Camera;
+}
+namespace strata::mesh {
+class SearchTree;
+}
 
 namespace strata::query {
 
-// A layer as a query sees it: metadata and a consistent snapshot of its tiles.
+// A layer in the form for queries: metadata and a consistent snapshot of its tiles.
 struct LayerView {
   Layer layer;
   TileMirror::Snapshot snapshot;
@@ -29,21 +33,22 @@ struct SurfacePoint {
   bool hit = false;
   glm::dvec3 position{0};  // world
   glm::vec3 normal{0};
-  double distance = 0;  // from the asked point, or along the ray; model units
+  double distance = 0;  // from the given point, or along the ray; model units
   glm::vec2 uv{0};
   std::vector<LayerValue> values;
 };
 
-// Value at a texture coordinate: the texel that holds it (nearest), as the screen shows it.
+// The value at a texture coordinate: that of the texel that contains it (nearest), as on the
+// screen.
 LayerValue value_at(const LayerView& view, glm::vec2 uv);
 
 SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin,
                            const glm::dvec3& world_point, const std::vector<LayerView>& layers);
 SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
                   double x, double y, const std::vector<LayerView>& layers);
-// What the layer has in the middle of each cell of a grid over the camera's window, row by row from
-// the top left; nothing where there is no surface or nothing is painted. Of a layer of whole
-// numbers that are not negative.
+// The layer's key at the center of each cell of a grid over the camera's window, row by row from
+// the top left; nothing where there is no surface or nothing is painted. For a layer of
+// non-negative integers.
 std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
                                                     const glm::dvec3& origin, const Camera& camera,
                                                     int columns, int rows, const LayerView& layer);

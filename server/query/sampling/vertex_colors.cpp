@@ -10,7 +10,7 @@
 namespace strata::query {
 namespace {
 
-// between two looks at whether the question still stands
+// between two checks of the question
 constexpr std::size_t kVerticesAtOnce = 1u << 16;
 
 using Rgb = std::array<std::uint8_t, 3>;
@@ -29,7 +29,7 @@ Rgb rounded(const glm::dvec3& color) {
   return out;
 }
 
-// How much of the surface a value's colour covers, 0…1.
+// The share of the surface that a value's color covers, 0…1.
 double cover_of(const DrawnLayer& layer, double value, const Rgba& color) {
   const Palette::Point* point = point_of(*layer.palette, value);
   if (point && point->pattern == Pattern::outline) return 0;

@@ -6,19 +6,20 @@
 
 #include "core/compensated_sum.h"
 #include "domain/people/question.h"
+#include "mesh/texels/surface_map.h"
 #include "query/conditions/tile_table.h"
 
 namespace strata::query {
 namespace {
 
-constexpr std::uint64_t kNone = std::uint64_t{1} << 32;  // beyond the bits of any value
+constexpr std::uint64_t kNone = std::uint64_t{1} << 32;  // above the bits of any value
 
 struct Sum {
   std::uint64_t texels = 0;
   CompensatedSum area;
 };
 
-// One layer at the texels of a map.
+// The values of one layer at the texels of a map.
 class Values {
  public:
   Values(const LayerView& view, int map_resolution)
@@ -36,7 +37,7 @@ class Values {
   const int map_resolution_;
 };
 
-// The values of one side in order, and the place of each.
+// The values of one side in order, and their indices.
 class Side {
  public:
   Side(ValueType type, std::vector<std::uint64_t> all) : type_(type), bits_(std::move(all)) {
@@ -77,21 +78,21 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
                                   double metres_per_unit) {
   for (const auto& [view, field] : {std::pair{&rows, "rows"}, std::pair{&columns, "columns"}})
     if (is_float(view->layer.type))
-      return fail(ErrorCode::invalid, "Not a layer of keys",
+      return fail(ErrorCode::invalid, "Layer contains fractions",
                   "'" + view->layer.slug +
-                      "' holds fractions; a cross-tabulation needs whole numbers or keys.",
+                      "' contains fractions. A cross table needs whole numbers or keys.",
                   field);
   const auto too_many = [](const LayerView& view, const char* field) {
     return fail(ErrorCode::invalid, "Too many values",
                 "'" + view.layer.slug + "' has more than " + std::to_string(kMaxCrossTableSide) +
-                    " different values here; select a part of the surface.",
+                    " different values here. Choose a part of the surface.",
                 field);
   };
   const Values row_values(rows, map.resolution), column_values(columns, map.resolution);
   std::unordered_map<std::pair<std::uint64_t, std::uint64_t>, Sum, PairHash> sums;
   std::unordered_map<std::uint64_t, int> row_bits, column_bits;
   std::pair<std::uint64_t, std::uint64_t> last{kNone, kNone};
-  Sum* last_sum = nullptr;  // neighbours mostly share both; references stay valid in this map
+  Sum* last_sum = nullptr;  // neighbors mostly share both; references stay valid
   const QuestionTurn turn;
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     if (slot % 256 == 0) turn.check(256 * kBlockSize * kBlockSize);

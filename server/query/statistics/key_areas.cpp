@@ -23,7 +23,7 @@ std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::Sur
                                           const glm::dvec3& origin, double metres_per_unit,
                                           TileSumsCache* cache) {
   if (map.resolution != view.layer.resolution)
-    throw std::invalid_argument("The surface map is of another resolution than the layer.");
+    throw std::invalid_argument("The surface map has another resolution than the layer.");
   std::unordered_map<std::uint32_t, TileSums::Key> sums;
   const auto add = [&](const TileSums::Key& key) {
     if (const auto [found, fresh] = sums.try_emplace(key.bits, key); !fresh) found->second.add(key);

@@ -6,6 +6,10 @@
 #include "query/sampling/values.h"
 #include "query/statistics/tile_sums.h"
 
+namespace strata::mesh {
+struct SurfaceMap;
+}  // namespace strata::mesh
+
 namespace strata::query {
 
 struct KeyArea {
@@ -14,9 +18,9 @@ struct KeyArea {
   glm::dvec3 bounds_min{0}, bounds_max{0};  // world
 };
 
-// How much surface each key of a database layer has: as `statistics`, without a limit to how many
-// keys there are. Valid surface texels, gutter excluded. Tiles that `cache` (of this layer) knows
-// are not counted again.
+// The surface area of each key of a layer of records, as in `statistics`, without a limit to the
+// number of keys. Valid surface texels, gutter excluded. Tiles in `cache` (of this layer) are not
+// counted again.
 std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::SurfaceMap& map,
                                           const glm::dvec3& origin, double metres_per_unit,
                                           TileSumsCache* cache = nullptr);

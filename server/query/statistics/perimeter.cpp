@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mesh/parallel.h"
+#include "mesh/texels/texel_graph.h"
 #include "query/conditions/texel_values.h"
 
 namespace strata::query {
@@ -19,7 +20,7 @@ namespace {
 using mesh::kNoNeighbour;
 using mesh::Way;
 
-// What lies at each surface texel of the map.
+// The class at each surface texel of the map.
 class Classes {
  public:
   Classes(const LayerView& view, const mesh::SurfaceMap& map, const TexelSelection* within,
@@ -47,14 +48,14 @@ class Classes {
  private:
   bool is_one_;
   std::vector<std::uint64_t> valid_;
-  std::vector<std::uint32_t> class_of_;  // where valid; empty: all are one
+  std::vector<std::uint32_t> class_of_;  // of valid texels; empty: there is one class
 };
 
-constexpr std::size_t kDirections = 8;  // and their opposites
+constexpr std::size_t kDirections = 8;  // and the opposite ones
 constexpr std::array<std::array<int, 2>, kDirections> kDirection{
     {{1, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 1}, {-1, 2}, {-1, 1}, {-2, 1}}};
 
-// The ways along the axes to the texel at an offset, the ones near the straight line first.
+// The paths along the axes to the texel at an offset, those near the straight line first.
 struct Walk {
   int steps = 0;
   std::array<std::array<Way, 3>, 3> orders{};
@@ -93,7 +94,7 @@ class Measuring {
   }
 
  private:
-  // Lines reach two texels far.
+  // Lines extend over two texels.
   bool has_no_border(std::uint32_t slot) const {
     bool empty = graph_.has_links[slot] == 0, full = empty && classes_.is_valid(slot * 64);
     const std::uint32_t a_class = full ? classes_.of(slot * 64) : 0;
@@ -111,7 +112,7 @@ class Measuring {
     return empty || full;
   }
 
-  // Half of each pair of texels is added when the one is visited, half with the other.
+  // Each texel of a pair adds half of the pair's length when it is visited.
   void measure_texel(std::uint32_t texel, Sums& sums) const {
     Surroundings around(*this, texel);
     const bool valid = classes_.is_valid(texel);
@@ -120,7 +121,7 @@ class Measuring {
       if (other == kNoNeighbour) other = around.beyond_seam(direction);
       if (other != kNoNeighbour) {
         if (differs(texel, other)) add(texel, other, around.weight(direction) / 2, sums);
-      } else if (valid && around.is_at_open_edge()) {  // nothing is there to add the other half
+      } else if (valid && around.is_at_open_edge()) {  // no texel adds the other half
         sums.all += around.weight(direction);
         sums.of_class[classes_.of(texel)] += around.weight(direction);
       }
@@ -154,7 +155,7 @@ class Measuring {
     return mesh::neighbour(map_, graph_, texel, way);
   }
 
-  // kNoSlot: nothing is there.
+  // kNoSlot: the block is empty.
   std::uint32_t slot_beside(std::uint32_t slot, int dx, int dy) const {
     const auto block = static_cast<int>(map_.block_of_slot[slot]);
     const int x = block % map_.blocks_per_side + dx, y = block / map_.blocks_per_side + dy;
@@ -167,13 +168,13 @@ class Measuring {
     return glm::dvec3(map_.position(texel / 64, static_cast<int>(texel % 64)));
   }
 
-  // What is worked out of a texel only where there may be a border.
+  // Properties of a texel that are computed only near a border.
   class Surroundings {
    public:
     Surroundings(const Measuring& measuring, std::uint32_t texel)
         : measuring_(measuring), texel_(texel) {}
 
-    // The length that a pair of texels in this direction stands for.
+    // The border length that a pair of texels in this direction represents.
     double weight(std::size_t direction) {
       if (!weights_) weights_ = weigh();
       return (*weights_)[direction % kDirections];
@@ -181,8 +182,7 @@ class Measuring {
 
     bool is_at_open_edge() { return reach().at_open_edge; }
 
-    // The texel on the other side of a seam that lies in this direction; kNoNeighbour: there is no
-    // other side.
+    // The texel across a seam in this direction; kNoNeighbour if there is no other side.
     std::uint32_t beyond_seam(std::size_t direction) {
       if (reach().over_seam.empty()) return kNoNeighbour;
       const auto& [x, y] = sides();
@@ -194,7 +194,7 @@ class Measuring {
       std::uint32_t found = kNoNeighbour;
       for (const std::uint32_t other : reach().over_seam) {
         const glm::dvec3 there = measuring_.place(other) - here;
-        // Where a seam ends at an open edge, the one or the other lies ahead.
+        // Where a seam ends at an open edge, either may be ahead.
         if (is_at_open_edge() && glm::dot(there, way) < 0.5 * glm::length(there) * glm::length(way))
           continue;
         const double apart = glm::length(there - way);
@@ -210,7 +210,7 @@ class Measuring {
       std::vector<std::uint32_t> over_seam;
       bool at_open_edge = false;
     };
-    // What a way of at most three steps finds.
+    // The texels reached by a path of at most three steps.
     const Reach& reach() {
       if (reach_) return *reach_;
       reach_.emplace();
@@ -266,7 +266,7 @@ class Measuring {
       return weights;
     }
 
-    // A texel's sides on the surface.
+    // A texel's sides as vectors on the surface.
     const std::pair<glm::dvec3, glm::dvec3>& sides() {
       if (sides_) return *sides_;
       const glm::dvec3 here = measuring_.place(texel_);
@@ -279,7 +279,7 @@ class Measuring {
       };
       sides_.emplace(side(Way::right, Way::left), side(Way::upper, Way::lower));
       if (glm::length(glm::cross(sides_->first, sides_->second)) > 0) return *sides_;
-      // An island that is one texel thin: as if the texel were a square.
+      // In an island that is one texel thin: the texel is taken as a square.
       const double edge = std::sqrt(measuring_.map_.area[texel_]);
       sides_ = {glm::dvec3(edge, 0, 0), glm::dvec3(0, edge, 0)};
       return *sides_;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "domain/people/question.h"
+#include "mesh/texels/texel_graph.h"
 #include "query/conditions/texel_values.h"
 
 namespace strata::query {
@@ -10,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-// Which texels are connected, as trees that are kept flat (Tarjan 1975, with path halving).
+// Sets of connected texels, as trees kept flat (union-find of Tarjan 1975, with path halving).
 class Trees {
  public:
   explicit Trees(std::size_t texels) : parent_(texels, kNone) {}

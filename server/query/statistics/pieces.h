@@ -3,10 +3,14 @@
 #include <cstdint>
 #include <map>
 
-#include "mesh/texels/texel_graph.h"
 #include "query/conditions/texel_selection.h"
 #include "query/sampling/values.h"
 #include "query/statistics/value_classes.h"
+
+namespace strata::mesh {
+struct SurfaceMap;
+struct TexelGraph;
+}  // namespace strata::mesh
 
 namespace strata::query {
 
@@ -15,8 +19,8 @@ struct PieceCounts {
   std::map<std::uint32_t, std::uint64_t> of_class;  // by ValueClasses::of
 };
 
-// Areas of the surface that are connected and hold values of one class; of texels in `within`
-// (null: all). Seams of the atlas are no borders.
+// Counts connected areas of the surface with values of one class, within `within` (null: all).
+// Seams of the atlas do not separate areas.
 PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map,
                          const mesh::TexelGraph& graph, const TexelSelection* within,
                          const ValueClasses& classes);

@@ -9,7 +9,7 @@
 namespace strata::query {
 namespace {
 
-// A number of 32 bits for each value of a type, in the order of the values.
+// A 32-bit code for each value of a type, in the order of the values.
 std::uint32_t code_of(ValueType type, double value) {
   if (!is_float(type)) return static_cast<std::uint32_t>(value - lowest_value(type));
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value) + 0.0f);  // -0 becomes 0
@@ -21,7 +21,8 @@ double value_of(ValueType type, std::uint32_t code) {
   return double{std::bit_cast<float>((code >> 31) != 0 ? code & 0x7fffffffu : ~code)};
 }
 
-// The first of ascending (value, area) that reaches each share of the whole. `next()` gives them.
+// Finds the first of ascending (value, area) pairs that reaches each share of the total. `next()`
+// returns them.
 class Reached {
  public:
   explicit Reached(double area) : area_(area) {}
@@ -32,7 +33,8 @@ class Reached {
     last_ = value;
   }
   Quantiles finish() {
-    while (found_ < kQuantiles.size()) values_[found_++] = last_;  // what rounding of the sum left
+    // rounding of the sum may leave some
+    while (found_ < kQuantiles.size()) values_[found_++] = last_;
     return values_;
   }
 
@@ -59,7 +61,7 @@ std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap
     return reached.finish();
   }
 
-  // Two digits of 16 bits: the area of each upper one, then of the lower ones where a share is
+  // Two 16-bit digits: sums the area of each upper digit, then of the lower digits where a share is
   // reached.
   constexpr std::size_t kDigits = std::size_t{1} << 16;
   const QuestionTurn turn;

@@ -6,13 +6,17 @@
 #include "query/sampling/values.h"
 #include "query/statistics/tile_sums.h"
 
+namespace strata::mesh {
+struct SurfaceMap;
+}  // namespace strata::mesh
+
 namespace strata::query {
 
-// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed.
+// The smallest values that are not exceeded on 5, 25, 50, 75 and 95 % of the area.
 constexpr std::array<double, 5> kQuantiles = {0.05, 0.25, 0.5, 0.75, 0.95};
 using Quantiles = std::array<double, kQuantiles.size()>;
 
-// Exact, of the texels that `sums` counted. Nothing where they have no area.
+// Exact, for the texels counted in `sums`. Nothing if they have no area.
 std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap& map,
                                    const TexelSelection* within, const TileSums& sums);
 

@@ -5,6 +5,7 @@
 
 #include "core/compensated_sum.h"
 #include "domain/people/question.h"
+#include "mesh/texels/texel_graph.h"
 #include "query/conditions/texel_values.h"
 #include "query/statistics/pieces.h"
 
@@ -24,7 +25,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
                               const mesh::TexelGraph& graph, const ValueClasses& classes,
                               double metres_per_unit) {
   if (map.resolution != view.layer.resolution)
-    throw std::invalid_argument("The surface map is of another resolution than the layer.");
+    throw std::invalid_argument("The surface map has another resolution than the layer.");
   const ValueType type = view.layer.type;
   const double m2_per_unit2 = metres_per_unit * metres_per_unit;
   struct Sum {
@@ -35,7 +36,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   std::unordered_map<std::uint32_t, Sum> sums;
   std::uint32_t last_class = 0;
   const QuestionTurn turn;
-  Sum* last = nullptr;  // neighbours mostly are of one class; references into the map stay
+  Sum* last = nullptr;  // neighbors are mostly of one class; references stay valid
   for (const auto& [address, tile] : sorted_tiles(view.snapshot.tiles)) {
     turn.check(kTexelsPerTile);
     for_each_value(*tile, address, type, map, nullptr,
@@ -50,15 +51,15 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
                    });
     if (sums.size() > kMaxClasses)
       return fail(ErrorCode::invalid, "Too many classes",
-                  "The layer holds more than " + std::to_string(kMaxClasses) +
-                      " different values. Give it a palette with ranges (linear or step).",
+                  "The layer contains more than " + std::to_string(kMaxClasses) +
+                      " different values. Set a palette with ranges (linear or step).",
                   "layer");
   }
   const PieceCounts pieces = count_pieces(view, map, graph, nullptr, classes);
   Quantities out;
   CompensatedSum area;
   out.surface_m2 = map.area_total * m2_per_unit2;
-  // ranges ascend with their number, values with themselves
+  // ranges ascend with their number, values by themselves
   std::vector<std::pair<double, std::uint32_t>> order;
   for (const auto& [number, sum] : sums)
     order.emplace_back(classes.each ? sum.value : double(number), number);

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "mesh/parallel.h"
+#include "mesh/texels/surface_map.h"
 #include "query/statistics/perimeter.h"
 #include "query/statistics/pieces.h"
 
@@ -18,7 +19,7 @@ class Counting {
       : type_(view.layer.type), map_(map), request_(request) {
     for (const auto& [address, tile] : view.snapshot.tiles)
       if (tile) tiles_.emplace_back(address, &tile);
-    // Sums of floats depend on their order: the same layer has the same statistics.
+    // Sums of floats depend on their order: sorting makes the statistics of a layer reproducible.
     std::ranges::sort(tiles_, {}, [](const auto& tile) { return tile.first; });
   }
 
@@ -103,7 +104,7 @@ TileSums join(const std::vector<std::shared_ptr<const TileSums>>& parts) {
 Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const glm::dvec3& origin,
                       double metres_per_unit, const StatisticsRequest& request) {
   if (map.resolution != view.layer.resolution)
-    throw std::invalid_argument("The surface map is of another resolution than the layer.");
+    throw std::invalid_argument("The surface map has another resolution than the layer.");
   const ValueType type = view.layer.type;
   const double m2_per_unit2 = metres_per_unit * metres_per_unit;
   const Counting counting(view, map, request);

@@ -12,14 +12,18 @@
 #include "query/conditions/texel_selection.h"
 #include "query/sampling/values.h"
 
+namespace strata::mesh {
+struct SurfaceMap;
+}  // namespace strata::mesh
+
 namespace strata::query {
 
 constexpr std::size_t kMaxStatisticsKeys = 4096;
 constexpr int kHistogramBins = 64;
 
-// What the valid surface texels of one tile add to a layer's statistics, in units of the model.
-// Sums of two tiles are joined without loss (Chan, Golub, LeVeque 1983), so that after a stroke
-// only its tiles are counted again.
+// The contribution of one tile's valid surface texels to a layer's statistics, in units of the
+// model. Sums of two tiles are combined without loss (Chan, Golub, LeVeque 1983), so that after a
+// stroke only its tiles are counted again.
 struct TileSums {
   std::uint64_t texels = 0;
   CompensatedSum area;
@@ -34,11 +38,11 @@ struct TileSums {
     glm::dvec3 lowest{0}, highest{0};
     void add(const Key& other);
   };
-  // of integer types, ascending bits; none where there are more than kMaxStatisticsKeys
+  // of integer types, ascending bits; empty if there are more than kMaxStatisticsKeys
   std::vector<Key> keys;
   bool too_many_keys = false;
 
-  // Weighted by area; without any, the middle.
+  // Weighted by area; without any area, the middle of the range.
   double mean() const;
 };
 TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type,
@@ -59,10 +63,10 @@ TileHistogram count_tile(const TileData& tile, TileAddress address, ValueType ty
                          const mesh::SurfaceMap& map, const TexelSelection* within, double min,
                          double max);
 
-// Sums of the tiles of one layer, kept while a tile holds the same. Thread-safe.
+// Sums of the tiles of one layer, kept while a tile is unchanged. Thread-safe.
 class TileSumsCache {
  public:
-  // Made by `make` where the tile has changed.
+  // Calls `make` if the tile has changed.
   template <class Make>
   std::shared_ptr<const TileSums> sums(TileAddress address,
                                        const std::shared_ptr<const TileData>& tile, Make make) {
@@ -76,7 +80,7 @@ class TileSumsCache {
     if (made->keys.size() <= kMaxKeptKeys) entries_[address] = {tile, made, nullptr};
     return made;
   }
-  // The same, where also the limits must be those of the last one.
+  // The same, also if the limits have changed.
   template <class Make>
   std::shared_ptr<const TileHistogram> histogram(TileAddress address,
                                                  const std::shared_ptr<const TileData>& tile,
@@ -97,7 +101,7 @@ class TileSumsCache {
  private:
   static constexpr std::size_t kMaxKeptKeys = 256;  // 25 KB a tile
   struct Entry {
-    std::weak_ptr<const TileData> tile;  // tiles never change, new ones take their place
+    std::weak_ptr<const TileData> tile;  // tiles never change; new ones replace them
     std::shared_ptr<const TileSums> sums;
     std::shared_ptr<const TileHistogram> histogram;
   };

@@ -9,16 +9,15 @@
 
 namespace strata::query {
 
-// How the values of a layer are told apart: each by itself, or by the range that it lies in. Class
-// i of n limits goes from limit i - 1 (included) to limit i; the first and the last one are open to
-// their side.
+// The classes of a layer's values: each value is one, or each range. Class i of n limits is from
+// limit i - 1 (included) to limit i; the first and the last one are open on their outer side.
 struct ValueClasses {
   bool each = false;
-  std::vector<double> limits{};  // of ranges, ascending; none: all values are one class
+  std::vector<double> limits{};  // of ranges, ascending; empty: all values are one class
   // a value at the last limit belongs to the range before it, as at the end of a scale
   bool last_limit_below = false;
 
-  // The bits of the value where each is a class of its own (zero has one sign), otherwise the
+  // Returns the bits of the value if each value is a class (zero has one sign), otherwise the
   // number of its range.
   std::uint32_t of(std::uint32_t bits, double value) const {
     if (each) return value == 0 ? 0 : bits;
@@ -34,8 +33,8 @@ struct ValueClasses {
   }
 };
 
-// As its legend shows a layer: keys, and values of a categorical palette, are classes; between the
-// points of the others lie ranges.
+// The classes as the layer's legend shows them: keys, and values of a categorical palette, are
+// classes; other palettes have ranges between their points.
 ValueClasses classes_of(const Layer& layer);
 
 }  // namespace strata::query

@@ -14,8 +14,8 @@
 namespace strata::render {
 namespace {
 
-// Float arithmetic of the shader and the rounding of packed positions move a texel by far less than
-// this.
+// The float arithmetic of the shader and the rounding of packed positions move a texel by far less
+// than this.
 constexpr double kMargin_px = 0.05;
 constexpr double kMarginDepth = 1e-6;
 constexpr double kMarginRadius = 1e-5;  // of a sphere, relative
@@ -40,19 +40,20 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
   return glm::length(point - (a + along * t));
 }
 
-// Where so many subtrees of this level pass, threads share them.
+// If at least kSubtreesForThreads subtrees of this level pass, threads share them.
 constexpr std::size_t kSharedLevel = 3;
 constexpr std::size_t kSubtreesForThreads = 32;
 
-// Under a large tool most blocks are taken by the eight: to test each costs as much as to paint it.
+// Under a large tool most blocks are accepted in groups of eight: testing each costs as much as
+// painting it.
 constexpr std::size_t kWholeLevel = 1;
 
-// The sides of the tool's box in the window as planes through the eye; a sphere beyond one is left
-// out by a tenth of what its exact box costs.
+// The sides of the tool's box in the window as planes through the eye. Rejecting a sphere beyond
+// one of them costs a tenth of the computation of its exact box.
 std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip, int width,
                                    int height) {
   const glm::dmat4 rows = glm::transpose(clip);
-  // Window x · w is linear in the position, and w is above 0 where anything is painted.
+  // Window x · w is linear in the position, and w is above 0 where anything can be painted.
   const glm::dvec4 x = 0.5 * width * (rows[0] + rows[3]), y = 0.5 * height * (rows[1] + rows[3]),
                    w = rows[3];
   std::array planes = {x - (std::max(tool.x0, 0.0) - kMargin_px) * w,
@@ -106,8 +107,8 @@ BlockCuller::BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_fro
       grid_(grid),
       tool_planes_(sides_of(path.box, clip_from_model, width, height)) {}
 
-// take(level, index, under) of the subtrees below one that passed, each as soon as it is of
-// `stop_level` or wholly in the tool.
+// Calls take(level, index, under) for the subtrees below one that passed, for each as soon as it is
+// of `stop_level` or completely inside the tool.
 template <class Take>
 void BlockCuller::descend(std::size_t level, std::size_t index, const Under& under,
                           std::size_t stop_level, Scratch& scratch, Take&& take) const {
@@ -192,7 +193,7 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
                              Candidates& candidates) const {
   constexpr std::uint32_t kBlocksPerTile = kTileSize / kBlockSize, kNone = 0xffffffffu;
   const auto parts = std::span(touched.parts).subspan(tile.first, tile.count);
-  // The parts of each block as a chain.
+  // The parts of each block as a linked list.
   std::array<std::uint32_t, std::size_t{kBlocksPerTile} * kBlocksPerTile> first;
   first.fill(kNone);
   std::vector<std::uint32_t> next(parts.size());
@@ -210,7 +211,7 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
     const mesh::BlockTree::Part& in_tree = map_.tree.parts[part.part];
     CandidateBlock block{in_tree.slot,       tile.address, place,       0,
                          part.segment_count, part.part,    part.in_tool};
-    if (in_tree.shares_block) block.in_tool = false;  // other parts may lie elsewhere
+    if (in_tree.shares_block) block.in_tool = false;  // other parts may be elsewhere
     if (next[first[place]] == kNone) {
       block.segments = candidates.segment_lists.add(list_of(part));
     } else {
@@ -266,20 +267,21 @@ std::optional<WindowBox> BlockCuller::project(const mesh::BoundingSphere& bounds
   return found;
 }
 
-// The circle around the box against the segment's axis: long slanted segments have boxes much
-// larger than they are.
+// Tests the circle around the box against the segment's axis: the boxes of long slanted segments
+// are much larger than the segments.
 bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) const {
   const PixelBox& box = window.box;
   if (!path_.boxes[segment].overlaps(box)) return false;
   const auto& s = path_.segments[segment];
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
   const double around = half_diagonal(box);
-  // √2: squares reach that far
+  // √2: the corners of squares
   const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;
   return distance_to_axis(s, center) <= reach;
 }
 
-// Where one segment covers the whole box the others do not matter: true, and it alone is kept.
+// If one segment covers the whole box, the others have no effect: keeps only that one and returns
+// true.
 bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
   const PixelBox& box = window.box;
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};

@@ -13,7 +13,7 @@
 
 namespace strata::render {
 
-// Coarse grid of largest depths that hides blocks; see DepthBuffer.
+// Coarse grid of largest depths, by which blocks are hidden; see DepthBuffer.
 struct DepthGrid {
   const float* cells = nullptr;  // null: nothing is hidden
   int width = 0, height = 0;     // cells
@@ -26,7 +26,7 @@ struct CandidateBlock {
   std::uint32_t segments;       // first in `segment_lists`
   std::uint32_t segment_count;
   std::uint32_t part;  // of the tree that may be touched; kManyParts: several of this block
-  bool in_tool;        // all of it lies under the one segment of its list
+  bool in_tool;        // all of it is under the only segment of its list
 
   static constexpr std::uint32_t kManyParts = 0xffffffffu;
   const mesh::BoundingSphere& bounds(const mesh::SurfaceMap& map) const {
@@ -55,8 +55,8 @@ struct TouchedParts {
   SegmentLists segment_lists;
 };
 
-// Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty when it is
-// behind the eye; the whole window when the eye's plane cuts it.
+// Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty if it is
+// behind the eye; the whole window if the eye's plane intersects it.
 struct WindowBox {
   PixelBox box;
   double z0 = 0, w0 = 0;
@@ -64,17 +64,17 @@ struct WindowBox {
 std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
                                         const glm::dvec3& center, double radius);
 
-// Blocks of the surface map that a stroke may touch: spheres around ever fewer of them are
-// projected to the window and tested against the window, the tool's segments and the depth grid.
-// Conservative: never leaves out a texel that the edit would write. Each block gets the list of
-// segments it may lie under. What it is made of must outlive it; const functions may run on several
-// threads.
+// Finds the blocks of the surface map that a stroke may touch: projects bounding spheres, level by
+// level, to the window and tests them against the window, the tool's segments and the depth grid.
+// Conservative: never rejects a texel that the edit would write. Each block gets the list of
+// segments that may cover it. The constructor's arguments must outlive the object; several threads
+// may call const functions.
 class BlockCuller {
  public:
   BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
               const ToolPath& path, const DepthBias& bias, const DepthGrid& grid);
 
-  // On up to `threads` threads where there is much to find.
+  // Uses up to `threads` threads if there is enough work.
   TouchedParts find(int threads) const;
   // The blocks of a tile, row-major.
   void add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile,
@@ -83,7 +83,7 @@ class BlockCuller {
  private:
   struct Under {
     std::vector<std::uint32_t> segments;
-    bool all_of_it = false;  // under the one segment that is left
+    bool all_of_it = false;  // under the only segment left
   };
   struct Subtree {  // that passed
     std::size_t level, index;

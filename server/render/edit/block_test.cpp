@@ -9,8 +9,8 @@
 #include "media/shape_texture.h"
 #include "shared/section.h"
 
-// Compiled with -O3 and without traps and errno of floating point (CMakeLists.txt): else the loops
-// below stay scalar.
+// Compiled with -O3 and without floating-point traps and errno (CMakeLists.txt): otherwise the
+// loops below are not vectorized.
 #define STRATA_LANES inline __attribute__((always_inline))
 
 namespace strata::render {
@@ -19,7 +19,7 @@ namespace {
 constexpr int kLanes = kBlockSize * kBlockSize;
 static_assert(std::endian::native == std::endian::little, "positions are read as pairs of 32 bits");
 
-// Of each texel: where it lies in the window, and whether it is still to be written.
+// For each texel: its position in the window, and whether it may still be written.
 struct alignas(64) Lanes {
   float x[kLanes], y[kLanes], depth[kLanes], w[kLanes];
   std::int32_t live[kLanes];   // 0 or 1
@@ -63,7 +63,8 @@ STRATA_LANES void project(const BlockTest& test, const std::uint64_t* positions,
   }
 }
 
-// What the planes cut away, and where the inside of a solid is seen (shaders/shared/section.h).
+// Rejects texels that the planes cut away, or where the inside of a solid is seen
+// (shaders/shared/section.h).
 STRATA_LANES void test_section(const BlockTest& test, const std::uint64_t* positions,
                                const mesh::SurfaceMap::PackedBox& box, Lanes& lanes) {
   alignas(64) std::uint32_t packed[2 * kLanes];
@@ -117,8 +118,8 @@ STRATA_LANES void add_swept_disc(const shader::EditSegment& s, const Lanes& lane
   }
 }
 
-// Some t in [0, 1] has the point inside the square around a + t (b - a): four linear conditions c +
-// t g > 0.
+// The point is inside the square around a + t (b - a) for some t in [0, 1]: four linear conditions
+// c + t g > 0.
 STRATA_LANES void add_swept_square(const shader::EditSegment& s, const Lanes& lanes,
                                    std::int32_t* inside) {
   const float sx = s.ends.z - s.ends.x, sy = s.ends.w - s.ends.y, grow = s.tool.y - s.tool.x;
@@ -141,9 +142,9 @@ STRATA_LANES void add_swept_square(const shader::EditSegment& s, const Lanes& la
   }
 }
 
-// Whether a line between two points of the shape's raster meets a cell of it. It leaves at once the
-// square of cells around it among which none is set, so that it takes few steps, and never more
-// than there are cells along it.
+// Whether a line between two points of the shape's raster meets a set cell of it. Each step leaves
+// the square of cells around the current one in which no cell is set, so there are few steps, at
+// most one for each cell along the line.
 bool meets_shape(const std::uint8_t* distances, float ax, float ay, float bx, float by) {
   constexpr auto kSide = static_cast<float>(kShapeSide);
   constexpr float kNever = std::numeric_limits<float>::infinity();
@@ -178,8 +179,8 @@ bool meets_shape(const std::uint8_t* distances, float ax, float ay, float bx, fl
   return false;
 }
 
-// Where a point of the window lies in the shape's raster at either end of the segment; the raster's
-// rows go down.
+// Maps a window point into the shape's raster at both ends of the segment; the raster's rows go
+// down.
 void add_swept_texture(const shader::EditSegment& s, const std::uint8_t* distances,
                        const Lanes& lanes, std::int32_t* inside) {
   constexpr float kHalf = kShapeSide / 2.0f;
@@ -230,8 +231,8 @@ STRATA_LANES void test_depth(const BlockTest& test, Lanes& lanes) {
   }
 }
 
-// FacingLimit says how. At the window's border the neighbour that is there decides; where a pixel
-// shows no surface, nothing is painted.
+// Computes the limit of FacingLimit. At the window's border the existing neighbor is used; where a
+// pixel shows no surface, nothing is painted.
 STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
   const FacingLimit& facing = *test.facing;
   const float* const depth = test.depth->depth.data();
@@ -241,8 +242,7 @@ STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
                   far_row = facing.far_row;
   const float least = facing.least_squared_cosine;
   for (int i = 0; i < kLanes; ++i) {
-    // A texel that is out already asks the first pixel: its own neighbours need not lie in the
-    // window.
+    // A rejected texel reads the first pixel: its own pixel may be outside the window.
     const std::int32_t live = lanes.live[i], pixel = live ? lanes.pixel[i] : 0;
     const std::int32_t px = live ? static_cast<std::int32_t>(lanes.x[i]) : 0,
                        py = live ? static_cast<std::int32_t>(lanes.y[i]) : 0;
@@ -271,7 +271,7 @@ STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
   }
 }
 
-// Bit i is lane i.
+// Bit i corresponds to lane i.
 STRATA_LANES std::uint64_t bits_of(const std::int32_t* lanes) {
   alignas(64) std::uint8_t bytes[kLanes];
   for (int i = 0; i < kLanes; ++i) bytes[i] = static_cast<std::uint8_t>(lanes[i]);
@@ -279,7 +279,7 @@ STRATA_LANES std::uint64_t bits_of(const std::int32_t* lanes) {
   for (int row = 0; row < kBlockSize; ++row) {
     std::uint64_t eight;
     std::memcpy(&eight, bytes + row * kBlockSize, sizeof eight);
-    // the lowest bit of each byte, side by side
+    // the lowest bits of all bytes, packed together
     bits |= (eight * 0x0102040810204080u >> 56) << (row * kBlockSize);
   }
   return bits;

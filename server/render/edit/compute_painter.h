@@ -6,8 +6,8 @@
 
 namespace strata::render {
 
-// Radii under the path → the parts that may be touched → the dispatch over them → which texels it
-// wrote → the tiles with them. After the dispatch nothing can fail but the context.
+// Steps: radii under the path, parts that may be touched, dispatch over them, read-back of the
+// written texels, read-back of their tiles. After the dispatch only a lost context is an error.
 class ComputePainter : public StrokePainter {
  public:
   using StrokePainter::StrokePainter;
@@ -31,8 +31,8 @@ class ComputePainter : public StrokePainter {
   gl::Readback touched_;
   DispatchedEdit edit_;
   std::size_t next_tile_ = 0;
-  gl::Readback tiles_;                // made before the dispatch
-  std::vector<std::size_t> reading_;  // indices into outcome_.tiles of what `tiles_` brings
+  gl::Readback tiles_;                // allocated before the dispatch
+  std::vector<std::size_t> reading_;  // indices into outcome_.tiles of the tiles in `tiles_`
 };
 
 }  // namespace strata::render

@@ -7,7 +7,7 @@
 namespace strata::render {
 
 // Window depth changes with the distance t along the axis by |P22 P33 - P32 P23| / (2 w²) per unit;
-// a view matrix that scales makes its units of model units.
+// a scaling view matrix converts its units to model units.
 DepthBias depth_bias_of(const StrokeBatch& stroke, double model_diagonal) {
   DepthBias bias;
   bias.fixed = stroke.fixed_depth_bias;

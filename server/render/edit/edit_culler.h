@@ -14,29 +14,29 @@
 
 namespace strata::render {
 
-// What a stroke may touch on a layer, as the GPU found it.
+// The parts and tiles of a layer that a stroke may touch, as found by the GPU.
 struct TouchedTiles {
   std::uint32_t parts = 0;         // of the block tree
-  std::vector<TileAddress> tiles;  // by number
+  std::vector<TileAddress> tiles;  // in the order of their numbers
 };
 
 // BlockCuller on the GPU (shaders/edit_cull_pass.comp), where testing all nodes of the tree takes
-// microseconds: the list of parts stays there for EditPass; only the tiles come back, so that they
-// get pages.
+// microseconds. The list of parts stays on the GPU for EditPass; only the tiles are read back,
+// because they need pages.
 class EditCuller {
  public:
   static Result<EditCuller> create(const std::filesystem::path& shader_dir,
                                    gl::ReadbackPool& readback);
 
-  // Sends the stroke and lists the parts. `depth_grid` is null when the stroke goes through.
+  // Uploads the stroke and lists the parts. `depth_grid` is null if the stroke paints through.
   // `origin`: of the model.
   Result<gl::Readback> dispatch(const StrokeBatch& stroke, const glm::dvec3& origin,
                                 const ToolPath& path, const DepthBias& bias,
                                 const SurfaceMapTextures& map, const gl::Buffer* depth_grid,
                                 const LayerTextures& layer);
-  static TouchedTiles touched(const gl::Readback& read, int resolution);  // once it is ready
+  static TouchedTiles touched(const gl::Readback& read, int resolution);  // when it is ready
 
-  // What the last dispatch sent and found, where edit_pass.comp reads it.
+  // Binds the data of the last dispatch for edit_pass.comp.
   void bind(const SurfaceMapTextures& map) const;
   std::size_t bytes_up() const { return bytes_up_; }     // of the last dispatch
   double gpu_ms() const { return timer_.elapsed_ms(); }  // of the last dispatch

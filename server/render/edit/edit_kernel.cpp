@@ -8,7 +8,7 @@
 namespace strata::render {
 namespace {
 
-// A small dab is done before other threads would have begun.
+// A small dab finishes before other threads would start.
 constexpr std::chrono::microseconds kAlone(200);
 
 using Clock = std::chrono::steady_clock;

@@ -39,7 +39,7 @@ Result<Step> KernelPainter::step(GpuScene& scene, const PaintTarget& target) {
   const auto pages = STRATA_TRY(find_pages(written, target.layer));
   write(written, pages, target.layer);
   [[maybe_unused]] const auto flushed = scene.tables().flush();
-  assert(flushed);  // only a layer that is added makes the tables larger
+  assert(flushed);  // only a new layer enlarges the tables
   outcome_.edit_ms = elapsed_ms();
   outcome_.gpu_ms = outcome_.edit_ms - found_ms;
   return Step::done;

@@ -6,9 +6,9 @@
 
 namespace strata::render {
 
-// The depth in main memory, once a camera → the kernel says which texels are written → pages for
-// tiles that have none → each tile is read where it holds something, changed, and uploaded whole.
-// Once pages are had nothing can fail but the context.
+// Steps: copy the depth to main memory, once for each camera; find the written texels with the
+// kernel; allocate missing pages; read each tile that has content, change it, and upload it whole.
+// After the allocation of pages only a lost context is an error.
 class KernelPainter : public StrokePainter {
  public:
   using StrokePainter::StrokePainter;
@@ -17,7 +17,7 @@ class KernelPainter : public StrokePainter {
  private:
   enum class Stage { begin, depth_drawn, paint };
   KernelResult find_written(const PaintTarget& target);
-  // One a written tile; kNoPage where an eraser finds nothing.
+  // One for each written tile; kNoPage where an eraser finds no page.
   Result<std::vector<PageId>> find_pages(const KernelResult& written, LayerTextures& layer) const;
   void write(const KernelResult& written, std::span<const PageId> pages, LayerTextures& layer);
 

@@ -7,10 +7,10 @@
 
 namespace strata::render {
 
-// Lists of numbers of a path's segments, end to end. Neighbouring blocks mostly share theirs.
+// Lists of segment numbers of a path, one after the other. Neighboring blocks mostly share a list.
 class SegmentLists {
  public:
-  // Where the list begins: the last one again if it is the same.
+  // Returns where the list begins: at the last one again if both are equal.
   std::uint32_t add(std::span<const std::uint32_t> list) {
     const auto last = std::span(numbers_).subspan(last_list_);
     if (numbers_.empty() || !std::ranges::equal(last, list)) {
@@ -19,7 +19,7 @@ class SegmentLists {
     }
     return static_cast<std::uint32_t>(last_list_);
   }
-  // Where the first of the others' lists begins among these from now on.
+  // Appends other lists. Returns where their first one begins.
   std::uint32_t append(const SegmentLists& others) {
     const std::size_t begin = numbers_.size();
     last_list_ = begin + others.last_list_;

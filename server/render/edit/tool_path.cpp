@@ -7,9 +7,9 @@
 namespace strata::render {
 namespace {
 
-// Covers any window, and its square is still a float.
+// Covers any window, and its square does not overflow float.
 constexpr double kMaxRadius_px = 1e9;
-// Covers no texel, and can be divided by.
+// Covers no texel, and is not zero.
 constexpr double kMinRadius_px = 1e-3;
 
 PixelBox join(const PixelBox& a, const PixelBox& b) {
@@ -22,7 +22,7 @@ shader::EditSegment make_segment(glm::dvec2 a, glm::dvec2 b, double ra, double r
   double shift = 0;
   if (shape == ToolShape::disc && length > 0 && ra != rb) {
     const double slope = (rb - ra) / length;
-    if (std::abs(slope) >= 1) {  // one disc holds the other
+    if (std::abs(slope) >= 1) {  // one disc contains the other
       if (rb > ra) a = b;
       b = a;
       ra = rb = std::max(ra, rb);
@@ -86,7 +86,7 @@ std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const
   const double scale = view_scale(stroke.camera) * 0.5 * stroke.camera.height *
                        std::abs(stroke.camera.projection[1][1]);
   std::vector<double> ws(count, 0);
-  std::vector<std::size_t> distance(count, count);  // to the path point the depth is from
+  std::vector<std::size_t> distance(count, count);  // to the path point that the depth is from
   const auto spread = [&](std::size_t i, std::size_t from) {
     if (distance[from] + 1 < distance[i]) {
       distance[i] = distance[from] + 1;

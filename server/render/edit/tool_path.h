@@ -17,29 +17,29 @@ struct PixelBox {  // window pixels, origin lower left
   }
 };
 
-// A stroke's path as segments in window pixels, with the boxes that cull by them.
+// A stroke's path as segments in window pixels, with their boxes for culling.
 struct ToolPath {
   std::vector<shader::EditSegment> segments;
   std::vector<PixelBox> boxes;  // of each segment with its tool
   PixelBox box;                 // of all
-  // of the disc about the tool's centre that lies in the tool wholly, as a share of its radius
+  // radius of the disc about the tool's center that is completely inside the tool, as a share of
+  // its radius
   double inner_radius = 1;
 };
 
-// `radii_px` is one a point, before the stroke's widths. Points that do not move are joined.
+// `radii_px` has one entry for each point, before the stroke's widths. Points at the same place are
+// joined.
 ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii_px);
 
-// How many units of view space one of the model's is: 1 unless the view matrix scales.
+// The length of a model unit in view space: 1 unless the view matrix scales.
 double view_scale(const Camera& camera);
 
-// The camera's w (distance along its axis; 1 for orthographic) where the window depth (0…1) is
-// `depth`.
+// The camera's w (distance along its axis; 1 for orthographic) at the window depth `depth` (0…1).
 double w_at_depth(const Camera& camera, double depth);
 
 // Radius in window pixels under each path point for a radius in model units: radius_world · view
-// scale · projection scale / w, w from the depth under the point (1: nothing there). A point beside
-// the surface takes the depth of the nearest path point that is on it, and if none is,
-// `fallback_w`.
+// scale · projection scale / w, with w from the depth under the point (1: no surface). A point off
+// the surface uses the depth of the nearest path point on it, or `fallback_w` if no point is on it.
 std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const float> depths,
                                       double fallback_w);
 

@@ -4,8 +4,8 @@
 
 namespace strata::render {
 
-// `reserve` is called on the GPU thread. What can be made again: empty pages, depth buffers, the
-// buffers of views.
+// `reserve` is called on the GPU thread. It may evict data that can be restored: empty pages, depth
+// buffers, the buffers of views.
 class GpuMemory : public MemoryLedger {
  public:
   explicit GpuMemory(std::uint64_t budget_bytes)

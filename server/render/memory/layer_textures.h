@@ -11,7 +11,7 @@
 namespace strata::render {
 
 // One layer on the GPU: its range of the page tables and its pages in the pool of its texel width.
-// Costs 4 bytes a tile while empty. GPU thread only, except `bytes`.
+// Uses 4 bytes a tile while empty. GPU thread only, except `bytes`.
 class LayerTextures {
  public:
   static Result<std::unique_ptr<LayerTextures>> create(ValueType type, int resolution,
@@ -31,14 +31,14 @@ class LayerTextures {
     return tile.x < tiles_per_side_ && tile.y < tiles_per_side_;
   }
   PageId page(TileAddress tile) const { return tables_.at(index(tile)); }  // kNoPage when empty
-  // An empty page where there is none.
+  // Returns the tile's page, or an empty new one if it has no page.
   Result<PageId> ensure_page(TileAddress tile);
-  // Takes a page of the pool for a tile that has none.
+  // Assigns a page of the pool to a tile without a page.
   void put_page(TileAddress tile, PageId page);
   void free_page(TileAddress tile);
   void free_pages();  // of all tiles
 
-  // Table and pages. The counter outlives the layer, so that any thread may ask.
+  // Bytes of table and pages. The counter outlives the layer, so that any thread may read it.
   const std::shared_ptr<std::atomic<std::uint64_t>>& bytes() const { return bytes_; }
 
  private:

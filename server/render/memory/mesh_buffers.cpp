@@ -21,7 +21,7 @@ glm::vec4 corner_of(const mesh::ClusterBox& box, unsigned corner) {
           (corner & 4) != 0 ? box.max.z : box.min.z, 1};
 }
 
-// Whether all corners lie beyond one side of the clip volume. The slack covers the rounding of the
+// Whether all corners are outside one side of the clip volume. The slack covers the rounding of the
 // vertex stage.
 bool outside(const mesh::ClusterBox& box, const glm::mat4& clip_from_model) {
   constexpr float kSlack = 1e-5f;
@@ -44,8 +44,8 @@ constexpr std::array<gl::VertexAttribute, 4> kAttributes{{
     {3, 4, GL_UNSIGNED_BYTE, true, offsetof(mesh::Vertex, color)},
 }};
 
-// Of some thousand triangles all over the mesh. By area: a few large ones may be most of what is
-// seen.
+// Mean of some thousand triangles from the whole mesh, weighted by area: a few large ones may cover
+// most of a view.
 float side_of_triangles(const mesh::Geometry& geometry) {
   const auto corner = [&](std::size_t i) -> const glm::vec3& {
     return geometry.vertices[geometry.indices[i]].position;

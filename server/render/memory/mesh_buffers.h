@@ -17,7 +17,7 @@ class MeshBuffers {
   static Result<std::unique_ptr<MeshBuffers>> create(std::shared_ptr<const mesh::Geometry> geometry,
                                                      GpuMemory& memory);
 
-  // Uploads the next few megabytes; true when everything is there.
+  // Uploads the next few megabytes; true when complete.
   bool upload_slice();
   bool complete() const { return uploaded_ == vertex_bytes() + index_bytes(); }
 
@@ -27,13 +27,13 @@ class MeshBuffers {
   const gl::Buffer& cluster_boxes() const { return cluster_boxes_; }
   std::size_t triangle_count() const { return geometry_->triangle_count(); }
 
-  // Of the clusters that reach into the window, whole ones counted.
+  // Triangles of the clusters that intersect the window; whole clusters are counted.
   std::size_t visible_triangles(const glm::mat4& clip_from_model) const;
-  // Pixels along the short sides of the model's triangles where it is nearest to the eye, in a
-  // window of `height` pixels. Infinite where it reaches behind the eye.
+  // Length in pixels of the short sides of the model's triangles where it is nearest to the eye, in
+  // a window of `height` pixels. Infinite if the model extends behind the eye.
   float triangle_pixels(const glm::mat4& clip_from_model, int height) const;
-  // Numbers of the geometry's clusters that reach into the window, nearest first as seen from `eye`
-  // (a point where w is 1, a direction towards the eye where it is 0; model space).
+  // Numbers of the geometry's clusters that intersect the window, nearest first as seen from `eye`
+  // (a point if w is 1, a direction towards the eye if it is 0; model space).
   std::vector<std::uint32_t> visible_clusters(const glm::mat4& clip_from_model,
                                               const glm::vec4& eye) const;
 

@@ -7,7 +7,7 @@
 namespace strata::render {
 namespace {
 
-// of light in the table back to sRGB: finer than its steps, but for the darkest few
+// light values in the table back to sRGB: finer than sRGB steps, except for the darkest few
 constexpr int kCodes = 4096;
 
 double light_of(double srgb) {

@@ -103,22 +103,22 @@ Result<void> PagePool::add_chunk() {
                                    [](const Chunk& chunk) { return !chunk.values; });
   const auto number = static_cast<std::size_t>(unused - chunks_.begin());
   if (number >= kMaxChunks) {
-    return fail(ErrorCode::out_of_memory, "GPU memory used up",
+    return fail(ErrorCode::out_of_memory, "GPU memory exhausted",
                 "No more than 16 texture chunks of one value width can be used.");
   }
   const int present =
       std::accumulate(chunks_.begin(), chunks_.end(), 0,
                       [](int sum, const Chunk& chunk) { return sum + chunk.values.layers(); });
-  // 1, 2, 4 … where none was dropped.
+  // 1, 2, 4 … if no chunk was dropped.
   int slices = static_cast<int>(
       std::min(std::bit_floor(static_cast<unsigned>(present) + 1), kMaxSlicesPerChunk));
   auto chunk = make_chunk(number, slices);
-  // Near the budget fewer may still fit.
+  // Near the budget fewer slices may still fit.
   while (!chunk && slices > 1) chunk = make_chunk(number, slices /= 2);
   if (!chunk) return tl::unexpected(chunk.error());
   if (number == chunks_.size()) chunks_.emplace_back();
   chunks_[number] = std::move(*chunk);
-  // In reverse, so that pages are taken in ascending order.
+  // In reverse, so that pages are allocated in ascending order.
   for (auto i = static_cast<std::uint32_t>(slices) * kCellsPerSlice; i-- > 0;) {
     free_.push_back(static_cast<std::uint32_t>(number) << shader::kPageChunkShift | i);
   }

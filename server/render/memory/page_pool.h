@@ -13,11 +13,11 @@ namespace strata::render {
 
 using PageId = std::uint32_t;  // chunk, slice and cell: shaders/shared/pages.h
 
-// Storage of tiles of one texel width, whatever layer they belong to: the paper's texture manager
-// with pages instead of whole textures. Chunks are texture arrays of 2048 x 2048 slices of 16 x 16
-// pages, beside them a plane of valid flags; each chunk holds twice as many slices as the one
-// before, and none is ever copied or moved. A chunk without pages can be dropped, so that pools
-// lend each other memory; its number then serves a later one.
+// Storage of tiles of one texel width, for all layers: the paper's texture manager with pages
+// instead of whole textures. Chunks are texture arrays of 2048 x 2048 slices of 16 x 16 pages, each
+// with a second array of valid flags. Each chunk has twice as many slices as the one before, and no
+// chunk is ever copied or moved. A chunk without pages can be dropped, so that other pools can use
+// its memory; a later chunk reuses its number.
 class PagePool {
  public:
   PagePool(int texel_bytes, GpuMemory& memory) : texel_bytes_(texel_bytes), memory_(memory) {}
@@ -33,23 +33,24 @@ class PagePool {
   const gl::Texture& values(std::uint32_t chunk) const { return chunks_[chunk].values; }
   const gl::Texture& valid(std::uint32_t chunk) const { return chunks_[chunk].valid; }
 
-  // Frees pages of this pool that are not needed for now; false when it has none to free. Asked
-  // before others must give way.
+  // Frees pages of this pool that are not in use; returns false if all are in use. Called before
+  // other memory is evicted.
   void set_evictor(std::function<bool()> free_some) { free_some_ = std::move(free_some); }
 
-  // A page whose content is undefined. An Error `out_of_memory` when no chunk can be added.
+  // Allocates a page with undefined content. An Error `out_of_memory` if no chunk can be added.
   Result<PageId> allocate();
   void free(PageId page);
-  // `data` is of this texel width.
+  // `data` must be of this texel width.
   void upload(PageId page, const TileData& data);
-  // Waits for the GPU: cheap where that is the CPU, else use TileReader.
+  // Waits for the GPU: fast if the GPU is a CPU, otherwise use TileReader.
   void read(PageId page, TileData& data) const;
   void clear(PageId page);  // no value, not valid
-  // Gives the memory of one chunk without pages back; false when there is none.
+  // Frees the memory of one chunk without pages; false if there is no such chunk.
   bool drop_empty_chunk();
 
  private:
-  struct Chunk {  // without textures: a number that is free
+  // without textures: the number is free
+  struct Chunk {
     gl::Texture values, valid;
     GpuMemory::Share share;
     std::uint32_t used_pages = 0;

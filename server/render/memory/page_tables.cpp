@@ -10,7 +10,7 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kMinTable = 4096;  // entries
-// Runs of changed entries this near are sent together.
+// Runs of changed entries with smaller gaps are uploaded together.
 constexpr std::uint32_t kJoinGap = 64;
 
 }  // namespace

@@ -11,17 +11,17 @@
 namespace strata::render {
 
 // The page tables of all layers in one storage buffer, so that a dispatch over many layers binds
-// one. Entries are page ids or kNoPage. Changes are kept on the CPU until `flush`.
+// only one. Entries are page ids or kNoPage. Changes stay on the CPU until `flush`.
 class PageTables {
  public:
   explicit PageTables(GpuMemory& memory) : memory_(memory) {}
 
-  // `count` entries, all kNoPage.
+  // Allocates `count` entries, all kNoPage.
   Result<std::uint32_t> allocate(std::uint32_t count);
   void free(std::uint32_t offset, std::uint32_t count);
   PageId at(std::uint32_t index) const { return entries_[index]; }
   void set(std::uint32_t index, PageId page);
-  // Brings the buffer up to date; an Error `out_of_memory` when it cannot grow.
+  // Uploads the changes; an Error `out_of_memory` if the buffer cannot grow.
   Result<void> flush();
   void bind(GLuint binding) const { buffer_.bind_storage(binding); }
 

@@ -8,7 +8,7 @@ namespace strata::render {
 namespace {
 
 constexpr std::uint32_t kRows = 256;
-constexpr std::size_t kFirstPoints = 1 << 16;  // that there is room for
+constexpr std::size_t kFirstPoints = 1 << 16;  // initial capacity
 
 std::uint32_t packed_pattern(const Palette::Point& point) {
   if (point.pattern == Pattern::solid) return 0;
@@ -25,7 +25,7 @@ std::vector<shader::PalettePoint> points_of(const Palette& palette, ValueType ty
       points.push_back({std::bit_cast<std::uint32_t>(static_cast<float>(point.at)),
                         packed(point.color), packed_pattern(point)});
     } else if (const auto bits = encode_value(type, point.at)) {
-      // a key the type cannot hold is never met
+      // a key that the type cannot hold never occurs
       points.push_back({*bits, packed(point.color), packed_pattern(point)});
     }
   }

@@ -14,8 +14,8 @@ namespace strata::render {
 std::uint32_t packed(const Rgba& color);  // red in the low byte
 
 // Palettes on the GPU: linear ones as rows of one texture; the points of stepped and categorical
-// ones in one storage buffer, because thresholds and keys must hit exactly. Entries are kept as
-// long as there is room.
+// ones in one storage buffer, because thresholds and keys must be exact. Entries are kept as long
+// as there is room.
 class PaletteTextures {
  public:
   static Result<PaletteTextures> create();
@@ -26,12 +26,12 @@ class PaletteTextures {
     std::uint32_t row = 0, points = 0, point_count = 0;
     bool patterned = false;  // some point is not solid
   };
-  // Forgets old entries when these might not fit beside them; entries found after it stay until the
-  // next call. An Error `out_of_memory` when the driver has no memory.
+  // Drops old entries if these palettes might not fit with them; entries found after it stay until
+  // the next call. An Error `out_of_memory` if the driver has no memory.
   Result<void> make_room(std::span<const std::shared_ptr<const Palette>> palettes);
   Entry find(const std::shared_ptr<const Palette>& palette, ValueType type);
 
-  // that there can be room for
+  // the largest number of palettes in one call
   static constexpr std::size_t kMaxPalettes = shader::kMaxShadeLayers;
 
   void bind(GLuint texture_unit, GLuint points_binding) const;

@@ -20,7 +20,7 @@ class StreamBuffer {
     buffer_.upload_values(0, values);
     return {};
   }
-  // Room for `bytes`, whose content is undefined.
+  // Provides `bytes` of undefined content.
   Result<void> make_room(std::size_t bytes) {
     const std::size_t needed = std::max<std::size_t>(bytes, 4096);
     if (buffer_.size() < needed) {
@@ -28,7 +28,7 @@ class StreamBuffer {
           STRATA_TRY(gl::Buffer::create(std::bit_ceil(needed), gl::Buffer::Use::fixed, label_));
       buffer_ = std::move(buffer);
     } else {
-      // the driver need not wait for those who read the old content
+      // the driver need not wait for commands that read the old content
       glInvalidateBufferData(buffer_.id());
     }
     return {};

@@ -6,7 +6,7 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kSliceBytes = std::size_t{4} << 20;  // ≈ 1 ms of copying
-// Surfaces at a slant stay sharp; a CPU would pay for each sample.
+// Keeps slanted surfaces sharp; a software renderer would need time for each sample.
 constexpr float kAnisotropy = 8;
 
 }  // namespace

@@ -8,14 +8,14 @@
 
 namespace strata::render {
 
-// A picture of a model's surface on the GPU, filled in slices. Filtered between texels and between
-// mipmaps.
+// A picture of a model's surface on the GPU, uploaded in slices. Filtered between texels and
+// between mipmaps.
 class SurfaceImageTexture {
  public:
   static Result<std::unique_ptr<SurfaceImageTexture>> create(
       std::shared_ptr<const MipmappedPicture> image, bool software, GpuMemory& memory);
 
-  // Uploads the next few megabytes; true when everything is there, after which the image is let go.
+  // Uploads the next few megabytes; true when complete, after which the image is released.
   bool upload_slice();
   const gl::Texture& texture() const { return texture_; }
 

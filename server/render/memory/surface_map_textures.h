@@ -11,17 +11,17 @@
 
 namespace strata::render {
 
-// A surface map on the GPU, filled in slices: packed positions as 2048 x 2048 slices of RG32UI (a
-// storage buffer would end at 128 MiB on some drivers), the boxes they are packed in, and the block
-// tree's parts with the spheres that cull them. Where edits are painted on the CPU, nothing of it.
+// A surface map on the GPU, uploaded in slices: packed positions as 2048 x 2048 slices of RG32UI (a
+// storage buffer would be limited to 128 MiB on some drivers), the boxes of the packed positions,
+// and the block tree's parts with their culling spheres. Empty if edits are painted on the CPU.
 class SurfaceMapTextures {
  public:
   static Result<std::unique_ptr<SurfaceMapTextures>> create(
       std::shared_ptr<const mesh::SurfaceMap> map, GpuMemory& memory);
-  // Nothing of it on the GPU.
+  // Uploads nothing to the GPU.
   static std::unique_ptr<SurfaceMapTextures> on_cpu(std::shared_ptr<const mesh::SurfaceMap> map);
 
-  // Uploads the next few megabytes; true when everything is there.
+  // Uploads the next few megabytes; true when complete.
   bool upload_slice();
   bool complete() const {
     return !positions_ || (uploaded_rows_ == total_rows_ && next_buffer_ == buffers_.size());
@@ -29,14 +29,14 @@ class SurfaceMapTextures {
   const mesh::SurfaceMap& map() const { return *map_; }
   const gl::Texture& positions() const { return positions_; }
   const gl::Buffer& boxes() const { return buffers_[0].buffer; }  // a slot: PackedBox
-  // Of the tree: centre and radius of each 64 parts' node and of each part, and the parts as
+  // For the tree: center and radius of each node of 64 parts and of each part, and the parts as
   // EditPart.
   const gl::Buffer& nodes() const { return buffers_[1].buffer; }
   const gl::Buffer& spheres() const { return buffers_[2].buffer; }
   const gl::Buffer& parts() const { return buffers_[3].buffer; }
   const gl::Buffer& touched_parts() const {
     return touched_parts_;
-  }  // room for TouchedPart of all, for the edit at work
+  }  // a TouchedPart for each part, for the current edit
 
  private:
   struct Filled {
@@ -53,7 +53,7 @@ class SurfaceMapTextures {
   GpuMemory::Share share_;
   std::size_t total_rows_ = 0;  // of 2048 texels
   std::size_t uploaded_rows_ = 0;
-  std::size_t next_buffer_ = 0, uploaded_bytes_ = 0;  // of that one
+  std::size_t next_buffer_ = 0, uploaded_bytes_ = 0;  // the latter of that buffer
 };
 
 }  // namespace strata::render

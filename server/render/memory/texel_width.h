@@ -9,17 +9,17 @@
 
 namespace strata::render {
 
-// Values are kept as bits in pools of 1, 2 and 4 bytes a texel, and each program that reads or
-// writes them is built for each.
+// Values are stored as bits in pools of 1, 2 and 4 bytes a texel. Each program that reads or writes
+// them is built for each width.
 
 // GL names of a texel width.
 GLenum texel_format(int texel_bytes);
 GLenum texel_component(int texel_bytes);
 
-// Programs of one shader file for each width.
+// Programs of one shader file for all widths.
 class ProgramPerWidth {
  public:
-  // `define_of` gives the width's define; `others` go to all.
+  // `define_of` returns the width's define; `others` are passed to all.
   template <class DefineOf>
   static Result<ProgramPerWidth> load(const std::filesystem::path& shader_dir,
                                       const std::string& file, DefineOf define_of,

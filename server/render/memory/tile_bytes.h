@@ -7,13 +7,13 @@
 
 namespace strata::render {
 
-// A tile's valid flags as textures hold them: a byte a texel, 0 or 1.
+// A tile's valid flags in the layout of textures: a byte a texel, 0 or 1.
 using TileFlags = std::array<std::uint8_t, kTexelsPerTile>;
 
 void flags_of(const TileMask& mask, TileFlags& flags);
 TileMask mask_of(const TileFlags& flags);
 
-// Writes `bits` of the tile's type, valid, to the texels of `mask`; `erase` clears them instead.
+// Writes `bits` of the tile's type as valid to the texels of `mask`; `erase` clears them instead.
 void write_texels(const TileMask& mask, std::uint32_t bits, bool erase, TileData& tile);
 
 }  // namespace strata::render

@@ -45,7 +45,7 @@ void TileReader::begin(const PagePool& pool, std::span<const PageId> pages, gl::
   program.use();
   pages_.bind_storage(0);
   room.buffer().bind_storage(1);
-  // Runs of pages in one chunk share a dispatch.
+  // Consecutive pages of one chunk share a dispatch.
   for (std::size_t first = 0; first < pages.size();) {
     const auto chunk = pages[first] >> shader::kPageChunkShift;
     std::size_t last = first;

@@ -16,7 +16,7 @@
 
 namespace strata::render {
 
-// What a depth buffer shows. Equal keys have equal depths.
+// The content of a depth buffer. Equal keys have equal depths.
 struct DepthKey {
   std::uint64_t model = 0;
   glm::dmat4 view{1.0}, projection{1.0};
@@ -25,26 +25,26 @@ struct DepthKey {
   std::vector<glm::dvec4> section;
   bool operator==(const DepthKey&) const = default;
 };
-// Of a picture of width x height pixels, which the camera's window is scaled to.
+// For a picture of width x height pixels, to which the camera's window is scaled.
 DepthKey depth_key(std::uint64_t model, const Camera& camera, int width, int height);
 
-// Depth of a mesh from one camera; its coarse grid of largest depths and its copy are made when
-// first asked for.
+// Depth of a mesh from one camera. Its coarse grid of largest depths and its copy are made on
+// demand.
 struct DepthBuffer {
   DepthKey key;
-  bool complete = false;  // every triangle was drawn
+  bool complete = false;  // every triangle is drawn
   gl::Texture texture;
   gl::Framebuffer framebuffer;
   GpuMemory::Share share;
   gl::Buffer grid;
   bool has_grid = false;
-  std::shared_ptr<const DepthCopy> copy;  // null: nobody asked for it yet
+  std::shared_ptr<const DepthCopy> copy;  // null: not requested yet
 
-  void start(const DepthKey& new_key);  // forgets what it holds
+  void start(const DepthKey& new_key);  // discards the content
 };
 
-// Depth buffers for edits and views: a view's own is shared with edits from the same camera; some
-// recent ones of cameras that no view has are kept.
+// Depth buffers for edits and views: a view shares its own with edits from the same camera; some
+// recent ones of cameras without a view are kept.
 class DepthBuffers {
  public:
   static Result<DepthBuffers> create(const std::filesystem::path& shader_dir,
@@ -52,10 +52,10 @@ class DepthBuffers {
                                      gl::ReadbackPool& readback);
 
   Result<std::shared_ptr<DepthBuffer>> make(const DepthKey& key);
-  // A view's buffer, for `find`.
+  // Makes a view's buffer available to `find`.
   void offer(const std::shared_ptr<DepthBuffer>& buffer);
   std::shared_ptr<DepthBuffer> find(const DepthKey& key);
-  // For a camera that no buffer is found for: one to be drawn by `draw_slice`.
+  // Creates a buffer for a camera for which `find` has none; `draw_slice` fills it.
   Result<std::shared_ptr<DepthBuffer>> start(const DepthKey& key);
   // True when the mesh is complete; the buffer is then kept as a recent one.
   Result<bool> draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh,
@@ -63,8 +63,8 @@ class DepthBuffers {
   bool evict_one();
   void forget_model(std::uint64_t model);
 
-  // Makes `buffer.copy`, on `threads` threads. Waits for the GPU: a fence after the drawing tells
-  // when it does not.
+  // Makes `buffer.copy`, on `threads` threads. Waits for the GPU; a fence placed after the drawing
+  // shows when it does not have to wait.
   static void copy_to_memory(DepthBuffer& buffer, int threads);
 
   // Makes `buffer.grid` (see DepthGridPass).

@@ -8,11 +8,11 @@ namespace {
 
 constexpr double kReachOfSize = 1e-3, kReachOfLine = 0.02,
                  kReachOfPoint = 5e-4;  // of the model's size; of a line's length
-// of the camera's window
+// in pixels of the camera's window
 const double kPiece_px = shader::kFeatureMaxPlaces * static_cast<double>(shader::kFeatureStep_px);
 
-// Of a segment from `a` to `b` the part where a linear function that is `at_a` and `at_b` at its
-// ends is not below 0.
+// Narrows a segment from `a` to `b` to the part where a linear function with the values `at_a` and
+// `at_b` at its ends is not negative.
 void narrow(double at_a, double at_b, double& begin, double& end) {
   if (at_a >= 0 && at_b >= 0) return;
   if (at_a < 0 && at_b < 0) {
@@ -27,10 +27,10 @@ void narrow(double at_a, double at_b, double& begin, double& end) {
     end = std::min(end, t);
 }
 
-// A place on the plane of a picture.
+// A point on the plane of a picture.
 struct Projected {
   glm::dvec3 at{0};        // pixels, depth 0…1
-  double pixel_depth = 0;  // by how much depth grows over the length of a pixel there
+  double pixel_depth = 0;  // change of depth over the length of a pixel there
   double pixel = 1;        // that length, world
 };
 
@@ -38,7 +38,7 @@ class Projection {
  public:
   Projection(const Camera& camera, int width, int height)
       : camera_(camera), size_(width, height), orthographic_(is_orthographic(camera)) {
-    // Length of a pixel, per distance from the eye where there is one.
+    // Length of a pixel, per distance from the eye for a perspective camera.
     across_ = 2 / (std::abs(camera.projection[0][0]) * width);
     scale_ = static_cast<double>(width) / camera.width;
   }
@@ -46,7 +46,7 @@ class Projection {
   double scale() const { return scale_; }
   const glm::dvec2& size() const { return size_; }
 
-  // False: nothing of it is in front of the eye and kept by the section.
+  // False: no part of it is in front of the eye and kept by the section.
   bool segment(const glm::dvec3& from, const glm::dvec3& to, Projected& begins,
                Projected& ends) const {
     double begin = 0, end = 1;
@@ -54,7 +54,7 @@ class Projection {
       narrow(glm::dot(plane, glm::dvec4(from, 1)), glm::dot(plane, glm::dvec4(to, 1)), begin, end);
     const glm::dvec4 a = camera_.projection * (camera_.view * glm::dvec4(from, 1));
     const glm::dvec4 b = camera_.projection * (camera_.view * glm::dvec4(to, 1));
-    // In front of the near plane and of the far one.
+    // In front of the near and the far plane.
     narrow(a.w + a.z, b.w + b.z, begin, end);
     narrow(a.w - a.z, b.w - b.z, begin, end);
     if (begin > end) return false;
@@ -67,7 +67,7 @@ class Projection {
   Projected project(const glm::dvec3& place) const {
     const glm::dvec4 view = camera_.view * glm::dvec4(place, 1);
     const double pixel = orthographic_ ? across_ : across_ * std::abs(view.z);
-    // towards the eye, not past it
+    // towards the eye, but not past it
     const double step = orthographic_ ? pixel : std::min(pixel, std::abs(view.z) / 2);
     const glm::dvec3 at = on_picture(camera_.projection * view);
     const glm::dvec3 near = on_picture(camera_.projection * (view + glm::dvec4(0, 0, step, 0)));
@@ -84,16 +84,16 @@ class Projection {
   double across_ = 0, scale_ = 1;
 };
 
-// How a mark is drawn: all of its pieces alike.
+// The style of a mark, the same for all its pieces.
 struct Style {
   float half_width = 0, casing = 0;
   glm::vec4 color{0};
   double reach = 0;     // world
-  double reach_px = 0;  // at least
+  double reach_px = 0;  // minimum
 };
 
-// Adds those pieces of a segment that a picture may show. `joins_last`: the first one continues
-// what was added last.
+// Adds the pieces of a segment that a picture may show. `joins_last`: the first one continues the
+// last one added before.
 void add_pieces(const Projection& projection, const Projected& from, const Projected& to,
                 const Style& style, bool joins_last, std::vector<shader::FeatureSegment>& pieces) {
   const glm::dvec2 a(from.at), b(to.at);
@@ -173,7 +173,7 @@ std::vector<shader::FeatureSegment> project_features(const std::vector<DrawnFeat
       const std::size_t before = pieces.size();
       if (projection.segment(feature.places[i - 1], feature.places[i], from, to))
         add_pieces(projection, from, to, style, joins, pieces);
-      // What was added reaches the segment's end only where its last piece does.
+      // The added pieces reach the segment's end only if the last one does.
       joins = pieces.size() > before && glm::vec2(pieces.back().to) == glm::vec2(to.at);
     }
   }

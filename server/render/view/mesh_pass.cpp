@@ -19,15 +19,15 @@ const char* light_define(LightMode mode) {
   return nullptr;
 }
 
-// A plane that faces the viewer is shown in middle grey, however low the light stands.
+// A plane that faces the viewer is middle gray at any height of the light.
 constexpr double kRakingOnPlane = 0.5, kMaxRaking = 3;
 
-// Smaller triangles are lit at their vertices: who looks sees no difference, and a software
-// renderer draws a thirteenth faster.
+// Smaller triangles are lit at their vertices: there is no visible difference, and a software
+// renderer is a thirteenth faster.
 constexpr float kPixelsLitAtVertices = 10;
 
-// A part of the clusters that are left is drawn before the others are looked at; a few are drawn
-// sooner than looked at.
+// Part of the remaining clusters is drawn before the others are culled; drawing a few clusters is
+// faster than culling them.
 constexpr std::size_t kCullAfter = 4, kFewClusters = 256;
 
 std::size_t next_culling(const MeshProgress& progress) {
@@ -143,7 +143,7 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   progress.next_cluster += count;
   for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i)
     glDisable(GL_CLIP_DISTANCE0 + i);
-  glFlush();  // lets the driver draw this slice while the next is prepared
+  glFlush();  // the driver can draw this slice while the next is prepared
   return progress.next_cluster == progress.clusters;
 }
 

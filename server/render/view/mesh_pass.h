@@ -18,41 +18,41 @@
 
 namespace strata::render {
 
-// What a mesh is drawn with.
+// The parameters for drawing a mesh.
 struct MeshView {
   shader::MeshUniforms uniforms;
   bool is_cut = false;  // by section planes
-  // the camera swaps left and right: triangles that face it turn clockwise
+  // the camera swaps left and right: triangles that face it are clockwise
   bool is_mirrored = false;
   // For the g-buffer.
   LightMode light = LightMode::museum;
-  // bottom to top, kMaxSurfaceImages at most, with their opacity in the uniforms
+  // bottom to top, at most kMaxSurfaceImages, with their opacity in the uniforms
   std::vector<const gl::Texture*> images;
 };
-// For a model whose coordinates are relative to `origin`; without looks.
+// For a model whose coordinates are relative to `origin`; without images.
 MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light = {});
 
-// What a mesh is drawn into. The depth texture belongs to the framebuffer and has the window's
+// The target of a mesh drawing. The depth texture belongs to the framebuffer and has the window's
 // size.
 struct MeshTarget {
   const gl::Framebuffer& framebuffer;
   const gl::Texture& depth;
 };
 
-// Position in a drawing of a mesh that is done in slices.
+// Progress of drawing a mesh in slices.
 struct MeshProgress {
   gl::Buffer commands;       // shader::DrawCommand: clusters in drawing order
   std::size_t clusters = 0;  // in the window
   std::size_t next_cluster = 0;
-  std::size_t next_culling = 0;  // at this cluster those that follow are looked at
+  std::size_t next_culling = 0;  // the cluster at which those that follow are culled again
   bool cleared = false;
 
   std::size_t triangles() const { return clusters * mesh::Geometry::kTrianglesPerCluster; }
 };
 
-// Draws a mesh, near parts first, and leaves out clusters that lie behind them: depth alone, or the
+// Draws a mesh, near parts first, and leaves out clusters hidden by them: depth only, or the
 // g-buffer. Both use one vertex stage, so their depths are equal. Each call sets all state it
-// needs: other passes may run between slices. Nothing is culled by facing, because scans are open.
+// needs: other passes may run between slices. Back faces are not culled, because scans are open.
 class MeshPass {
  public:
   enum class Kind { depth, gbuffer };
@@ -64,7 +64,7 @@ class MeshPass {
                           MeshProgress& progress);
 
  private:
-  // Built when it is first needed.
+  // Built on first use.
   Result<const gl::Program*> program(const MeshView& view, bool lit_at_vertices);
   Result<void> begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
                      MeshProgress& progress);

@@ -11,7 +11,7 @@ namespace strata::render {
 namespace {
 
 constexpr GLuint kUvUnit = 0, kLightUnit = 1, kPaletteUnit = 2, kValuesUnit = 3, kValidUnit = 9;
-// A room shows few combinations of layers, but painting adds chunks to them.
+// A model has few combinations of layers, but painting adds chunks to them.
 constexpr std::size_t kMaxPrograms = 64;
 
 glm::vec4 color(const Rgba& c) { return glm::vec4(c[0], c[1], c[2], c[3]) / 255.0f; }
@@ -91,7 +91,7 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   out.others = packed(layer.palette->others.value_or(Rgba{}));
   out.patterned = entry.patterned ? 1 : 0;
   out.bare = layer.bare ? 1 : 0;
-  // Without a range every value takes an end; the shader divides by it.
+  // Without a range every value maps to an end; the shader divides by the range.
   const bool has_range = out.palette_max > out.palette_min;
   if (!has_range && layer.palette->mode == PaletteMode::linear)
     out.palette_max = std::nextafter(out.palette_min, 1e38f);
@@ -100,8 +100,8 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   return out;
 }
 
-// Batches in drawing order. A layer whose chunks do not all fit spans several: each of its texels
-// is in one of them.
+// Plans batches in drawing order. A layer whose chunks do not all fit is in several batches: each
+// of its texels is in one of them.
 std::vector<ShadePass::Batch> ShadePass::plan(std::span<const ShadeInput::Layer> layers) {
   std::vector<Batch> batches(1);
   for (const ShadeInput::Layer& layer : layers) {
@@ -154,7 +154,7 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
       for (const Batch& batch : plan(group)) {
         STRATA_TRY(draw_surface(input, batch, first, tables));
         first = false;
-        // What the next draws is `colour + alpha * what is there`; the picture stays opaque.
+        // The next draw outputs `color + alpha * destination`; the picture stays opaque.
         glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
         glEnable(GL_BLEND);
       }

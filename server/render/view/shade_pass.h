@@ -24,37 +24,37 @@ struct ShadeInput {
     float opacity;
     bool bare = false;  // patterns without tint and border
   };
-  // How patterns lie on the picture's plane.
+  // Placement of patterns on the picture's plane.
   struct Patterns {
-    // pixel that they are measured from, origin bottom left: the model's middle
+    // their origin in pixels from the bottom left: the model's center
     glm::vec2 origin{0};
-    float mm_per_pixel = 1;  // at the distance of the model's middle
-    float pixel_scale = 1;   // pixels of the picture in one of the camera's window
+    float mm_per_pixel = 1;  // at the distance of the model's center
+    float pixel_scale = 1;   // pixels of the picture for one of the camera's window
   };
   const gl::Texture& uv;
   const gl::Texture& light;
   const gl::Framebuffer& target;  // RGBA8 picture and the g-buffer's depth; row 0 lowest
   PixelRect rect;                 // origin top left, as all rectangles of pictures
-  PixelRect surface_rect;         // holds all pixels of `rect` that may show surface
+  PixelRect surface_rect;         // contains all pixels of `rect` that may show surface
   Background background;
   glm::vec2 background_rows{0, 1};  // FrameRequest::background_rows
   std::vector<Layer> layers;        // bottom to top
   Patterns patterns{};
 };
 
-// Colours a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the
-// background, then the surface, which the depth test finds. Layers share a draw as long as the
-// chunks that hold them fit into the texture units; else there are several, each over the last.
-// Sets all state it needs, and leaves neither scissor nor blending behind.
+// Colors a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the
+// background, then the surface, which the depth test finds. Layers share a draw as long as their
+// chunks fit into the texture units; otherwise there are several draws, each over the one before.
+// Sets all state it needs, and resets scissor and blending.
 class ShadePass {
  public:
-  // pairs; with 3 more, 15 of the 16 units every driver has
+  // pairs; with 3 more units, 15 of the 16 that every driver has
   static constexpr std::size_t kChunksPerDraw = 6;
   static constexpr std::size_t kLayersPerProgram = 4;
 
-  // `program_per_kinds`: a program for each combination of the layers' palettes, types and chunks,
-  // which are then constants in it. CPUs run every side of a branch in every lane; GPUs are better
-  // off with one program.
+  // `program_per_kinds`: one program for each combination of the layers' palettes, types and
+  // chunks, with these as constants. Software renderers run both sides of every branch in every
+  // lane; GPUs are faster with one program.
   static Result<ShadePass> create(const std::filesystem::path& shader_dir, bool program_per_kinds);
   Result<void> shade(const ShadeInput& input, const PageTables& tables);
 
@@ -66,7 +66,7 @@ class ShadePass {
   };
   struct Batch {
     std::vector<shader::ShadeLayer> layers;
-    std::vector<std::uint32_t> units;  // of each layer: bits of the units that hold its chunks
+    std::vector<std::uint32_t> units;  // for each layer: bits of the units with its chunks
     std::vector<Chunk> chunks;
   };
   bool can_take(const Batch& batch, const Chunk& chunk, bool listed) const;
@@ -82,7 +82,7 @@ class ShadePass {
   std::filesystem::path shader_dir_;
   bool program_per_kinds_ = false;
   gl::Program background_;
-  // by chunks and kinds, built when first used
+  // by chunks and kinds, built on first use
   std::map<std::pair<std::size_t, std::string>, gl::Program> programs_;
   gl::VertexArray no_vertices_{"picture"};
   PaletteTextures palettes_;

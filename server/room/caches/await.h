@@ -9,7 +9,8 @@
 
 namespace strata::room {
 
-// Starts a call that answers by callback and waits for the answer. Not on the thread that answers.
+// Starts a call that answers by callback and waits for the answer. Must not run on the thread that
+// answers.
 template <class T, class Start>
 Result<T> await(Start start) {
   auto promise = std::make_shared<std::promise<Result<T>>>();
@@ -18,8 +19,8 @@ Result<T> await(Start start) {
   return future.get();
 }
 
-// The same, but the current question may end meanwhile (QuestionEnded): the answer then comes to
-// nobody, so it must be nothing that anyone has to give back.
+// The same, but the current question may end while it waits (QuestionEnded). The answer is then
+// dropped, so it must not be a resource that the caller has to release.
 template <class T, class Start>
 Result<T> await_for_question(Start start) {
   constexpr std::chrono::milliseconds kBetweenChecks{20};

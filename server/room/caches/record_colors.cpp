@@ -26,9 +26,10 @@ Result<Palette> by_column(store::Store& store, TableId table_id, Role seen_by,
   auto table = STRATA_TRY(store.tables().find(to_string(table_id), seen_by));
   const Column* column = find_column(table.columns, palette.column);
   if (!column)
-    return fail(ErrorCode::invalid, "No such column",
-                "The palette colours by the column '" + palette.column + "', which the table '" +
-                    table.name + "' no longer has. Choose another one.",
+    return fail(ErrorCode::invalid, "Column not found",
+                "The palette takes its colors from the column '" + palette.column +
+                    "', which the table '" + table.name +
+                    "' does not have any more. Choose another column.",
                 "palette.column");
   if (holds_numbers(column->kind)) {
     auto numbers = store.records().numbers(table_id, seen_by, column_of(column->slug), std::nullopt,
@@ -38,8 +39,8 @@ Result<Palette> by_column(store::Store& store, TableId table_id, Role seen_by,
   }
   if (palette.mode != PaletteMode::categorical)
     return fail(
-        ErrorCode::invalid, "Column holds no numbers",
-        "'" + column->name + "' holds no numbers: only a categorical palette can colour by it.",
+        ErrorCode::invalid, "Column without numbers",
+        "'" + column->name + "' contains no numbers. Only a categorical palette can use it.",
         "palette.column");
   auto texts = store.records().texts(table_id, seen_by, column->slug, "palette.column");
   if (!texts) return tl::unexpected(texts.error());
@@ -66,38 +67,38 @@ RecordColors::RecordColors(store::Store& store, boost::asio::thread_pool& worker
     : store_(store), workers_(workers), ready_(std::move(ready)) {}
 
 Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store,
-                                                          const Wanted& wanted) {
-  Palette by_key = *wanted.palette;
-  const Role seen_by = least_role(wanted.sight);
+                                                          const Request& request) {
+  Palette by_key = *request.palette;
+  const Role seen_by = least_role(request.sight);
   if (!by_key.column.empty()) {
-    auto colored = STRATA_TRY(by_column(store, wanted.table, seen_by, by_key));
+    auto colored = STRATA_TRY(by_column(store, request.table, seen_by, by_key));
     by_key = std::move(colored);
   }
-  if (wanted.highlight) {
+  if (request.highlight) {
     const auto keys =
-        highlighted_keys(store, wanted.table, seen_by, *wanted.highlight, "highlight.filter");
+        highlighted_keys(store, request.table, seen_by, *request.highlight, "highlight.filter");
     if (!keys) return tl::unexpected(keys.error());
-    by_key = highlighted_colors(by_key, *keys, wanted.highlight->isolate);
+    by_key = highlighted_colors(by_key, *keys, request.highlight->isolate);
   }
   return std::make_shared<const Palette>(std::move(by_key));
 }
 
-RecordColors::Found RecordColors::find(const Wanted& wanted) {
+RecordColors::Found RecordColors::find(const Request& request) {
   std::lock_guard lock(mutex_);
-  // What nobody but this shelf holds is asked for no more.
+  // Drop entries whose palette or highlight only this cache still holds: no view requests them.
   std::erase_if(entries_, [](const auto& entry) {
-    const Wanted& kept = entry->wanted;
-    return !entry->making &&
-           (kept.palette.use_count() == 1 || (kept.highlight && kept.highlight.use_count() == 1));
+    const Request& cached = entry->request;
+    return !entry->making && (cached.palette.use_count() == 1 ||
+                              (cached.highlight && cached.highlight.use_count() == 1));
   });
   const auto known = std::ranges::find_if(entries_, [&](const auto& entry) {
-    const Wanted& kept = entry->wanted;
-    return kept.table == wanted.table && kept.sight == wanted.sight &&
-           kept.palette == wanted.palette && kept.highlight == wanted.highlight;
+    const Request& cached = entry->request;
+    return cached.table == request.table && cached.sight == request.sight &&
+           cached.palette == request.palette && cached.highlight == request.highlight;
   });
   const auto entry = known != entries_.end()
                          ? *known
-                         : entries_.emplace_back(std::make_shared<Entry>(Entry{wanted, {}}));
+                         : entries_.emplace_back(std::make_shared<Entry>(Entry{request, {}}));
   start(entry);
   return entry->found;
 }
@@ -110,7 +111,7 @@ void RecordColors::start(const std::shared_ptr<Entry>& entry) {
 }
 
 void RecordColors::run(const std::shared_ptr<Entry>& entry) {
-  auto made = make(entry->wanted);
+  auto made = make(entry->request);
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
@@ -127,7 +128,7 @@ void RecordColors::run(const std::shared_ptr<Entry>& entry) {
 void RecordColors::records_changed(TableId table_id) {
   std::lock_guard lock(mutex_);
   for (const auto& entry : entries_) {
-    if (entry->wanted.table != table_id) continue;
+    if (entry->request.table != table_id) continue;
     entry->outdated = true;
     start(entry);
   }

@@ -16,52 +16,54 @@
 
 namespace strata::room {
 
-// The keys that are meant, ascending. Refused (invalid at `field`): what the columns do not fit.
+// Returns the highlighted keys, ascending. Refused (invalid at `field`): a condition that does not
+// fit the columns.
 Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, TableId table_id,
                                                     Role seen_by, const Highlight& highlight,
                                                     const std::string& field);
 
-// Palettes by key of an open model's database layers, where what a layer is drawn with depends on
-// its records: colours by a column, and records that are to be seen before all others. They are
-// made on a worker when a view first needs them, and anew when records change. Thread-safe.
+// Palettes by key of an open model's database layers, for layers whose drawing depends on their
+// records: colors by a column, and highlighted records. A worker makes them when a view first needs
+// them, and again when records change. Thread-safe.
 class RecordColors : public std::enable_shared_from_this<RecordColors> {
  public:
-  // `ready` is called, on any thread, whenever something that was asked for is there or has failed.
+  // `ready` is called, on any thread, whenever a requested palette is made or has failed.
   RecordColors(store::Store& store, boost::asio::thread_pool& workers, std::function<void()> ready);
 
-  // What is asked for, told apart by the objects: nothing of it may change.
-  struct Wanted {
+  // Requests are compared by the addresses of their objects, which must not change.
+  struct Request {
     TableId table = 0;
-    Visibility sight = Visibility::everyone;  // the least seen of the columns that may be read
+    Visibility sight = Visibility::everyone;  // the most restricted visibility of the columns that
+                                              // may be read
     std::shared_ptr<const Palette> palette;
-    std::shared_ptr<const Highlight> highlight;  // null: none
+    std::shared_ptr<const Highlight> highlight;  // null: no highlight
   };
   struct Found {
-    std::shared_ptr<const Palette> palette;  // null: not there yet, or not to be had
-    std::shared_ptr<const Error> problem;    // why not
+    std::shared_ptr<const Palette> palette;  // null: not made yet, or failed
+    std::shared_ptr<const Error> problem;    // reason of the failure
   };
-  // The newest that is there; what is not is on its way.
-  Found find(const Wanted& wanted);
-  // The same as of now, made on the calling thread. Blocks.
-  Result<std::shared_ptr<const Palette>> make(const Wanted& wanted) const {
-    return make(store_, wanted);
+  // Returns the newest palette that is ready; starts making a missing or outdated one.
+  Found find(const Request& request);
+  // Makes the present palette on the calling thread. Blocks.
+  Result<std::shared_ptr<const Palette>> make(const Request& request) const {
+    return make(store_, request);
   }
-  static Result<std::shared_ptr<const Palette>> make(store::Store& store, const Wanted& wanted);
-  // Whether there is anything to be made of it: otherwise the palette itself serves.
+  static Result<std::shared_ptr<const Palette>> make(store::Store& store, const Request& request);
+  // Returns false if the palette itself is sufficient.
   static bool needs_records(const Palette& palette,
                             const std::shared_ptr<const Highlight>& highlight) {
     return highlight || !palette.column.empty();
   }
 
   void records_changed(TableId table_id);
-  void stop();  // nothing more is made, and `ready` not called
+  void stop();  // makes nothing more, and does not call `ready`
 
  private:
   struct Entry {
-    Wanted wanted;
+    Request request;
     Found found;
     bool making = false;
-    bool outdated = true;  // by records that changed since the last making began
+    bool outdated = true;  // records changed since the last start
   };
   void start(const std::shared_ptr<Entry>& entry);  // with the mutex held
   void run(const std::shared_ptr<Entry>& entry);

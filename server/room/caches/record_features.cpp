@@ -21,10 +21,10 @@ RecordFeatures::RecordFeatures(store::Store& store, boost::asio::thread_pool& wo
                                ModelId model_id, std::function<void()> ready)
     : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
 
-Result<RecordFeatures::SurfaceFeatures> RecordFeatures::read(const Wanted& wanted,
+Result<RecordFeatures::SurfaceFeatures> RecordFeatures::read(const Key& key,
                                                              std::optional<std::int64_t> at) const {
   auto features =
-      STRATA_TRY(store_.records().features(wanted.first, least_role(wanted.second), model_id_, at));
+      STRATA_TRY(store_.records().features(key.first, least_role(key.second), model_id_, at));
   return features.empty() ? nullptr
                           : std::make_shared<const std::vector<KeyFeature>>(std::move(features));
 }
@@ -36,29 +36,29 @@ Result<RecordFeatures::SurfaceFeatures> RecordFeatures::when(TableId table_id, V
 }
 
 RecordFeatures::SurfaceFeatures RecordFeatures::find(TableId table_id, Visibility sight) {
-  const Wanted wanted{table_id, sight};
+  const Key key{table_id, sight};
   std::lock_guard lock(mutex_);
-  Entry& entry = entries_[wanted];
-  start(wanted, entry);
+  Entry& entry = entries_[key];
+  start(key, entry);
   return entry.features;
 }
 
 Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(TableId table_id, Visibility sight) {
-  const Wanted wanted{table_id, sight};
+  const Key key{table_id, sight};
   {
     std::lock_guard lock(mutex_);
-    Entry& entry = entries_[wanted];
+    Entry& entry = entries_[key];
     if (entry.known && !entry.outdated && !entry.reading) return entry.features;
-    if (!entry.known) entry.outdated = false;  // records that change from now on make it so again
+    if (!entry.known) entry.outdated = false;  // later changes of records set it again
   }
-  auto features = read(wanted);
+  auto features = read(key);
   std::lock_guard lock(mutex_);
-  Entry& entry = entries_[wanted];
+  Entry& entry = entries_[key];
   if (!features) {
     entry.outdated = true;
     return entry.known ? Result<SurfaceFeatures>(entry.features) : features;
   }
-  // A worker that was faster has read them at least as late.
+  // If a worker has read them in the meantime, its result is at least as new.
   if (!entry.known) {
     entry.features = *features;
     entry.known = true;
@@ -66,42 +66,42 @@ Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(TableId table_id,
   return features;
 }
 
-void RecordFeatures::start(const Wanted& wanted, Entry& entry) {
+void RecordFeatures::start(const Key& key, Entry& entry) {
   if (stopped_ || entry.reading || !entry.outdated) return;
   entry.reading = true;
   entry.outdated = false;
-  boost::asio::post(workers_, [self = shared_from_this(), wanted] { self->run(wanted); });
+  boost::asio::post(workers_, [self = shared_from_this(), key] { self->run(key); });
 }
 
-void RecordFeatures::run(const Wanted& wanted) {
-  auto features = read(wanted);
+void RecordFeatures::run(const Key& key) {
+  auto features = read(key);
   if (!features)
-    log::warning("lines and points of table " + to_string(wanted.first) + ": " +
+    log::warning("lines and points of table " + to_string(key.first) + ": " +
                  features.error().detail);
   bool differ = false;
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
-    Entry& entry = entries_[wanted];
+    Entry& entry = entries_[key];
     entry.reading = false;
-    // What cannot be read stays as it was, until records change again.
+    // Features that cannot be read stay unchanged until records change again.
     entry.known |= features.has_value();
     if (features && !(!entry.features && !*features) &&
         !(entry.features && *features && *entry.features == **features)) {
       entry.features = std::move(*features);
       differ = true;
     }
-    start(wanted, entry);
+    start(key, entry);
   }
   if (differ && ready_) ready_();
 }
 
 void RecordFeatures::records_changed(TableId table_id) {
   std::lock_guard lock(mutex_);
-  for (auto& [wanted, entry] : entries_) {
-    if (wanted.first != table_id) continue;
+  for (auto& [key, entry] : entries_) {
+    if (key.first != table_id) continue;
     entry.outdated = true;
-    start(wanted, entry);
+    start(key, entry);
   }
 }
 

@@ -18,32 +18,31 @@ namespace strata::room {
 
 struct LayerFeatures;
 
-// The lines and points that records have on an open model, by table and by the least seen of the
-// columns that are looked at (`sight`). They are read on a worker when a view first needs them, and
-// anew when records change. Thread-safe.
+// The lines and points that records have on an open model, by table and by the most restricted
+// visibility of the columns that are read (`sight`). A worker reads them when a view first needs
+// them, and again when records change. Thread-safe.
 class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
  public:
   using SurfaceFeatures =
-      std::shared_ptr<const std::vector<KeyFeature>>;  // by key; told apart by the object
+      std::shared_ptr<const std::vector<KeyFeature>>;  // by key; compared by address
 
-  // `ready` is called, on any thread, whenever marks that were asked for are there and differ from
-  // before.
+  // `ready` is called, on any thread, whenever requested features were read and differ from before.
   RecordFeatures(store::Store& store, boost::asio::thread_pool& workers, ModelId model_id,
                  std::function<void()> ready);
   ~RecordFeatures();
 
-  // The newest that are there; null: none are, as far as is known.
+  // Returns the newest features that were read; null: none known.
   SurfaceFeatures find(TableId table_id, Visibility sight);
-  // Those of now, read on the calling thread where they are not known. While the database is away,
-  // the last that were. Blocks.
+  // Returns the present features, and reads them on the calling thread if they are not known. If
+  // the database is unreachable, returns the last known ones. Blocks.
   Result<SurfaceFeatures> newest(TableId table_id, Visibility sight);
-  // Those of when an edit of the model was made. Blocks.
+  // Returns the features at the time of an edit of the model. Blocks.
   Result<SurfaceFeatures> when(TableId table_id, Visibility sight, std::int64_t sequence) const;
   void records_changed(TableId table_id);
-  // `show_features`, as one object for all who show the same now: views are told by it whether they
-  // have the same picture.
+  // Returns the result of `show_features` as one object for all views that show the same features,
+  // so that views can compare pictures by it.
   render::FeaturesShown shown(const std::vector<LayerFeatures>& layers);
-  void stop();  // nothing more is read, and `ready` not called
+  void stop();  // reads nothing more, and does not call `ready`
 
  private:
   struct Entry {
@@ -52,24 +51,24 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
     bool reading = false;
     bool outdated = true;
   };
-  using Wanted = std::pair<TableId, Visibility>;
-  void start(const Wanted& wanted, Entry& entry);  // with the mutex held
-  void run(const Wanted& wanted);
+  using Key = std::pair<TableId, Visibility>;
+  void start(const Key& key, Entry& entry);  // with the mutex held
+  void run(const Key& key);
   // `at` of the table
-  Result<SurfaceFeatures> read(const Wanted& wanted, std::optional<std::int64_t> at = {}) const;
+  Result<SurfaceFeatures> read(const Key& key, std::optional<std::int64_t> at = {}) const;
 
   store::Store& store_;
   boost::asio::thread_pool& workers_;
   const ModelId model_id_;
   const std::function<void()> ready_;
   std::mutex mutex_;
-  std::map<Wanted, Entry> entries_;
+  std::map<Key, Entry> entries_;
   struct Shown;
   std::vector<Shown> shown_;
   bool stopped_ = false;
 };
 
-// SurfaceFeatures of one layer's records, as the layer is drawn: in the colours of their keys, with
+// SurfaceFeatures of one layer's records, drawn like the layer: in the colors of their keys, with
 // its opacity.
 struct LayerFeatures {
   RecordFeatures::SurfaceFeatures features;
@@ -77,7 +76,7 @@ struct LayerFeatures {
   float opacity = 1;
   bool operator==(const LayerFeatures&) const = default;
 };
-// What is to be drawn of them; null: nothing.
+// Returns the features to draw; null: nothing to draw.
 render::FeaturesShown show_features(const std::vector<LayerFeatures>& layers);
 
 }  // namespace strata::room

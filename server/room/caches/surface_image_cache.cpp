@@ -13,8 +13,8 @@
 namespace strata::room {
 namespace {
 
-constexpr int kMaxSide = 16384, kMinSide = 512;  // texels of a look on the GPU
-constexpr int kMaxDivided = 8;                   // as libjpeg-turbo divides the sides
+constexpr int kMaxSide = 16384, kMinSide = 512;  // texels of a surface image on the GPU
+constexpr int kMaxDivided = 8;                   // limit of libjpeg-turbo for dividing the sides
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void SurfaceImageCache::drop(SurfaceImageId id) {
   }
   if (gone.handle) renderer_.remove_surface_image(gone.handle);
   for (const Loaded& loaded : gone.waiting)
-    loaded(fail(ErrorCode::not_found, "No such look", "The look was deleted."));
+    loaded(fail(ErrorCode::not_found, "Surface image not found", "The surface image was deleted."));
 }
 
 std::vector<SurfaceImage> SurfaceImageCache::all() const {
@@ -88,17 +88,17 @@ void SurfaceImageCache::stop() {
 }
 
 std::vector<SurfaceImageView> SurfaceImageCache::shown(
-    const std::optional<std::vector<SurfaceImageView>>& wanted) const {
-  return wanted ? *wanted : surface_images_shown(by_order());
+    const std::optional<std::vector<SurfaceImageView>>& requested) const {
+  return requested ? *requested : surface_images_shown(by_order());
 }
 
 std::vector<render::SurfaceImageStyle> SurfaceImageCache::styles(
-    const std::optional<std::vector<SurfaceImageView>>& wanted) {
+    const std::optional<std::vector<SurfaceImageView>>& requested) {
   std::vector<render::SurfaceImageStyle> styles;
   std::vector<SurfaceImageId> missing;
   {
     std::lock_guard lock(mutex_);
-    for (const SurfaceImageView& view : shown(wanted)) {
+    for (const SurfaceImageView& view : shown(requested)) {
       const auto slot = slots_.find(view.surface_image_id);
       if (slot == slots_.end()) continue;
       if (slot->second.handle)
@@ -112,11 +112,11 @@ std::vector<render::SurfaceImageStyle> SurfaceImageCache::styles(
 }
 
 Result<std::vector<render::SurfaceImageStyle>> SurfaceImageCache::wait(
-    const std::optional<std::vector<SurfaceImageView>>& wanted) {
+    const std::optional<std::vector<SurfaceImageView>>& requested) {
   std::vector<SurfaceImageView> views;
   {
     std::lock_guard lock(mutex_);
-    views = shown(wanted);
+    views = shown(requested);
   }
   std::vector<render::SurfaceImageStyle> styles;
   for (const SurfaceImageView& view : views) {
@@ -222,7 +222,7 @@ void SurfaceImageCache::on_added(SurfaceImageId id, render::ModelHandle model, i
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
-    // made for a context that is lost
+    // it was made for a lost context
     if (model != model_ && slots_.contains(id)) return load(id, largest_side);
   }
   if (!handle && handle.error().code == ErrorCode::out_of_memory && largest_side > kMinSide)
@@ -233,7 +233,7 @@ void SurfaceImageCache::on_added(SurfaceImageId id, render::ModelHandle model, i
 void SurfaceImageCache::finish(SurfaceImageId id,
                                const Result<render::SurfaceImageHandle>& handle) {
   std::vector<Loaded> waiting;
-  bool kept = false;
+  bool is_stored = false;
   {
     std::lock_guard lock(mutex_);
     if (const auto found = slots_.find(id); found != slots_.end()) {
@@ -242,15 +242,15 @@ void SurfaceImageCache::finish(SurfaceImageId id,
       slot.memory.reset();
       waiting = std::exchange(slot.waiting, {});
       if (handle)
-        slot.handle = *handle, kept = true;
+        slot.handle = *handle, is_stored = true;
       else if (!is_server_failure(handle.error().code))
         slot.damage = handle.error();
     }
   }
-  if (handle && !kept) renderer_.remove_surface_image(*handle);  // deleted meanwhile
+  if (handle && !is_stored) renderer_.remove_surface_image(*handle);  // the image was deleted
   if (!handle) log::warning("look " + to_string(id) + " cannot be shown: " + handle.error().detail);
   for (const Loaded& loaded : waiting) loaded(handle);
-  if (kept && ready_) ready_();
+  if (is_stored && ready_) ready_();
 }
 
 }  // namespace strata::room

@@ -19,18 +19,19 @@
 
 namespace strata::room {
 
-// The looks that are visible by default, bottom to top, of all by order: the topmost where a view
-// takes no more.
+// Returns the surface images that are visible by default, bottom to top; the topmost ones if a view
+// cannot show all.
 std::vector<SurfaceImageView> surface_images_shown(const std::vector<SurfaceImage>& by_order);
 
-// The looks of an open model. A look's texture is made when a view first shows it, on a worker, and
-// kept while the room is open; its encoded bytes are kept with it, so that it comes back after a
-// lost context without the database. Up to 16384² is shown, which OpenGL 4.5 guarantees, or less
-// where the GPU's memory has no room for it. Its pixels are reserved in `memory` until they are on
-// the GPU; where there is no room a JPEG is decoded smaller. Thread-safe.
+// The surface images of an open model. A worker makes the texture of an image when a view first
+// shows it; the texture stays while the room is open. Its encoded bytes are kept, too, so that
+// after a lost context the texture is made without the database. Textures have up to 16384² texels,
+// which OpenGL 4.5 guarantees, or fewer if the GPU's memory is insufficient. The pixels are
+// reserved in `memory` until they are on the GPU; if there is not enough, a JPEG is decoded at a
+// smaller size. Thread-safe.
 class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache> {
  public:
-  // `ready` is called, on any thread, whenever a texture that was asked for is there.
+  // `ready` is called, on any thread, whenever a requested texture is ready.
   SurfaceImageCache(store::Store& store, render::Renderer& renderer,
                     boost::asio::thread_pool& workers, MemoryLedger& memory,
                     std::function<void()> ready);
@@ -39,18 +40,18 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   void drop(SurfaceImageId id);
   std::vector<SurfaceImage> all() const;                           // by order
   std::optional<SurfaceImage> find(const std::string& ref) const;  // id or slug
-  // Forgets the textures, which went with the old handle; they are made again when they are asked
-  // for.
+  // Discards the textures, which were deleted with the old handle; they are made again on request.
   void set_model(render::ModelHandle model);
-  void stop();  // nothing more is loaded, and `ready` not called
+  void stop();  // loads nothing more, and does not call `ready`
 
-  // What a view is to show of `wanted` (nothing: what is visible by default, the topmost where
-  // there are too many). Textures that are not there yet are left out, and on their way.
+  // Returns the images for a view out of `requested` (nothing: those visible by default, the
+  // topmost ones if there are too many). Leaves out textures that are not ready yet, and starts
+  // making them.
   std::vector<render::SurfaceImageStyle> styles(
-      const std::optional<std::vector<SurfaceImageView>>& wanted);
-  // The same, once all are there. Blocks.
+      const std::optional<std::vector<SurfaceImageView>>& requested);
+  // The same, but waits until all are ready. Blocks.
   Result<std::vector<render::SurfaceImageStyle>> wait(
-      const std::optional<std::vector<SurfaceImageView>>& wanted);
+      const std::optional<std::vector<SurfaceImageView>>& requested);
 
  private:
   using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
@@ -61,18 +62,18 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
     render::SurfaceImageHandle handle = 0;
     bool loading = false;
     MemoryLedger::Share memory;   // of its pixels while it loads
-    std::optional<Error> damage;  // the picture cannot be shown, ever
+    std::optional<Error> damage;  // the picture can never be shown
     std::vector<Loaded> waiting;
   };
   // under the mutex
   std::vector<SurfaceImage> by_order() const;
   // under the mutex
   std::vector<SurfaceImageView> shown(
-      const std::optional<std::vector<SurfaceImageView>>& wanted) const;
+      const std::optional<std::vector<SurfaceImageView>>& requested) const;
   void request(SurfaceImageId id, const Loaded& loaded);
   void load(SurfaceImageId id, int largest_side);
   Result<Bytes> encoded_bytes(SurfaceImageId id);
-  // what its sides are to be divided by
+  // divisor of its sides
   Result<int> reserve_pixels(SurfaceImageId id, const PictureInfo& info);
   Result<std::shared_ptr<const render::MipmappedPicture>> read(SurfaceImageId id, int largest_side);
   void add(SurfaceImageId id, int largest_side,

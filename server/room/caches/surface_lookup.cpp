@@ -5,15 +5,15 @@
 namespace strata::room {
 
 std::shared_ptr<const mesh::SearchTree> SurfaceLookup::tree() {
-  const Question::Aside aside;  // whoever asks next wants it, too
+  const Question::Aside aside;  // other questions share the result
   std::call_once(tree_once_, [&] { tree_ = std::make_shared<const mesh::SearchTree>(geometry_); });
   return tree_;
 }
 
 Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh::SurfaceMap& map) {
   auto graph = STRATA_TRY(find_or_build(map));
-  // Without the lock: to make room, graphs may be dropped.
-  auto share = memory_.reserve(graph->bytes(), "the neighbours of a surface map's texels");
+  // Without the lock: the reservation may drop graphs.
+  auto share = memory_.reserve(graph->bytes(), "the neighbors of a surface map's texels");
   std::lock_guard lock(graphs_mutex_);
   const auto found = graphs_.find(map.resolution);
   if (found == graphs_.end() || found->second.share.bytes() > 0) return graph;
@@ -28,7 +28,8 @@ Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh:
 Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(
     const mesh::SurfaceMap& map) {
   const Question::Aside aside;
-  std::lock_guard lock(graphs_mutex_);  // held while it is built: who else asks wants the same
+  std::lock_guard lock(graphs_mutex_);  // held during the build: concurrent callers need the same
+                                        // graph
   if (const auto found = graphs_.find(map.resolution); found != graphs_.end())
     return found->second.graph;
   auto built = STRATA_TRY(mesh::build_texel_graph(*geometry_, map, progress_));

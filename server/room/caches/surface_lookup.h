@@ -11,11 +11,11 @@
 
 namespace strata::room {
 
-// What questions about a model's surface need, made when first asked for: the calls block
-// meanwhile, so they are for worker threads. Thread-safe.
+// Data for questions about a model's surface, built on first use. The calls block during the build,
+// so they are for worker threads. Thread-safe.
 class SurfaceLookup {
  public:
-  // `memory` must outlive it.
+  // `memory` must outlive this object.
   SurfaceLookup(std::shared_ptr<const mesh::Geometry> geometry, MemoryLedger& memory)
       : geometry_(std::move(geometry)), memory_(memory) {}
 
@@ -23,7 +23,7 @@ class SurfaceLookup {
   std::shared_ptr<const mesh::SearchTree> tree();
   // An Error `unavailable` beyond the budget of main memory.
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(const mesh::SurfaceMap& map);
-  // they are made again when next asked for; false when there is none, or one is being made
+  // dropped graphs are built again on use; false if there is no graph, or one is being built
   bool drop_graphs();
   void stop() { progress_.cancel(); }
 

@@ -16,8 +16,8 @@
 
 namespace strata::room {
 
-// The surface maps of one model, baked when first asked for (a second or so) on a background thread
-// and put on the GPU. Thread-safe.
+// The surface maps of one model, baked on first use (a second or so) on a background thread and
+// uploaded to the GPU. Thread-safe.
 class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
  public:
   using MapPtr = std::shared_ptr<const mesh::SurfaceMap>;
@@ -27,24 +27,24 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
               MemoryLedger& memory, boost::asio::thread_pool& workers)
       : geometry_(std::move(geometry)), renderer_(renderer), memory_(memory), workers_(workers) {}
 
-  // The map if it is baked and on the GPU, otherwise null (and nothing is started).
+  // Returns the map if it is baked and on the GPU, otherwise null (and starts nothing).
   MapPtr get(int resolution) const;
-  // Calls `ready` when it is, on any thread; at once when it is already.
+  // Calls `ready` when the map is ready, on any thread; at once if it is ready already.
   void request(int resolution, Ready ready);
   // Blocks; for worker threads.
   Result<MapPtr> wait(int resolution);
 
-  // The model's handle, new after a lost context: baked maps are put on the GPU again.
+  // Sets the model's handle, which is new after a lost context: baked maps are uploaded again.
   void set_model(render::ModelHandle model);
-  // Maps that can be done without, for the moment: they are baked again when they are asked for.
+  // Maps can be dropped to free memory; they are baked again on use.
   using Clock = std::chrono::steady_clock;
-  // of the map that was not used for the longest time
+  // of the map that was unused for the longest time
   std::optional<Clock::time_point> oldest_use() const;
-  // Drops it; false when there is none. Only while nothing is being painted, which would miss it on
-  // the GPU.
+  // Drops that map; false if there is no map. Call only while nothing is being painted, because
+  // painting needs the map on the GPU.
   bool drop_oldest();
-  // Drops those of at least so many bytes that were not used since; false when there is none. As
-  // above.
+  // Drops the maps of at least `at_least_bytes` that were unused since `since`; false if there is
+  // no such map. The same restriction applies.
   bool drop_unused(Clock::time_point since, std::uint64_t at_least_bytes);
   void stop() { progress_.cancel(); }
 

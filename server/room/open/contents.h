@@ -13,7 +13,7 @@
 
 namespace strata::room {
 
-// What an open room holds: layers as the journal has them, and their copies on the GPU. All
+// The contents of an open room: layers as in the journal, and their copies on the GPU. All
 // functions block.
 
 LayerState new_state(Layer layer);  // empty, and not on the GPU
@@ -21,7 +21,7 @@ LayerState new_state(Layer layer);  // empty, and not on the GPU
 struct JournalContents {
   std::int64_t last_sequence = 0;
   std::vector<LayerState> layers;  // with mirrors, without handles
-  // by layer: the tiles that `held` has otherwise
+  // by layer: the tiles that differ from `held`
   std::map<LayerId, std::vector<TileAddress>> differing;
 };
 Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
@@ -30,19 +30,19 @@ Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
 // with mirrors, without handles
 Result<LayerState> read_layer_state(store::Store& store, Layer layer);
 
-// The model's mesh and its coarser copies.
+// Returns the model's mesh and its coarser copies.
 Result<render::ModelGeometry> read_geometry(store::Store& store, ModelId model_id);
 
 struct GpuContents {
   render::ModelHandle model = 0;
   std::map<LayerId, LayerHandles> layers;  // by id
 };
-// A model and its layers, from their mirrors: all of it or nothing.
+// Uploads a model and its layers, from their mirrors: all or nothing.
 Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
                              const std::vector<LayerState>& layers);
 Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,
                                       std::shared_ptr<const TileMirror> mirror);
-// A layer and what of it waits for review: both or nothing.
+// Adds a layer and the mask of its texels that wait for review: both or neither.
 Result<LayerHandles> add_layer(render::Renderer& renderer, render::ModelHandle model,
                                const LayerState& layer);
 void remove_layer(render::Renderer& renderer, const LayerHandles& handles);

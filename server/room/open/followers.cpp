@@ -8,10 +8,10 @@ namespace strata::room {
 Result<bool> Followers::follow(const Uuid& follower, const Uuid& leader) {
   for (std::optional<Uuid> ahead = leader; ahead; ahead = leader_of(*ahead))
     if (*ahead == follower)
-      return fail(
-          ErrorCode::conflict, "Follows you already",
-          "Who is to be followed follows this session, directly or through others, or is this session.",
-          "follow");
+      return fail(ErrorCode::conflict, "Cannot follow this session",
+                  "This session cannot follow that one: it is the same session, or it already "
+                  "follows this session, directly or through others.",
+                  "follow");
   auto [known, added] = leaders_.try_emplace(follower, leader);
   if (added) return true;
   return std::exchange(known->second, leader) != leader;

@@ -8,17 +8,16 @@
 
 namespace strata::room {
 
-// Who looks with whom, by session. It never leads back to where it began: people who follow each
-// other in a circle would go nowhere, or, as each fits what the other sees into their own window,
-// farther and farther away. Not thread-safe.
+// The relation of followers to leaders, by session. It contains no cycle: in a cycle, cameras would
+// not move, or, because each window must contain the view of its leader, would move farther and
+// farther away. Not thread-safe.
 class Followers {
  public:
-  // Instead of whom they followed before. Refused (conflict), and nothing changed, where `leader`
-  // is the follower or follows them, directly or through others. Returns whether it is another than
-  // before.
+  // Replaces the former leader. Refused (conflict), without a change, if `leader` is the follower
+  // or follows the follower, directly or through others. Returns whether the leader changed.
   Result<bool> follow(const Uuid& follower, const Uuid& leader);
-  bool stop(const Uuid& follower);  // whether they followed somebody
-  void leave(const Uuid& session);  // who followed them follows nobody
+  bool stop(const Uuid& follower);  // returns whether the session followed another
+  void leave(const Uuid& session);  // its followers follow nobody
   std::optional<Uuid> leader_of(const Uuid& follower) const;
   bool has_followers(const Uuid& session) const;
 

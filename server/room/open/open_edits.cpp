@@ -16,12 +16,13 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
   if (!room_.takes_edits_)
     return saved(
         fail(ErrorCode::unavailable, "Server is stopping",
-             "The server saves what is under way and stops; send the edit again when it is back."));
-  // Counted before it is posted: the strand's own queue has no bound.
+             "The server is saving its edits and then stops. Send the edit again when it is "
+             "running again."));
+  // Count before posting: the queue of the strand has no limit.
   if (++room_.unanswered_ > room_.services_.options.max_waiting_edits) {
     --room_.unanswered_;
     return saved(fail(ErrorCode::too_many_requests, "Too many edits",
-                      "This model has as many waiting edits as it may; send more slowly."));
+                      "Too many edits of this model are waiting. Send edits more slowly."));
   }
   boost::asio::post(
       room_.strand_, [room = room_.shared_from_this(), this, request = std::move(request),
@@ -30,7 +31,7 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
           --room->unanswered_;
           return saved(tl::unexpected(free.error()));
         }
-        // The answer keeps the room alive until it is given.
+        // The callback keeps the room alive until the answer.
         room->pipeline_->edit(std::move(request), std::move(applied),
                               [room, saved = std::move(saved)](Result<EditAnswer> answer) {
                                 --room->unanswered_;
@@ -39,7 +40,8 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
       });
 }
 
-// In the order of edits: what a deletion does to the texels comes after every edit that was let in.
+// Runs in the order of edits: the deletion of a record changes its texels only after every accepted
+// edit.
 Result<void> OpenRoom::EditsPart::check_not_retired(const EditRequest& request) const {
   const LayerState* state = room_.find_layer(request.layer_id);
   if (!state || !state->layer.table ||
@@ -48,7 +50,7 @@ Result<void> OpenRoom::EditsPart::check_not_retired(const EditRequest& request) 
   for (const auto key : painted_by(state->layer, request))
     if (room_.services_.retired_keys.holds(*state->layer.table, key))
       return fail(ErrorCode::conflict, "Record was deleted",
-                  "Record " + std::to_string(key) + " was deleted meanwhile.", "value");
+                  "Record " + std::to_string(key) + " was deleted in the meantime.", "value");
   return {};
 }
 

@@ -1,5 +1,5 @@
-// The layers of an open room: each change is in the database first or not at all, and in the order
-// of edits where it concerns what they hold.
+// The layers of an open room. Each change is written to the database first, or not made at all; a
+// change of their content runs in the order of edits.
 #include "room/open/open_layers.h"
 
 #include <algorithm>
@@ -22,15 +22,15 @@ Result<void> check_layer(const Layer& layer, const Model& model) {
   if (layer.resolution < lowest || layer.resolution > 16384 ||
       (layer.resolution & (layer.resolution - 1)) != 0)
     return fail(ErrorCode::invalid, "Resolution out of range",
-                "A layer of this model has a power of two from " + std::to_string(lowest) +
-                    " to 16384 texels a side.",
+                "The resolution of a layer of this model must be a power of two from " +
+                    std::to_string(lowest) + " to 16384 texels on each side.",
                 "resolution");
   if (layer.name.empty() || layer.name.size() > 200)
-    return fail(ErrorCode::invalid, "Name missing", "A layer has a name of 1 to 200 bytes.",
+    return fail(ErrorCode::invalid, "Name missing", "The name of a layer must have 1 to 200 bytes.",
                 "name");
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
     return fail(ErrorCode::invalid, "Opacity out of range",
-                "Opacity goes from 0 (clear) to 1 (opaque).", "opacity");
+                "Opacity must be from 0 (transparent) to 1 (opaque).", "opacity");
   return {};
 }
 
@@ -48,7 +48,7 @@ Result<Layer> OpenRoom::LayersPart::create(Layer layer,
   layer.model_id = room_.model_id_;
   STRATA_TRY(check_layer(layer, room_.model()));
   auto created = room_.exclusively<Layer>([this, layer, answer, columns]() -> Result<Layer> {
-    // The GPU first: of what it refuses nothing is in the database.
+    // The GPU first: if it refuses the layer, the database stays unchanged.
     LayerState state = new_state(layer);
     auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
     if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
@@ -84,9 +84,8 @@ Result<Layer> OpenRoom::LayersPart::update(Layer layer,
     lock_falls = updated.locked && before && !before->layer.locked;
     return replace(updated);
   });
-  // Who locks a layer hears so when what was being painted on it is there: from then on nothing
-  // comes. A database that is away keeps the edits under way from being saved, which does not take
-  // the lock back.
+  // The answer to a lock comes when the edits in progress are durable: after it, no edit follows.
+  // If the database is unreachable, these edits cannot be saved; the lock stays.
   if (lock_falls)
     if (const auto still = room_.settle(); !still)
       log::warning("a layer was locked while its edits could not be saved: " +
@@ -101,7 +100,7 @@ Layer OpenRoom::LayersPart::replace(const Layer& stored) {
     std::lock_guard lock(room_.mutex_);
     auto found = room_.layers_.find(now.id);
     if (found == room_.layers_.end()) return now;
-    if (found->second.layer.version > now.version) return now;  // a later change came by first
+    if (found->second.layer.version > now.version) return now;  // a later change arrived first
     before = found->second.layer.visibility;
     now.sequence = found->second.layer.sequence;
     found->second.layer = now;
@@ -137,10 +136,10 @@ void OpenRoom::LayersPart::outdate(const std::function<bool(const LayerFormula&)
 void OpenRoom::LayersPart::records_changed(TableId table_id) {
   room_.record_colors_->records_changed(table_id);
   room_.record_features_->records_changed(table_id);
-  // Layers that take their colours from the terms of the table.
+  // Layers that take their colors from the terms of the table.
   for (const Layer& layer : room_.layer_list()) {
     if (!layer.palette_of_terms || layer.table != table_id) continue;
-    // One that is gone meanwhile, or cannot be read now, keeps the colours that it has.
+    // A layer that was deleted, or cannot be read now, keeps its colors.
     if (auto stored =
             room_.services_.store.layers().find(room_.model_id_, to_string(layer.id), Role::owner))
       run_on(room_.strand_, [&] { return replace(*stored); });
@@ -170,15 +169,13 @@ Result<void> OpenRoom::LayersPart::check_expression(const Expression& expression
 Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
                                           const store::IdempotentResponse<Layer>& answer) {
   if (layer.formula || !widens_to(layer.type, type))
-    return fail(
-        ErrorCode::invalid, "Type not usable",
-        "A layer of whole numbers without a sign becomes a wider one of them (u8 to u16 or u32, u16 to u32); "
-        "computed layers have the type that they were made with.",
-        "type");
+    return fail(ErrorCode::invalid, "Invalid type of layer",
+                "Only the unsigned types can change, and only to a wider type (u8 to u16 or "
+                "u32, u16 to u32). The type of a computed layer cannot change.",
+                "type");
   return room_.exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
     const auto held = STRATA_TRY(room_.state(to_string(layer.id)));
-    // The GPU first, as for a new layer. Nothing is on its way to the journal: the mirror is what
-    // it holds.
+    // The GPU first, as for a new layer. No edit is pending: the mirror equals the journal.
     TileMirror::Snapshot content = held.mirror->snapshot();
     for (auto& [address, tile] : content.tiles)
       tile = std::make_shared<const TileData>(widened(*tile, type));
@@ -223,8 +220,7 @@ Result<void> OpenRoom::LayersPart::put_in_trash(LayerId id,
 
 Result<void> OpenRoom::LayersPart::unload(LayerId id,
                                           const std::function<Result<void>()>& in_store) {
-  // In the order of edits: none of the layer's may be on its way to a journal that no longer knows
-  // it.
+  // In the order of edits: no edit of the layer may be on its way to a journal that has deleted it.
   return room_.exclusively<void>([this, id, in_store]() -> Result<void> {
     STRATA_TRY(in_store());
     run_on(room_.strand_, [&] {
@@ -253,12 +249,13 @@ Result<void> OpenRoom::LayersPart::unload(LayerId id,
 
 Result<store::TrashRestored> OpenRoom::LayersPart::restore(
     const store::TrashEntry& entry, const store::IdempotentResponse<store::TrashRestored>& answer) {
-  // In the order of edits: the journal's numbers stay as they are.
+  // In the order of edits: the sequences of the journal must not change.
   auto restored = room_.exclusively<store::TrashRestored>(
       [this, entry, answer]() -> Result<store::TrashRestored> {
         auto back = STRATA_TRY(room_.services_.store.trash().restore(entry, answer));
         if (auto known = load(LayerId(entry.id)); !known) {
-          // It is there, as the database says: the room reads everything again until it has it.
+          // The layer exists in the database: the room reads everything again until it has the
+          // layer.
           log::warning("layer " + std::to_string(entry.id) +
                        " was restored and could not be loaded: " + known.error().detail);
           run_on(room_.strand_, [&] { room_.journal_differs(); });

@@ -31,14 +31,14 @@ class OpenRoom::LayersPart final : public Layers {
   Result<void> check_expression(const Expression& expression, const std::string& field,
                                 Visibility layer) const override;
 
-  // On the strand: computed layers that `reads` tells become stale, and people are told.
+  // On the strand: marks computed layers that match `reads` as stale, and notifies listeners.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);
 
  private:
-  // on the strand: what is stored becomes what is here; tells
+  // on the strand: replaces the layer here by the stored one, and notifies listeners
   Layer replace(const Layer& stored);
   Result<void> unload(LayerId id, const std::function<Result<void>()>& in_store);
-  // that the store has again; alone, as `exclusively` runs it
+  // of a restored layer; runs exclusively, as in `exclusively`
   Result<void> load(LayerId id);
 
   OpenRoom& room_;

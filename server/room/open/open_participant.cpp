@@ -76,15 +76,15 @@ std::shared_ptr<const Palette> OpenParticipant::palette(std::uint32_t view_id, V
   const LayerId id = state.layer.id;
   const auto own = view.palettes.find(id);
   const auto& palette = own == view.palettes.end() ? state.palette : own->second;
-  const auto asked = view.highlights.find(id);
-  const auto highlight = asked == view.highlights.end() ? nullptr : asked->second;
+  const auto entry = view.highlights.find(id);
+  const auto highlight = entry == view.highlights.end() ? nullptr : entry->second;
   if (!state.layer.table || !RecordColors::needs_records(*palette, highlight)) {
     view.by_record.erase(id);
     return palette;
   }
   const auto found =
       room_->record_colors().find({*state.layer.table, sight_of(role()), palette, highlight});
-  if (found.problem && view.told.insert(found.problem).second && listener_)
+  if (found.problem && view.reported.insert(found.problem).second && listener_)
     listener_->view_refused(view_id, *found.problem);
   if (found.palette) view.by_record[id] = found.palette;
   if (const auto last = view.by_record.find(id); last != view.by_record.end()) return last->second;
@@ -108,18 +108,19 @@ Result<void> OpenParticipant::show(std::uint32_t view_id, ViewSettings settings)
   View* v = view(view_id, true);
   if (!v)
     return fail(ErrorCode::invalid, "Too many views",
-                "One connection has at most " + std::to_string(kMaxViews) + " views.", "view_id");
+                "One connection can have at most " + std::to_string(kMaxViews) + " views.",
+                "view_id");
   v->overrides.clear();
   v->palettes.clear();
   const auto before = std::exchange(v->highlights, {});
-  v->told.clear();
+  v->reported.clear();
   v->images = std::move(settings.images);
   v->light = settings.light;
   v->background = settings.background;
   for (auto& own : settings.layers) {
     if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
     if (own.highlight) {
-      // The same records as before need not be looked for again.
+      // An unchanged highlight keeps its object, so that its records are not searched again.
       const auto known = before.find(own.layer_id);
       v->highlights[own.layer_id] =
           known != before.end() && *known->second == *own.highlight

@@ -18,7 +18,7 @@ namespace strata::room {
 class OpenRoom;
 struct LayerState;
 
-// A connection of one person: the views they look through and what they show in each.
+// One connection of a user: their views, and the settings of each view.
 class OpenParticipant final : public Participant {
  public:
   OpenParticipant(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait, Listener* listener,
@@ -35,8 +35,8 @@ class OpenParticipant final : public Participant {
 
   Listener* listener() const { return listener_; }
   const std::string& user() const { return who_.user; }
-  Role role() const { return who_.role; }  // what they see follows from it
-  Presence presence() const;               // whom they follow is the room's to say
+  Role role() const { return who_.role; }  // determines the visible layers and columns
+  Presence presence() const;               // without `following`, which the room sets
   // Called by the room.
   void content_changed(LayerId layer_id, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
@@ -51,10 +51,10 @@ class OpenParticipant final : public Participant {
     std::map<LayerId, std::shared_ptr<const Palette>> palettes;
     std::map<LayerId, std::shared_ptr<const Highlight>> highlights;
     std::map<LayerId, std::shared_ptr<const Palette>>
-        by_record;                      // last made from records, drawn until the next is there
-    std::vector<LayerFeatures> marked;  // what `marks` was made of
+        by_record;                      // last made from records, drawn until the next is ready
+    std::vector<LayerFeatures> marked;  // source of `features`
     render::FeaturesShown features;
-    std::set<std::shared_ptr<const Error>> told;  // why one cannot be made
+    std::set<std::shared_ptr<const Error>> reported;  // reasons why a palette cannot be made
     std::optional<std::vector<SurfaceImageView>> images;
     Light light;
     Background background;

@@ -107,10 +107,10 @@ Result<void> OpenRoom::ParticipantsPart::follow(const Uuid& follower,
       const bool here = std::any_of(here_.begin(), here_.end(),
                                     [&](const auto* each) { return each->session() == *leader; });
       if (!here)
-        return fail(
-            ErrorCode::not_found, "Not here",
-            "Who is to be followed has left, or was never at this model. `presence` lists who is here.",
-            "follow");
+        return fail(ErrorCode::not_found, "Person not here",
+                    "The session that you want to follow has left this model or was never here. "
+                    "See the list of sessions in `presence`.",
+                    "follow");
       other = STRATA_TRY(followers_.follow(follower, *leader));
     }
   }

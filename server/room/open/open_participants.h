@@ -17,7 +17,7 @@ namespace strata::room {
 
 class OpenParticipant;
 
-// Who is in an open room, and what they are told.
+// The participants of an open room, and their notifications.
 class OpenRoom::ParticipantsPart final : public Participants {
  public:
   explicit ParticipantsPart(OpenRoom& room) : room_(room) {}
@@ -28,29 +28,29 @@ class OpenRoom::ParticipantsPart final : public Participants {
   // --- for each of them
   void leave(OpenParticipant* participant);
   void announce_presence();
-  // Instead of whom they followed before; nothing: they follow nobody. Refused (not_found): nobody
-  // here has that session; else as by Followers.
+  // Replaces the former leader; nothing: follow nobody. Refused (not_found): no participant has
+  // that session; other refusals as in Followers.
   Result<void> follow(const Uuid& follower, const std::optional<Uuid>& leader);
-  void camera_moved(const Uuid& session);  // tells those who follow it
+  void camera_moved(const Uuid& session);  // notifies its followers
 
   // --- for the room
   void tell(const std::function<void(Listener&)>& tell);  // every listener
-  // of who sees the layer
+  // listeners who see the layer
   void tell_seen(const Layer& layer, const std::function<void(Listener&)>& tell);
-  // Who begins to see the layer hears that it was made, who ends that it was deleted. `before`:
-  // nothing, where it is new.
+  // Listeners who begin to see the layer are notified of its creation, those who no longer see it
+  // of its deletion. `before`: nothing for a new layer.
   void tell_layer(std::optional<Visibility> before, const Layer& layer);
   void tell_unsaved(const std::vector<Listener::Edit>& edits, const Error& why);
   void content_changed(LayerId layer_id, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);
-  std::size_t count() const;       // a connection each
-  std::size_t take_leave_count();  // who have left since this was asked
+  std::size_t count() const;       // number of connections
+  std::size_t take_leave_count();  // number of connections that left since the last call
 
  private:
   OpenRoom& room_;
-  // recursive: a listener may ask for presence while it is told
+  // recursive: a listener may read the presence during a notification
   mutable std::recursive_mutex mutex_;
   std::vector<OpenParticipant*> here_;
   std::size_t left_ = 0;

@@ -1,4 +1,4 @@
-// Rendered pictures for a script: a view of their own, drawn once each.
+// Rendered pictures for scripts: each is drawn once, in a separate view.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,15 +14,15 @@
 namespace strata::room {
 namespace {
 
-// Pictures with more pixels are drawn in bands, which have as many: a tenth of a second on a CPU,
-// 32 MB of a view's buffers.
+// Larger pictures are drawn in bands of about this many pixels: a tenth of a second on a CPU, 32 MB
+// of buffers of a view.
 constexpr int kPixelsOfBand = 1 << 21;
-// Rows of the window above and below a band that are drawn with it and left out: what a pixel shows
-// depends on its neighbours (outlines), and marks are wider than their line.
+// Rows of the window above and below a band that are drawn with it and left out: a pixel depends on
+// its neighbors (outlines), and drawn features are wider than their line.
 constexpr int kRowsAround = 16;
 constexpr int kRowsEncoded = 32;
 
-// Removes what a picture put on the GPU, however it ends.
+// Removes the GPU objects of a picture, also on failure.
 struct Borrowed {
   render::Renderer& renderer;
   render::ViewHandle view = 0;
@@ -42,7 +42,7 @@ Result<std::vector<std::uint8_t>> Pictures::draw_file(const PictureRequest& requ
   const PicturePart part{camera};
   auto seen = draw(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
     if (!writer) writer.emplace(format, band.width, band.height, jpeg);
-    // A few rows at a time: who else asks something computes between them.
+    // Encode a few rows at a time, so that other questions are computed in between.
     const std::size_t row = band.rgba.size() / static_cast<std::size_t>(band.rows);
     const QuestionTurn turn;
     for (int top = 0; top < band.rows; top += kRowsEncoded) {
@@ -56,24 +56,24 @@ Result<std::vector<std::uint8_t>> Pictures::draw_file(const PictureRequest& requ
   return writer->finish();
 }
 
-Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
+Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& picture,
                                           std::span<const PicturePart> parts,
                                           const SeePicture& see) {
   room_.touch();
-  const Visibility sight = sight_of(asked.seen_by);
+  const Visibility sight = sight_of(picture.seen_by);
   std::vector<LayerState> shown;
-  if (asked.layers) {
-    for (const auto& ref : *asked.layers) {
+  if (picture.layers) {
+    for (const auto& ref : *picture.layers) {
       auto found = STRATA_TRY(room_.state(ref));
       shown.push_back(std::move(found));
     }
   } else {
     for (auto& candidate : room_.layer_states())
-      if (asked.shown.of(candidate.layer.id).visible.value_or(candidate.layer.visible))
+      if (picture.shown.of(candidate.layer.id).visible.value_or(candidate.layer.visible))
         shown.push_back(std::move(candidate));
-    sort_as_shown(shown, asked.shown);
+    sort_as_shown(shown, picture.shown);
   }
-  STRATA_TRY(room_.check_durable(asked.at));
+  STRATA_TRY(room_.check_durable(picture.at));
 
   Borrowed borrowed{room_.services_.renderer, 0, {}};
   const auto model = room_.model_handle();
@@ -82,7 +82,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
   const auto borrow = [&](ValueType type, int resolution,
                           TileMap tiles) -> Result<render::LayerHandle> {
     auto mirror = std::make_shared<TileMirror>(type, resolution);
-    mirror->assign(std::move(tiles), *asked.at);
+    mirror->assign(std::move(tiles), *picture.at);
     auto copy = add_layer(room_.services_.renderer, model, std::move(mirror));
     if (!copy) return tl::unexpected(room_.gpu_problem(copy.error()));
     borrowed.layers.push_back(*copy);
@@ -92,19 +92,19 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
     render::LayerStyle style{item.handles.content, item.palette,
                              static_cast<float>(item.layer.opacity)};
     std::optional<render::LayerHandle> waiting = item.waiting();
-    if (asked.at) {
-      auto past = STRATA_TRY(room_.services_.store.journal().load_tiles(item.layer, asked.at));
+    if (picture.at) {
+      auto past = STRATA_TRY(room_.services_.store.journal().load_tiles(item.layer, picture.at));
       auto content =
           STRATA_TRY(borrow(item.layer.type, item.layer.resolution, std::move(past.tiles)));
       style.layer = content;
       waiting.reset();
-      if (const auto then = asked.provisional.find(item.layer.id);
-          then != asked.provisional.end()) {
+      if (const auto then = picture.provisional.find(item.layer.id);
+          then != picture.provisional.end()) {
         auto features = STRATA_TRY(borrow(ValueType::u8, item.layer.resolution, then->second));
         waiting = features;
       }
     }
-    const LayerView& mine = asked.shown.of(item.layer.id);
+    const LayerView& mine = picture.shown.of(item.layer.id);
     if (mine.palette) style.palette = std::make_shared<const Palette>(*mine.palette);
     const auto highlight =
         mine.highlight ? std::make_shared<const Highlight>(*mine.highlight) : nullptr;
@@ -116,9 +116,9 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
     add_styles(style, waiting, request.style.layers);
     if (!item.layer.table) continue;
-    // After the newest edit comes now: records that changed since are of that state, too.
-    const bool is_past = asked.at && *asked.at < room_.durable_;
-    auto features = is_past ? room_.record_features_->when(*item.layer.table, sight, *asked.at)
+    // After the newest edit, the present records apply, also those that changed since.
+    const bool is_past = picture.at && *picture.at < room_.durable_;
+    auto features = is_past ? room_.record_features_->when(*item.layer.table, sight, *picture.at)
                             : room_.record_features_->newest(*item.layer.table, sight);
     if (!features) return tl::unexpected(features.error());
     if (*features) marked.push_back({std::move(*features), style.palette, style.opacity});
@@ -127,11 +127,11 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
       [&](auto done) { room_.services_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(room_.gpu_problem(view.error()));
   borrowed.view = request.view = *view;
-  auto images = room_.surface_image_cache_->wait(asked.shown.images);
+  auto images = room_.surface_image_cache_->wait(picture.shown.images);
   if (!images) return tl::unexpected(room_.gpu_problem(images.error()));
   request.style.images = std::move(*images);
-  request.style.light = asked.shown.light;
-  request.style.background = asked.shown.background;
+  request.style.light = picture.shown.light;
+  request.style.background = picture.shown.background;
   request.style.features = show_features(marked);
   request.style.unit_mm = room_.model().metres() * 1000;
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -150,8 +150,9 @@ Result<void> OpenRoom::PicturesPart::draw_in_bands(render::FrameRequest request,
   const int width = pixels(camera.width), height = pixels(camera.height);
   if (width < 1 || height < 1 || width > kMaxViewSize || height > kMaxViewSize)
     return fail(ErrorCode::invalid, "Size out of range",
-                "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
-  // Bands are whole rows of the camera's window, so that their own windows are.
+                "A picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels on each side.",
+                "width");
+  // Bands are whole rows of the camera's window, so that each band has a window of whole rows.
   const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
   const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));
   const int step = is_large ? std::clamp(most, 1, camera.height) : camera.height;

@@ -10,7 +10,7 @@
 
 namespace strata::room {
 
-// A view of their own, drawn once each.
+// Draws each picture once, in a separate view.
 class OpenRoom::PicturesPart final : public Pictures {
  public:
   explicit PicturesPart(OpenRoom& room) : room_(room) {}

@@ -1,5 +1,5 @@
-// Questions to an open model: they are answered from mirrors and maps in main memory, beside those
-// who paint.
+// Questions to an open model, answered from mirrors and maps in main memory, in parallel to
+// painting.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -11,6 +11,10 @@
 #include "query/conditions/flood.h"
 #include "query/conditions/texel_values.h"
 #include "query/sampling/nearest_points.h"
+#include "query/sampling/profile.h"
+#include "query/sampling/texel_samples.h"
+#include "query/statistics/cross_table.h"
+#include "query/statistics/key_areas.h"
 #include "room/open/open_queries.h"
 #include "room/pipeline/expression_binding.h"
 #include "room/pipeline/region.h"
@@ -19,7 +23,7 @@
 namespace strata::room {
 namespace {
 
-// A mask's surface texels, a word a slot.
+// Returns a mask's surface texels, one word for each slot.
 query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMap& map) {
   query::TexelSelection selection(map.block_of_slot.size(), 0);
   for (const auto& [address, mask] : masks)
@@ -35,16 +39,16 @@ query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMa
   return selection;
 }
 
-// Whether nothing is painted on it: then nothing need be known of the surface to say so.
+// Returns whether nothing is painted on the layer: then the answer does not need the surface.
 bool is_empty(const query::LayerView& view) {
   return std::ranges::none_of(view.snapshot.tiles,
                               [](const auto& tile) { return tile.second != nullptr; });
 }
 
-query::Statistics nothing_painted(StatisticsWanted wanted) {
+query::Statistics nothing_painted(StatisticsOptions options) {
   query::Statistics none;
-  if (wanted.pieces) none.pieces = 0;
-  if (wanted.perimeter) none.perimeter_m = 0;
+  if (options.pieces) none.pieces = 0;
+  if (options.perimeter) none.perimeter_m = 0;
   return none;
 }
 
@@ -96,8 +100,8 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::texels_withi
                             static_cast<float>(around.radius));
 }
 
-// Nothing where the whole surface is meant. A condition is looked at within the place alone, so
-// that a small one is quickly answered.
+// Returns nothing for the whole surface. A condition is evaluated only within the place, so that a
+// small place is answered quickly.
 Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texels(
     const Selection& selection, const mesh::SurfaceMap& map) {
   auto inside = texels_within(selection, map);
@@ -106,7 +110,7 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texel
   for (const auto& layer : room_.layer_list())
     if (sees(selection.seen_by, layer.visibility)) slugs.push_back(layer.slug);
   const std::vector<std::string> named = layers_of(*selection.where);
-  // Those that are not there are refused by the evaluator, with the field.
+  // The evaluator refuses layers that do not exist, with the field.
   std::erase_if(slugs,
                 [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
   const auto views = STRATA_TRY(room_.layer_views(slugs, selection.at));
@@ -122,15 +126,15 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texel
 Result<query::Statistics> OpenRoom::QueriesPart::count(const query::LayerView& view,
                                                        const mesh::SurfaceMap& map,
                                                        const query::TexelSelection* within,
-                                                       bool is_now, StatisticsWanted wanted) {
+                                                       bool is_now, StatisticsOptions options) {
   query::StatisticsRequest request;
   request.within = within;
-  request.quantiles = wanted.quantiles;
-  request.pieces = wanted.pieces;
-  request.perimeter = wanted.perimeter;
+  request.quantiles = options.quantiles;
+  request.pieces = options.pieces;
+  request.perimeter = options.perimeter;
   request.threads = mesh::background_threads();
   std::shared_ptr<const mesh::TexelGraph> graph;
-  if (wanted.pieces || wanted.perimeter) {
+  if (options.pieces || options.perimeter) {
     auto found = STRATA_TRY(room_.surface_lookup_->graph(map));
     graph = std::move(found);
     request.graph = graph.get();
@@ -142,18 +146,18 @@ Result<query::Statistics> OpenRoom::QueriesPart::count(const query::LayerView& v
 
 Result<query::Statistics> OpenRoom::QueriesPart::statistics(const std::string& layer,
                                                             const Selection& selection,
-                                                            StatisticsWanted wanted) {
+                                                            StatisticsOptions options) {
   room_.touch();
   const auto views = STRATA_TRY(room_.layer_views({layer}, selection.at));
-  if (is_empty(views.front()) && selection.whole()) return nothing_painted(wanted);
+  if (is_empty(views.front()) && selection.whole()) return nothing_painted(options);
   const auto map = STRATA_TRY(room_.surface_map(views.front().layer.resolution));
   const auto selected = STRATA_TRY(select_texels(selection, *map));
-  return count(views.front(), *map, selected ? &*selected : nullptr, !selection.at, wanted);
+  return count(views.front(), *map, selected ? &*selected : nullptr, !selection.at, options);
 }
 
 Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
                                                    const std::vector<std::string>& layers,
-                                                   StatisticsWanted wanted) {
+                                                   StatisticsOptions options) {
   room_.touch();
   const auto views = STRATA_TRY(room_.layer_views(layers, selection.at));
   SelectedArea area;
@@ -187,7 +191,7 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
   area.bounds_max = glm::dvec3(extent.high) + room_.geometry_->origin;
   for (const auto& view : views) {
     const Selected& here = of_resolution.at(view.layer.resolution);
-    auto counted = STRATA_TRY(count(view, *here.map, here.within(), !selection.at, wanted));
+    auto counted = STRATA_TRY(count(view, *here.map, here.within(), !selection.at, options));
     area.layers.emplace(view.layer.slug, std::move(counted));
   }
   return area;

@@ -11,7 +11,7 @@
 
 namespace strata::room {
 
-// Answers from mirrors and maps in main memory, beside those who paint.
+// Answers from mirrors and maps in main memory, in parallel to painting.
 class OpenRoom::QueriesPart final : public Queries {
  public:
   explicit QueriesPart(OpenRoom& room) : room_(room) {}
@@ -23,9 +23,9 @@ class OpenRoom::QueriesPart final : public Queries {
   Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
                                    const std::vector<std::string>& layers, At at) override;
   Result<query::Statistics> statistics(const std::string& layer, const Selection& selection,
-                                       StatisticsWanted wanted) override;
+                                       StatisticsOptions options) override;
   Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
-                              StatisticsWanted wanted) override;
+                              StatisticsOptions options) override;
   Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
                                  At at) override;
   Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
@@ -48,11 +48,11 @@ class OpenRoom::QueriesPart final : public Queries {
                                                              const mesh::SurfaceMap& map);
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
-  // `within` is null where the whole surface is meant; `is_now`: the view is the newest, whose sums
-  // are kept.
+  // `within` is null for the whole surface; `is_now`: the view is the newest, whose sums are
+  // cached.
   Result<query::Statistics> count(const query::LayerView& view, const mesh::SurfaceMap& map,
                                   const query::TexelSelection* within, bool is_now,
-                                  StatisticsWanted wanted);
+                                  StatisticsOptions options);
 
   OpenRoom& room_;
 };

@@ -91,7 +91,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
                           services.readers, room->strand_, room->maps_, room->surface_lookup_,
                           services.memory},
       *room, journal->last_sequence);
-  // Painting needs the maps of the layers there are; bake them while people look around.
+  // Painting needs the maps of the existing layers; bake them in the background.
   for (const auto& state : room->layer_states())
     room->maps_->request(state.layer.resolution, [](auto) {});
   return room;
@@ -171,7 +171,7 @@ Result<Model> OpenRoom::update_model(Model model, const store::IdempotentRespons
       model_ = updated;
     }
     participants_part_->tell([&](Listener& l) { l.model_changed(updated); });
-    participants_part_->styles_changed();  // patterns are spaced in millimetres
+    participants_part_->styles_changed();  // patterns are spaced in millimeters
   });
   return updated;
 }
@@ -247,7 +247,7 @@ bool OpenRoom::drop_map() {
 }
 
 bool OpenRoom::drop_large_unused_maps(std::chrono::steady_clock::time_point now) {
-  constexpr std::uint64_t kLarge = 512u << 20;  // others are back within a second
+  constexpr std::uint64_t kLarge = 512u << 20;  // smaller maps are baked again within a second
   constexpr std::chrono::minutes kKept{2};
   const auto since = now - kKept;
   const auto oldest = maps_->oldest_use();
@@ -291,7 +291,7 @@ void OpenRoom::close_deleted() {
   run_on(strand_, [&] { participants_part_->tell([](Listener& l) { l.model_deleted(); }); });
   close({ErrorCode::gone,
          "Model deleted",
-         "The model was deleted; nothing can be painted on it any more.",
+         "The model was deleted, so you cannot paint on it any more.",
          {}});
 }
 

@@ -35,23 +35,23 @@
 
 namespace strata::room {
 
-// What rooms share.
+// Objects that all rooms share.
 struct RoomServices {
   store::Store& store;
   store::JournalWriter& writer;
   render::Renderer& renderer;
   stream::StreamContext stream;
-  boost::asio::thread_pool& strands;  // room strands run here: short work, nothing that waits
+  boost::asio::thread_pool& strands;  // room strands run here: short work that does not wait
   boost::asio::thread_pool& workers;  // bakes, history, loading: long work
-  MemoryLedger& memory;               // of what rooms hold, but for the GPU's
+  MemoryLedger& memory;               // of the rooms' data, without the GPU's
   // questions to the journal before each edit: they wait for the database only
   boost::asio::thread_pool& readers;
   const RetiredKeys& retired_keys;
   RoomOptions options;
 };
 
-// A room as it is: its state, its life, and its recovery. What it does for others is in its parts,
-// each in files of its own beside this one.
+// The implementation of a room: its state, its lifetime, and its recovery. Its services are in its
+// parts, each in separate files of this folder.
 class OpenRoom final : public Room,
                        public PipelineHost,
                        public std::enable_shared_from_this<OpenRoom> {
@@ -64,7 +64,7 @@ class OpenRoom final : public Room,
 
   Model model() const override;
   Result<Model> update_model(Model model, const store::IdempotentResponse<Model>& answer) override;
-  Result<void> settle();  // returns when every edit before is durable; blocks
+  Result<void> settle();  // returns when every earlier edit is durable; blocks
 
   // --- PipelineHost (on the strand)
   LayerState* find_layer(LayerId id) override;
@@ -93,20 +93,20 @@ class OpenRoom final : public Room,
 
   // --- for Rooms
   void gpu_lost();
-  bool is_idle(std::chrono::steady_clock::time_point now) const;  // nobody for `close_after`
+  bool is_idle(std::chrono::steady_clock::time_point now) const;  // empty for `close_after`
   void touch();
-  std::size_t participant_count() const;  // who are in it, a connection each
-  std::size_t take_leave_count();         // who have left it since this was asked
+  std::size_t participant_count() const;  // number of connections
+  std::size_t take_leave_count();         // number of connections that left since the last call
   const SurfaceMaps& maps() const { return *maps_; }
-  // the map that was not used for the longest time, where nothing is being painted. Blocks
+  // drops the map that was unused for the longest time, while nothing is being painted. Blocks
   bool drop_map();
-  // Lets go of what a question about a very fine layer has left, and nobody used for a while.
+  // Releases maps of very fine layers that were unused for a while.
   bool drop_large_unused_maps(std::chrono::steady_clock::time_point now);
-  void take_no_edits() { takes_edits_ = false; }          // new ones are refused
+  void take_no_edits() { takes_edits_ = false; }          // new edits are refused
   bool has_no_edits() const { return unanswered_ == 0; }  // every edit is durable or refused
-  // refuses what waits and what comes, lets go of the GPU; blocks
+  // refuses waiting and later edits, releases the GPU objects; blocks
   void close(const Error& why);
-  void close_deleted();  // as the model was deleted: people are told first
+  void close_deleted();  // after a deletion of the model: notifies listeners first
   ModelId id() const { return model_id_; }
 
  private:
@@ -117,8 +117,8 @@ class OpenRoom final : public Room,
   class PicturesPart;
   class SurfaceImagesPart;
 
-  // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no
-  // recovery. Blocks.
+  // Runs `work` on a worker when every earlier edit is durable. During it, no edit and no recovery
+  // starts. Blocks.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);
   // recovery.cpp
@@ -126,7 +126,7 @@ class OpenRoom final : public Room,
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
   void on_journal_read(Result<JournalContents> contents);
   void retry_recovery(const Error& why);
-  // as gpu_problem.h has it, unless the room is closed
+  // as in gpu_problem.h, unless the room is closed
   Error gpu_problem(const Error& why) const;
   std::uint64_t mirror_bytes() const;  // with `mutex_` held
   std::vector<Layer> layer_list() const;
@@ -151,7 +151,7 @@ class OpenRoom final : public Room,
   const std::shared_ptr<SurfaceLookup> surface_lookup_;
   std::shared_ptr<EditPipeline> pipeline_;
 
-  // Changed on the strand, under `mutex_`; so read on the strand without it, and elsewhere under
+  // Changed on the strand, under `mutex_`: the strand may read without it, other threads must hold
   // it.
   mutable std::mutex mutex_;
   Model model_;
@@ -159,7 +159,8 @@ class OpenRoom final : public Room,
   MemoryLedger::Share geometry_share_, mirrors_share_;
   render::ModelHandle model_handle_ = 0;
   std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
-  std::optional<Error> closed_;                      // why, once it is; under `mutex_` everywhere
+  std::optional<Error> closed_;                      // reason, once closed; under `mutex_`
+                                                     // everywhere
 
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
   std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them
@@ -170,7 +171,7 @@ class OpenRoom final : public Room,
     explicit Recovery(const Strand& strand) : timer(strand) {}
     bool gpu_lacks_all = false;
     bool journal_differs = false;
-    bool working = false;  // one of them is being mended
+    bool working = false;  // a recovery is running
     bool closed = false;
     int gpu_losses = 0;
     std::chrono::milliseconds retry_in = kFirstRetry;

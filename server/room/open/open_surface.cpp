@@ -1,4 +1,5 @@
-// What maps and measurements paint: found from the shape alone, whatever the layer holds.
+// Painting by maps and measurements: the tiles depend on the shape alone, not on the content of the
+// layer.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "domain/layers/mask_texels.h"
@@ -11,7 +12,8 @@
 namespace strata::room {
 namespace {
 
-constexpr int kProjectionSide_px = 4096;  // of the depth buffer that tells what is seen first
+constexpr int kProjectionSide_px = 4096;  // of the depth buffer that finds the first visible
+                                          // surface
 
 TileMap as_tile_map(std::map<TileAddress, TileData>&& written) {
   TileMap tiles;
@@ -20,7 +22,7 @@ TileMap as_tile_map(std::map<TileAddress, TileData>&& written) {
   return tiles;
 }
 
-// Sees all of the box, without perspective.
+// Returns a camera that sees all of the box, without perspective.
 Camera camera_along(const glm::dvec3& direction, const mesh::Geometry& geometry) {
   const glm::dvec3 low = glm::dvec3(geometry.box_min) + geometry.origin,
                    high = glm::dvec3(geometry.box_max) + geometry.origin;
@@ -52,8 +54,8 @@ Result<TileMap> OpenRoom::SurfacePart::point_splats(const Layer& layer,
     if (!texel)
       return fail(ErrorCode::invalid, "Not on the model",
                   "Line " + std::to_string(value.line) +
-                      ": no surface is as near as the tolerance allows. Check unit and " +
-                      "coordinates, or allow more.",
+                      ": the surface is farther away than the tolerance. Check the unit and the " +
+                      "coordinates, or increase the tolerance.",
                   "body");
     point_splats.push_back({*texel, hit->position, value.bits});
   }

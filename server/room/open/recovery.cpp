@@ -1,7 +1,7 @@
-// How an open room recovers: its copies on the GPU are made anew after a lost context, its mirrors
-// after the journal turned out to hold more than they do. Both happen while the pipeline is paused
-// and nothing is under way, so nothing else changes the layers. What fails is tried again until the
-// room is closed; who waits for it is refused after each try.
+// Recovery of an open room: its copies on the GPU are made again after a lost context, and its
+// mirrors are read again when the journal contains more than they do. Both happen while the
+// pipeline is paused and no edit is in progress, so nothing else changes the layers. A failed
+// recovery is repeated until the room is closed; waiting edits are refused after each attempt.
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"
@@ -29,7 +29,7 @@ void OpenRoom::recover() {
   recovery_.timer.cancel();
   if (recovery_.gpu_lacks_all) {  // first: viewing needs no database
     recovery_.working = true;
-    services_.renderer.remove_model(model_handle());  // there may not be room for both
+    services_.renderer.remove_model(model_handle());  // there may not be enough memory for both
     boost::asio::post(
         services_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
           auto contents = fill_gpu(self->services_.renderer, {self->geometry_, self->coarser_},
@@ -65,12 +65,12 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
     for (auto& [id, state] : read) {
       auto known = layers_.find(id);
       if (known == layers_.end()) {
-        // made by a request that never heard so; rare enough to start from nothing
+        // made by a request whose answer was lost; rare enough to fill the GPU from the start
         recovery_.gpu_lacks_all = true;
         continue;
       }
       state.handles = known->second.handles;
-      // The GPU knows the layer by these mirrors.
+      // The GPU uses these mirror objects.
       for (auto mirror : {&LayerState::mirror, &LayerState::provisional}) {
         auto tiles = (state.*mirror)->snapshot();
         (known->second.*mirror)->assign(std::move(tiles.tiles), tiles.sequence);
@@ -112,7 +112,7 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
 
 void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& contents) {
   recovery_.working = false;
-  const bool in_vain = losses_before != recovery_.gpu_losses;  // lost again meanwhile
+  const bool in_vain = losses_before != recovery_.gpu_losses;  // the context was lost again
   if (contents && (in_vain || recovery_.closed)) services_.renderer.remove_model(contents->model);
   if (recovery_.closed) return;
   if (in_vain) return recover();
@@ -133,10 +133,11 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
 void OpenRoom::retry_recovery(const Error& why) {
   log::warning("model " + to_string(model_id_) +
                " could not be loaded again, trying again: " + why.title + ": " + why.detail);
-  pipeline_->refuse_waiting({ErrorCode::unavailable,
-                             "Model is reloading",
-                             "The model is being loaded again, which failed for now: " + why.detail,
-                             {}});
+  pipeline_->refuse_waiting(
+      {ErrorCode::unavailable,
+       "Model is reloading",
+       "The server is loading the model again. The last attempt failed: " + why.detail,
+       {}});
   recovery_.timer.expires_after(recovery_.retry_in);
   recovery_.retry_in = std::min(2 * recovery_.retry_in, Recovery::kLastRetry);
   recovery_.timer.async_wait(

@@ -13,7 +13,7 @@
 namespace strata::room {
 namespace {
 
-// What becomes of edits. What is not told stays as it is.
+// The new state of edits. Empty members stay unchanged.
 struct Turn {
   std::vector<std::int64_t> edits;  // ascending
   std::optional<bool> in_force, provisional;
@@ -49,23 +49,21 @@ Result<ComputedEdit> compute_turn(const Turn& turn, const Layer& layer, const Ti
 
 Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer,
                                   const TileMap& tiles, store::Store& store, bool redo) {
-  // What was accepted stays until a curator changes it.
+  // Only a curator can change an accepted edit.
   const bool pending_only = layer.review && request.author.role < Role::curator;
   auto sequences =
       STRATA_TRY(redo ? store.journal().redoable(layer.id, request.author.user, pending_only)
                       : store.journal().undoable(layer.id, request.author.user, pending_only));
   if (sequences.empty() && pending_only)
-    return fail(
-        ErrorCode::conflict, redo ? "Nothing to redo" : "Nothing to undo",
-        redo
-            ? "You have no undone stroke on this layer that waits for review."
-            : "You have no stroke on this layer that still waits for review; what was accepted a curator can "
-              "take back.");
+    return fail(ErrorCode::conflict, redo ? "Nothing to redo" : "Nothing to undo",
+                redo ? "You have no stroke on this layer to redo."
+                     : "You have no stroke on this layer that waits for review. Only a curator can "
+                       "undo accepted strokes.");
   if (sequences.empty())
     return redo ? fail(ErrorCode::conflict, "Nothing to redo",
-                       "You have no undone stroke on this layer that could come back.")
+                       "You have no stroke on this layer to redo.")
                 : fail(ErrorCode::conflict, "Nothing to undo",
-                       "You have no stroke in force on this layer.");
+                       "You have no stroke on this layer to undo.");
   return compute_turn({std::move(sequences), redo, std::nullopt}, layer, tiles, store);
 }
 
@@ -86,12 +84,13 @@ Result<ComputedEdit> compute_review(const ReviewEdit& review, const Layer& layer
           ErrorCode::conflict, reopens ? "Not reviewed" : "Not waiting for review",
           "Edit " + std::to_string(named) +
               (reopens
-                   ? " was neither accepted nor rejected, or was taken back since."
-                   : " of this layer does not wait for review: it was taken back, or somebody has decided."),
+                   ? " has not been accepted or rejected, or it was undone in the meantime."
+                   : " of this layer does not wait for review. Its author undid it, or somebody has "
+                     "reviewed it."),
           "edits");
   if (turn.edits.empty())
     return fail(ErrorCode::conflict, "Nothing to review",
-                "Nothing of this waits for review on this layer.");
+                "None of these edits of this layer waits for review.");
   if (review.decision != Decision::accept) turn.in_force = reopens;
   turn.provisional = reopens;
   auto computed = STRATA_TRY(compute_turn(turn, layer, tiles, store));
@@ -148,7 +147,7 @@ Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer
           [&](const ReviewEdit& review) { return compute_review(review, layer, tiles, store); },
           [&](const StrokeEdit&) -> Result<ComputedEdit> {
             return fail(ErrorCode::internal, "Internal error",
-                        "A stroke is painted, not computed.");
+                        "The server cannot compute a stroke. This is an internal error.");
           },
       },
       request.edit);

@@ -10,13 +10,14 @@
 
 namespace strata::room {
 
-// An edit that is computed from mirrors rather than painted by the GPU: fill, polygon, import,
-// undo, redo, restore, review.
+// An edit that is computed from mirrors, and not painted by the GPU: fill, polygon, import, undo,
+// redo, restore, review.
 struct ComputedEdit {
   std::vector<TileChange> changes;
-  std::vector<std::int64_t> disable, enable;  // edits that are no longer in force, or are again
+  std::vector<std::int64_t> disable, enable;  // edits that are no longer in force, or in force
+                                              // again
   std::optional<store::JournalEntry::Reviewed> reviewed;
-  std::vector<std::string> authors;  // of what was reviewed, by name
+  std::vector<std::string> authors;  // of the reviewed edits, by name
 };
 
 // Blocks: for worker threads. `layer` is the edited one.

@@ -16,8 +16,8 @@
 namespace strata::room {
 namespace {
 
-constexpr int kStrokesInFlight = 8;  // keeps the GPU fed; more would only lengthen a rollback
-constexpr int kKeyTileEvery = 64;    // revisions of a tile between two whole copies
+constexpr int kStrokesInFlight = 8;  // keeps the GPU busy; more would only lengthen a rollback
+constexpr int kKeyTileEvery = 64;    // revisions of a tile between two key tiles
 constexpr auto kRepairPause = std::chrono::milliseconds(500);
 
 const char* op_name(const EditRequest& request) {
@@ -31,19 +31,19 @@ const char* op_name(const EditRequest& request) {
       request.edit);
 }
 
-// Undo, redo, reviews and restore read the journal, so everything before them must be in it.
+// Undo, redo, reviews and restore read the journal, so every earlier edit must be in it.
 bool reads_journal(const EditRequest& request) {
   return !paints(request) || std::holds_alternative<RestoreEdit>(request.edit);
 }
 
-// What its content is computed from besides its own layer.
+// Returns whether the content is computed from other layers, too.
 bool reads_layers(const EditRequest& request) {
   if (std::holds_alternative<ComputeEdit>(request.edit)) return true;
   const auto* fill = std::get_if<FillEdit>(&request.edit);
   return fill && std::holds_alternative<FillEdit::Where>(fill->region);
 }
 
-// The part of the surface that changed tiles lie on.
+// Returns the box of the surface under the changed tiles.
 std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& changes,
                                                 const mesh::SurfaceMap& map) {
   render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()),
@@ -60,30 +60,31 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
   return box;
 }
 
-// Who repeats an edit is told what became of it; nobody else is.
+// The error for an id that another user's edit has: only the author of an edit gets its answer.
 Error taken_id() {
-  return {ErrorCode::invalid, "Id used for another edit",
-          "Another edit of this model has this id; every edit has an id of its own.", "id"};
+  return {ErrorCode::invalid, "Edit id already used",
+          "Another edit of this model has this id. Use a new id for each edit.", "id"};
 }
 
-// What a layer's expression says is written by computing alone, until the layer is unlocked to be
-// edited by hand; from then on what was painted is not computed away.
+// Only computing writes a layer with an expression, until the layer is unlocked for editing by
+// hand; from then on, computing does not overwrite what was painted.
 Result<void> check_formula(const Layer& layer, const EditRequest& request) {
   const auto* compute = std::get_if<ComputeEdit>(&request.edit);
   if (compute && !layer.formula)
     return fail(ErrorCode::conflict, "No expression",
-                "This layer has no expression that it could be computed from.", "layer");
+                "This layer has no expression, so the server cannot compute it. Set an "
+                "expression first.",
+                "layer");
   if (compute && layer.edited_by_hand && !compute->overwrites)
-    return fail(
-        ErrorCode::conflict, "Edited by hand",
-        "This layer was unlocked and edited by hand. Computing it again would overwrite that; "
-        "ask for it with overwrite=true.",
-        "layer");
+    return fail(ErrorCode::conflict, "Edited by hand",
+                "Somebody edited this layer by hand, and computing it again would overwrite "
+                "these edits. Send overwrite=true to do so.",
+                "layer");
   if (!compute && layer.formula && !layer.edited_by_hand)
-    return fail(
-        ErrorCode::conflict, "Computed layer",
-        "The values of this layer follow from its expression. Unlock it to edit them by hand.",
-        "layer");
+    return fail(ErrorCode::conflict, "Layer is computed",
+                "The server computes the values of this layer from its expression. Unlock the "
+                "layer to edit it by hand.",
+                "layer");
   return {};
 }
 
@@ -114,9 +115,9 @@ void EditPipeline::edit(EditRequest request, Applied applied, Saved saved) {
     return found->second.followers.push_back(std::move(saved));
   }
   if (!parts_.writer.accepting())
-    return saved(fail(
-        ErrorCode::unavailable, "Not saved",
-        "The database does not take edits at the moment. Viewing goes on; try again shortly."));
+    return saved(fail(ErrorCode::unavailable, "Not saved",
+                      "The database does not accept edits at the moment. You can still view the "
+                      "model. Try again shortly."));
   if (parts_.memory.exceeded())
     return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
   running_[request.id].user = request.author.user;
@@ -130,12 +131,11 @@ void EditPipeline::when_idle(Work work) {
   step();
 }
 
-// ----------------------------------------------------------------------------------------------------
-// looking up
+// --- looking up
 
-// One question at a time, about all that came meanwhile. Where `verify_` is set, also: is the
-// journal where the room thinks it is? When the last question had no answer, that one is asked only
-// where somebody waits for it.
+// Asks one question at a time, for all edits that have arrived. If `verify_` is set, also asks
+// whether the journal ends where the room expects it. If the last question had no answer, this is
+// asked only when an edit waits for it.
 void EditPipeline::ask_journal() {
   if (asking_) return;
   const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
@@ -144,7 +144,7 @@ void EditPipeline::ask_journal() {
   std::vector<Uuid> ids;
   for (Waiting& item : waiting_) {
     if (item.work || item.lookup != Waiting::Lookup::none) continue;
-    item.lookup = Waiting::Lookup::asked;
+    item.lookup = Waiting::Lookup::requested;
     ids.push_back(item.request.id);
   }
   if (ids.empty() && !verifying) return;
@@ -155,12 +155,13 @@ void EditPipeline::ask_journal() {
                                      done = then([this, verifying](const State& state) {
                                        on_journal(verifying, state);
                                      })]() mutable {
-    // The pool waits for a database that restarts. Once is enough: those who come later hear at
-    // once that it is away.
+    // The pool waits for a database that restarts. One wait is enough: later callers get the error
+    // at once.
     if (was_away && !store.ready())
-      return done(State(fail(
-          ErrorCode::unavailable, "Database unavailable",
-          "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
+      return done(
+          State(fail(ErrorCode::unavailable, "Database unavailable",
+                     "The database does not answer, so the server cannot save anything. You can "
+                     "still view the model. Try again shortly.")));
     done(store.journal().state(model_id, ids));
   });
 }
@@ -170,8 +171,8 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   if (closed_) return;
   journal_away_ = !state;
   if (!state) {
-    // All that wait for the journal, not only those it was asked about: edits of one stroke must
-    // not change places.
+    // Refuse all edits that wait for the journal, not only those in the question: the edits of one
+    // stroke must stay in order.
     std::deque<Waiting> all = std::exchange(waiting_, {});
     for (Waiting& item : all) {
       if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new))
@@ -181,22 +182,23 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
     }
     return;
   }
-  // A commit whose answer was lost may have happened after all: the journal is right, the room is
-  // not. Until the room holds what the journal has, no repeat may hear that its edit is there, so
-  // all is asked again then. (And a question from before `verify_` was set tells nothing.)
+  // A commit whose answer was lost may have happened: then the journal is right, and the room is
+  // behind it. Until the room contains everything in the journal, a repeat must not get the answer
+  // that its edit is saved, so all ids are asked again then. (The answer to a question from before
+  // `verify_` was set is not used.)
   if (verifying && state->last_sequence == durable_) verify_ = false;
   const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
   if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;
   if (!verify_) return on_known(state->known);
   for (Waiting& item : waiting_)
-    if (item.lookup == Waiting::Lookup::asked) item.lookup = Waiting::Lookup::none;
+    if (item.lookup == Waiting::Lookup::requested) item.lookup = Waiting::Lookup::none;
   if (verifying && state->last_sequence != durable_) host_->journal_differs();
 }
 
 void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
   std::deque<Waiting> all = std::exchange(waiting_, {});
   for (Waiting& item : all) {
-    const auto row = item.lookup == Waiting::Lookup::asked
+    const auto row = item.lookup == Waiting::Lookup::requested
                          ? std::find_if(known.begin(), known.end(),
                                         [&](const auto& r) { return r.id == item.request.id; })
                          : known.end();
@@ -210,13 +212,12 @@ void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
       answer(item.request.id, item.saved, first);
       continue;
     }
-    if (item.lookup == Waiting::Lookup::asked) item.lookup = Waiting::Lookup::is_new;
+    if (item.lookup == Waiting::Lookup::requested) item.lookup = Waiting::Lookup::is_new;
     waiting_.push_back(std::move(item));
   }
 }
 
-// ------------------------------------------------------------------------------------------------------
-// starting
+// --- starting
 
 void EditPipeline::step() {
   roll_back_when_answered();
@@ -246,10 +247,10 @@ bool EditPipeline::start_front() {
   }
   if (front.lookup != Waiting::Lookup::is_new) return false;
   const LayerState* layer = host_->find_layer(front.request.layer_id);
-  // Who does not see the layer any more hears what is heard when it was deleted.
+  // If the author no longer sees the layer, the answer is the same as for a deleted layer.
   if (!layer || !sees(front.request.author.role, layer->layer.visibility)) {
     Waiting item = take();
-    refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+    refuse(item, {ErrorCode::not_found, "Layer not found", "The layer was deleted.", "layer"});
     return true;
   }
   if (auto may = check_not_locked(layer->layer, front.request.author.role, computes(front.request));
@@ -312,7 +313,8 @@ void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outc
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer)
-    return refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+    return refuse(item,
+                  {ErrorCode::not_found, "Layer not found", "The layer was deleted.", "layer"});
   ComputedEdit computed;
   for (const auto& tile : outcome->tiles) {
     auto before = layer->mirror->tile(tile.address);
@@ -333,38 +335,39 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
       [this, item](Result<ComputedEdit> computed) { upload_computed(item, std::move(computed)); });
   std::vector<query::LayerView> layers;
   if (reads_layers(item->request)) layers = host_->layer_snapshots();
-  boost::asio::post(
-      parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
-                       tiles = layer.mirror->snapshot().tiles, layers = std::move(layers),
-                       metres = host_->pipeline_model().metres(), model = host_->model_handle(),
-                       done = std::move(done)]() mutable {
-        const auto map = parts_.maps->get(meta.resolution);
-        if (!map)
-          return done(Result<ComputedEdit>(
-              fail(ErrorCode::gpu_lost, "GPU lost",
-                   "The graphics context is being restored; send the edit again.")));
-        auto question = item->request.question;
-        const Author& author = item->request.author;
-        if (!question)
-          question = std::make_shared<Question>(author.user, limits_of(author.role), nullptr);
-        question->skip_turns();
-        const Question::Scope scope(question);
-        try {
-          question->check();
-          done(compute_edit(item->request, meta,
-                            {*map, tiles, layers, metres, parts_.store, *parts_.surface,
-                             parts_.renderer, model, meta.visibility, item->request.author.role}));
-        } catch (const QuestionEnded& ended) {
-          done(Result<ComputedEdit>(tl::unexpected(ended.problem())));
-        } catch (const std::bad_alloc&) {
-          done(Result<ComputedEdit>(
-              fail(ErrorCode::out_of_memory, "Out of memory",
-                   "The server lacks the memory for this edit at the moment; try again later.")));
-        }
-      });
+  boost::asio::post(parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
+                                     tiles = layer.mirror->snapshot().tiles,
+                                     layers = std::move(layers),
+                                     metres = host_->pipeline_model().metres(),
+                                     model = host_->model_handle(),
+                                     done = std::move(done)]() mutable {
+    const auto map = parts_.maps->get(meta.resolution);
+    if (!map)
+      return done(Result<ComputedEdit>(
+          fail(ErrorCode::gpu_lost, "GPU lost",
+               "The server lost the GPU context and is restoring it. Send the edit again.")));
+    auto question = item->request.question;
+    const Author& author = item->request.author;
+    if (!question)
+      question = std::make_shared<Question>(author.user, limits_of(author.role), nullptr);
+    question->skip_turns();
+    const Question::Scope scope(question);
+    try {
+      question->check();
+      done(compute_edit(item->request, meta,
+                        {*map, tiles, layers, metres, parts_.store, *parts_.surface,
+                         parts_.renderer, model, meta.visibility, item->request.author.role}));
+    } catch (const QuestionEnded& ended) {
+      done(Result<ComputedEdit>(tl::unexpected(ended.problem())));
+    } catch (const std::bad_alloc&) {
+      done(Result<ComputedEdit>(fail(
+          ErrorCode::out_of_memory, "Out of memory",
+          "The server does not have enough memory for this edit at the moment. Try again later.")));
+    }
+  });
 }
 
-// Applied only once the GPU has it: a stroke that comes next is painted over what the mirror holds.
+// Applied only when the GPU has it: the next stroke is painted over the content of the mirror.
 void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
                                    Result<ComputedEdit> computed) {
   busy_ = false;
@@ -373,7 +376,7 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
   LayerState* layer = host_->find_layer(item->request.layer_id);
   if (!layer)
     return refuse(*item,
-                  {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+                  {ErrorCode::not_found, "Layer not found", "The layer was deleted.", "layer"});
   std::vector<render::TileUpload> uploads;
   for (const auto& change : computed->changes)
     if (change.after != change.before) uploads.push_back({change.address, change.after});
@@ -392,7 +395,8 @@ void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer)
-    return refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+    return refuse(item,
+                  {ErrorCode::not_found, "Layer not found", "The layer was deleted.", "layer"});
   if (!uploaded) {
     for (const auto& change : computed.changes) stale_[layer->layer.id].insert(change.address);
     return refuse(item, gpu_problem(uploaded.error()));
@@ -402,8 +406,7 @@ void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
   commit(item, *layer, std::move(computed), box);
 }
 
-// ------------------------------------------------------------------------------------ making
-// durable, or taking back
+// --- saving and rolling back
 
 void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit computed,
                           const std::optional<render::FrameRequest::Box>& box) {
@@ -422,7 +425,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
       provisional[change.address] = with_provisional(marked, change);
       provisional_before[change.address] = std::move(marked);
     }
-    if (change.before == change.after) continue;  // nothing moves
+    if (change.before == change.after) continue;  // no texel changes
     if (map) {
       const ChangeCount count = count_changes(change, *map);
       answer.texels_changed += count.texels;
@@ -434,8 +437,8 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
         encode_revision(
             make_revision(change.address, *change.before, *change.after, change.written)),
         {}};
-    // The first revision in this room is stored whole: chains stay short however often rooms open
-    // and close.
+    // The first revision of a tile in this room is stored with a key tile: chains stay short,
+    // however often rooms open and close.
     auto [since, first] = since_key_tile.try_emplace(change.address, 0);
     if (first || ++since->second >= kKeyTileEvery) {
       revision.key_tile = encode_tile(*change.after);
@@ -494,7 +497,8 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   if (!taken) {
     failure_ = Error{ErrorCode::unavailable,
                      "Not saved",
-                     "The database does not keep up with the edits; they were taken back.",
+                     "The database is too slow for the edits, so the server undid them. Try again "
+                     "more slowly.",
                      {}};
     pending_.back().answered = true;
   }
@@ -543,8 +547,7 @@ void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
   answer(pending.event.id, pending.saved, pending.event.answer);
 }
 
-// Nothing is taken back while the room is paused: what it reads or puts on the GPU then must not
-// change under it.
+// No rollback while the room is paused: its reads and uploads must not see a change.
 void EditPipeline::roll_back_when_answered() {
   if (!failure_ || in_flight_ > 0 || busy_ || (paused_ && !closed_)) return;
   for (const Pending& pending : pending_)
@@ -559,7 +562,7 @@ void EditPipeline::roll_back_when_answered() {
     TileMap tiles, provisional;
     std::int64_t sequence = 0;
   };
-  std::map<LayerId, Before> layers;  // what they were before their oldest pending edit
+  std::map<LayerId, Before> layers;  // the layers before their oldest pending edit
   for (auto pending = taken_back.rbegin(); pending != taken_back.rend(); ++pending) {
     Before& before = layers[pending->event.layer_id];
     before.sequence = pending->layer_sequence_before;
@@ -572,20 +575,20 @@ void EditPipeline::roll_back_when_answered() {
     layer->mirror->put(before.tiles, before.sequence);
     put_provisional(*layer, before.provisional, before.sequence);
     host_->set_sequence(*layer, before.sequence);
-    since_key_tile_.erase(layer_id);  // the whole copies may be among what was not saved
+    since_key_tile_.erase(layer_id);  // unsaved edits may contain the key tiles
     for (const auto& [address, data] : before.tiles) stale_[layer_id].insert(address);
   }
-  if (!closed_) repair();  // on its way before anybody hears of it
+  if (!closed_) repair();  // started before listeners are notified
   std::vector<Listener::Edit> events;
   for (const auto& pending : taken_back) events.push_back(pending.event);
-  log::warning("took back " + std::to_string(events.size()) +
+  log::warning("undid " + std::to_string(events.size()) +
                " edits that could not be saved: " + why.title + ": " + why.detail);
   if (!closed_) host_->edits_unsaved(events, why);
   for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
 }
 
-// Writes what the mirrors hold where the GPU may hold something else. First the tiles that are
-// empty: that frees the pages which the others may need.
+// Writes the content of the mirrors to the GPU where it may differ. Empty tiles come first: that
+// frees pages which the others may need.
 bool EditPipeline::repair() {
   std::erase_if(stale_, [&](const auto& entry) { return !host_->find_layer(entry.first); });
   if (stale_.empty()) return false;
@@ -623,7 +626,7 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
         host_->content_changed(*layer, std::nullopt, sequence_);
     return;
   }
-  if (paused_) return;  // a lost context: everything is put on the GPU again
+  if (paused_) return;  // a lost context: everything is uploaded again
   log::warning("tiles were not written to the GPU, trying again: " + failure->detail);
   refuse_waiting(gpu_problem(*failure));
   repair_waits_ = true;
@@ -660,8 +663,7 @@ void EditPipeline::answer(const Uuid& id, const Saved& saved, const Result<EditA
   }
 }
 
-// -----------------------------------------------------------------------------------------------
-// pausing, closing
+// --- pausing, closing
 
 void EditPipeline::pause() {
   paused_ = tell_paused_ = true;
@@ -669,7 +671,7 @@ void EditPipeline::pause() {
 }
 
 void EditPipeline::journal_read(std::int64_t last_sequence) {
-  sequence_ = durable_ = last_sequence;  // nothing is pending: the last rollback took all of it
+  sequence_ = durable_ = last_sequence;  // nothing is pending: the last rollback removed all edits
   verify_ = false;
   since_key_tile_.clear();
 }

@@ -7,7 +7,7 @@
 namespace strata::room {
 namespace {
 
-// Where its text names the layer, for the message.
+// Returns the position where the text names the layer, for the message.
 std::size_t first_character(const Expression& e) {
   if (e.is_column() || e.parts.empty()) return e.position.at;
   std::size_t first = e.position.at;
@@ -20,7 +20,7 @@ bool has_layer(const std::vector<query::LayerView>& layers, const std::string& s
          layers.end();
 }
 
-// Names of the surface in place of layers that are not there.
+// Replaces names of layers that do not exist by the names of the surface.
 Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& layers,
                           const std::string& field) {
   for (Expression& part : e.parts) STRATA_TRY(name_surface(part, layers, field));
@@ -38,13 +38,14 @@ Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& la
   if (std::ranges::find(kShapeNames, e.name) == kShapeNames.end())
     return tl::unexpected(
         expression_problem("This model has no layer '" + e.name.substr(0, 100) +
-                               "'; layers are named by their slugs, and a subtraction needs spaces",
+                               "'; use the slug of a layer, and write spaces around a minus sign",
                            e.position.at, field));
   const std::string given = std::string(kShapePrefix) + e.name;
   if (!has_layer(layers, given))
     return tl::unexpected(expression_problem(
         "'" + e.name +
-            "' of the surface is for computed layers: compute one of it and name that layer here",
+            "' of the surface works in computed layers only: create a computed layer from it "
+            "and use that layer here",
         e.position.at, field));
   e.name = given;
   return {};
@@ -88,8 +89,8 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
     const Layer& layer = view->layer;
     if (!layer.table)
       return tl::unexpected(expression_problem(
-          "'" + layer.slug + "' holds numbers: only database layers have records with columns",
-          character, field));
+          "'" + layer.slug + "' stores numbers: only layers of records have columns", character,
+          field));
     std::optional<std::int64_t> then;
     if (at) {
       auto sequence = STRATA_TRY(store.tables().sequence_when(*layer.table, layer.model_id, *at));
@@ -113,12 +114,13 @@ Result<BoundForLayer> bind_for_layer(const Expression& expression,
   if (sight_of(author) == layer) return tl::unexpected(bound.error());
   STRATA_TRY(bind_expression(expression, layers_seen_by(layers, author), store, author,
                              std::nullopt, field));
-  return fail(
-      ErrorCode::invalid, "Would show through",
-      "This reads layers or columns that fewer people see than the layer it is for, which is " +
-          std::string(name(layer)) +
-          ". Let fewer see that layer, or leave out what they do not see.",
-      field);
+  return fail(ErrorCode::invalid, "Visible to too many people",
+              "The expression reads layers or columns that fewer people can see than this "
+              "layer, which is " +
+                  std::string(name(layer)) +
+                  ". Restrict the visibility of this layer, or remove those layers and columns "
+                  "from the expression.",
+              field);
 }
 
 }  // namespace strata::room

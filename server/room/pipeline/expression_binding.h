@@ -14,34 +14,34 @@
 
 namespace strata::room {
 
-// Names that a formula may have of the surface itself, where no layer has them: `x y z` (world,
-// model units), `area` (of the texel, m²) everywhere; what needs the whole mesh (kShapeNames) only
-// where it is given as a layer `surface.…`.
+// Names of surface values in a formula, for names that are not layers: `x y z` (world, model units)
+// and `area` (of the texel, m²) everywhere; values that need the whole mesh (kShapeNames) only if
+// they are given as a layer `surface.…`.
 inline constexpr std::array kShapeNames{"nx", "ny", "nz", "height", "slope", "curvature"};
 inline constexpr std::string_view kShapePrefix = "surface.";
 
-// Of kShapeNames, those that the formula reads: it names them, and no layer has that name.
+// Returns those of kShapeNames that the formula reads: it names them, and no layer has that name.
 std::vector<std::string> shapes_read(const Expression& expression,
                                      const std::vector<query::LayerView>& layers);
 
-// Those of the layers that the role sees: to it the others are not there.
+// Returns the layers that the role sees; the others do not exist for it.
 std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>& layers,
                                              Role role);
 
-// A formula over layers with what it needs of the records behind their keys, read from the
-// database: as they are, or as they were when the model's edit `at` was made; of columns that
-// `seen_by` sees. Blocks. Refused (invalid at `field`, with the character): a layer without
-// records, a column that is not there or holds something else.
+// Binds a formula over layers to the records behind their keys, read from the database: the present
+// records, or those at the time of the model's edit `at`, with the columns that `seen_by` sees.
+// Blocks. Refused (invalid at `field`, with the character): a layer without records, a column that
+// does not exist or has another kind.
 Result<query::BoundExpression> bind_expression(const Expression& expression,
                                                const std::vector<query::LayerView>& layers,
                                                store::Store& store, Role seen_by,
                                                std::optional<std::int64_t> at,
                                                const std::string& field);
 
-// The same for what is written into a layer that is seen so: it may read only what everybody sees
-// who sees that layer, so that nothing shows through. `layers` are all of the model's, those of the
-// answer the ones that it may read. Refused besides (invalid at `field`): what only `author` and
-// others like them see.
+// The same for a formula whose result is written into a layer with that visibility: it may read
+// only data that is visible to every user who sees the layer, so that no hidden data shows through.
+// `layers` are all layers of the model; the result contains those that the formula may read. Also
+// refused (invalid at `field`): data that only `author` and similar roles see.
 struct BoundForLayer {
   query::BoundExpression expression;
   std::vector<query::LayerView> layers;

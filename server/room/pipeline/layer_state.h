@@ -14,15 +14,16 @@ struct LayerHandles {
   render::LayerHandle content = 0, provisional = 0;
 };
 
-// One layer of an open room. Copied by any thread under the room's mutex: what the strand changes
-// is changed under it, too.
+// One layer of an open room. Any thread may copy it under the room's mutex; the strand also changes
+// it under that mutex.
 struct LayerState {
   Layer layer;
   LayerHandles handles;
   std::shared_ptr<TileMirror> mirror;
-  // what of it waits for review (room/pipeline/provisional.h), shown over it
+  // its texels that wait for review (room/pipeline/provisional.h), shown over it
   std::shared_ptr<TileMirror> provisional;
-  std::optional<render::LayerHandle> waiting() const {  // the mark of that, where anything does
+  std::optional<render::LayerHandle> waiting() const {  // the mask of these texels, if there are
+                                                        // any
     return provisional->empty() ? std::nullopt : std::optional(handles.provisional);
   }
   std::shared_ptr<const Palette> palette;  // of `layer`, shared with the frames that use it

@@ -14,7 +14,7 @@ Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
   const auto written = STRATA_TRY(store.journal().written_by(layer, sequences));
   TileMap tiles;
   for (const auto& [tile, texels] : written) {
-    // what the texels hold does not matter here
+    // the values of the texels do not matter here
     TileResolver resolver(TileData(layer.type), texels);
     STRATA_TRY(walk_back(resolver, layer, tile, store, [](PastRevision&) {}));
     if (resolver.provisional().any())
@@ -38,8 +38,8 @@ std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const Til
 }
 
 std::shared_ptr<const Palette> provisional_palette() {
-  // Dark lines that stay apart in greyscale and on colours of any palette, and let what is below be
-  // read.
+  // Dark lines that stay distinct in grayscale and on colors of any palette, and leave the content
+  // below readable.
   static const auto kHatch =
       std::make_shared<const Palette>(Palette{.mode = PaletteMode::categorical,
                                               .points = {{.at = 1,

@@ -35,11 +35,13 @@ Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& ma
       place);
   if (!point.hit)
     return fail(ErrorCode::invalid, "Not on the model",
-                "There is no surface at this place; give one that is on the model.", field);
+                "There is no surface at this position. Choose a position on the model.", field);
   if (const auto texel = mesh::surface_texel_at(map, point.uv))
     return PlaceOnSurface{*texel, glm::vec3(point.position - origin)};
-  return fail(ErrorCode::invalid, "No texel there",
-              "The surface at this place is too small to hold a texel of this layer.", field);
+  return fail(ErrorCode::invalid, "No texel at position",
+              "The piece of the surface at this position is smaller than a texel of this "
+              "layer. Choose another position.",
+              field);
 }
 
 Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,

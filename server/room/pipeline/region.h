@@ -14,7 +14,8 @@
 
 namespace strata::room {
 
-// What the texels of an edit are found in. All of it is constant while one edit is computed.
+// The data in which the texels of an edit are found. All of it is constant while one edit is
+// computed.
 struct RegionContext {
   const mesh::SurfaceMap& map;                  // of the edited layer's resolution
   const TileMap& tiles;                         // of the edited layer
@@ -29,20 +30,22 @@ struct RegionContext {
 };
 
 // A place as a surface texel (numbered as in mesh::TexelGraph) and a point in model space. Refused
-// (invalid at `field`) where there is none.
+// (invalid at `field`) if there is no texel.
 struct PlaceOnSurface {
   std::uint32_t texel = 0;
   glm::vec3 position{0};
 };
 Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& map,
                                   SurfaceLookup& surface, const std::string& field);
-// The texels of an outline, gutter included. Waits for the GPU, which must have the map.
+// Returns the texels of an outline, including the gutter. Waits for the GPU, which must have the
+// map.
 Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
                             const SurfaceLookup& surface, render::Renderer& renderer,
                             render::ModelHandle model);
 
-// What a fill or a polygon changes. Blocks: for worker threads. Refused: an expression over layers
-// that are not there (invalid), a place that is not on the model (invalid), what the GPU refuses.
+// Return the changes of a fill or a polygon. Block: for worker threads. Refused: an expression over
+// layers that do not exist (invalid), a place that is not on the model (invalid), errors of the
+// GPU.
 Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type,
                                              const RegionContext& context);
 Result<std::vector<TileChange>> polygon_changes(const PolygonEdit& polygon, ValueType type,

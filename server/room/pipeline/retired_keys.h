@@ -10,8 +10,8 @@
 
 namespace strata::room {
 
-// Keys that nothing paints any more, since their records are being deleted or were. A stroke may
-// have begun before, when there was a record. Safe from any thread.
+// Keys that can no longer be painted, since their records are being deleted or were. A stroke may
+// have begun before the deletion. Safe from any thread.
 class RetiredKeys {
  public:
   void retire(TableId table_id, std::int64_t key) {

@@ -7,7 +7,7 @@
 namespace strata::room {
 namespace {
 
-constexpr double kMargin_px = 1;  // the box's own rounding must not cut off what lies at its border
+constexpr double kMargin_px = 1;  // rounding of the box must not cut off texels at its border
 
 // A swept square covers exactly a box: its side is the box's shorter one, and its path runs along
 // the longer.
@@ -29,8 +29,8 @@ StrokeBatch box_stroke(const Camera& camera, const glm::dvec2& low, const glm::d
 Result<TileMasks> seen_texels(render::Renderer& renderer, render::ModelHandle model, int resolution,
                               const Camera& camera, const glm::dvec2& low, const glm::dvec2& high,
                               bool through) {
-  // Erasing a layer that is empty changes nothing and takes no page, and tells all the same what it
-  // went over.
+  // Erasing an empty layer changes nothing and needs no page, but the result still contains the
+  // covered texels.
   auto scratch = STRATA_TRY(await<render::LayerHandle>(
       [&](auto done) { renderer.add_layer(model, ValueType::u8, resolution, std::move(done)); }));
   StrokeBatch stroke = box_stroke(camera, low, high);

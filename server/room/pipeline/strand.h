@@ -10,7 +10,7 @@ namespace strata::room {
 
 using Strand = boost::asio::strand<boost::asio::thread_pool::executor_type>;
 
-// Runs `work` on the strand, and waits for what it returns.
+// Runs `work` on the strand, and waits for its result.
 template <class Work>
 auto run_on(const Strand& strand, Work work) {
   using Value = std::invoke_result_t<Work>;

@@ -10,7 +10,7 @@
 namespace strata::room {
 namespace {
 
-// Texels whose value or validity differs.
+// Returns the texels whose value or validity differs.
 TileMask differing(const TileData& a, const TileData& b) {
   TileMask mask;
   const int width = a.texel_bytes();
@@ -23,7 +23,7 @@ TileMask differing(const TileData& a, const TileData& b) {
   return mask;
 }
 
-// Writes the texels that `mask_of(address)` tells.
+// Writes the texels of `mask_of(address)`.
 template <class MaskOf>
 std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
                              WrittenValue value, MaskOf mask_of) {
@@ -92,15 +92,15 @@ std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
   });
 }
 
-std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
+std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& target, ValueType type,
                                         const mesh::SurfaceMap& map) {
   std::set<TileAddress> addresses;
   for (const auto& [address, data] : tiles) addresses.insert(address);
-  for (const auto& [address, data] : wished) addresses.insert(address);
+  for (const auto& [address, data] : target) addresses.insert(address);
   std::vector<TileChange> changes;
   for (TileAddress address : addresses) {
     auto before = tile_or_empty(tiles, address, type);
-    auto after = std::make_shared<TileData>(*tile_or_empty(wished, address, type));
+    auto after = std::make_shared<TileData>(*tile_or_empty(target, address, type));
     const TileMask owned = map.owned_in_tile(address);
     TileMask foreign;
     for (int w = 0; w < kMaskWords; ++w) foreign.words[w] = after->valid.words[w] & ~owned.words[w];

@@ -15,15 +15,15 @@
 namespace strata::room {
 
 // One tile before and after an edit. `before` and `after` are never null; an empty tile is a
-// TileData with nothing valid.
+// TileData without a valid texel.
 struct TileChange {
   TileAddress address;
   std::shared_ptr<const TileData> before, after;
   TileMask written;
-  TileMask provisional{};  // of `written`: what waits for review now
+  TileMask provisional{};  // of `written`: texels that wait for review now
 };
 
-// The tile of a snapshot, or an empty one of the type.
+// Returns the tile of a snapshot, or an empty one of the type.
 std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address,
                                               ValueType type);
 
@@ -33,43 +33,43 @@ struct ChangeCount {
 };
 ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map);
 
-// What the tiles hold of each key, as the journal keeps it.
+// Returns the sums of each key in the tiles, as the journal stores them.
 std::vector<store::TileKeys> sum_tiles(
     const Layer& layer, const mesh::SurfaceMap& map,
     const std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>& tiles);
 
-// What is written: a value's bits, or nothing, which erases.
+// A value's bits; nothing erases.
 using WrittenValue = std::optional<std::uint32_t>;
 
-// Every texel of the surface gets the value, or loses what it has.
+// Sets the value of every texel of the surface, or erases it.
 std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type,
                                         const mesh::SurfaceMap& map, WrittenValue value);
-// The selected surface texels do, and the gutter texels that follow them.
+// The same for the selected surface texels and the gutter texels that belong to them.
 std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type,
                                       const mesh::SurfaceMap& map, query::TexelSelection selection,
                                       WrittenValue value);
-// The texels of the masks, which belong to the surface or its gutter.
+// The same for the texels of the masks, which belong to the surface or its gutter.
 std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
                                    const mesh::SurfaceMap& map,
                                    const std::map<TileAddress, TileMask>& masks,
                                    WrittenValue value);
 
-// The layer's content becomes `wished`, on the texels that belong to the surface. Written is what
-// differs.
-std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
+// Replaces the layer's content by `target`, on the texels of the surface. Only the differences are
+// written.
+std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& target, ValueType type,
                                         const mesh::SurfaceMap& map);
 
-// What is valid in `written` is painted over what is there; texels that do not belong to the
-// surface are passed over.
+// Paints the valid texels of `written` over the content; skips texels that do not belong to the
+// surface.
 std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
                                    const mesh::SurfaceMap& map);
 
-// What a stroke did to a tile: the texels it wrote become what the GPU holds there, and nothing
-// else changes, whatever the GPU holds in the rest of the tile.
+// Returns the change of a tile by a stroke: the texels that it wrote get the value of the GPU; all
+// other texels stay unchanged, regardless of the GPU's content.
 TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before,
                           const TileMask& written, const TileData& read_back);
 
-// Tiles that are not the same in both.
+// Returns the tiles that differ.
 std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b);
 
 }  // namespace strata::room

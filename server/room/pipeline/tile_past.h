@@ -8,8 +8,8 @@
 
 namespace strata::room {
 
-// Walks back through a tile's history, only until every texel of the resolver has found its author.
-// `turn` may change what an edit is before it is looked at. Blocks.
+// Walks back through a tile's history, but only until every texel of the resolver has its author.
+// `turn` may change the state of an edit before it is used. Blocks.
 Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
                        store::Store& store, const std::function<void(PastRevision&)>& turn);
 

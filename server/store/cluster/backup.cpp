@@ -32,7 +32,7 @@ Error damaged(const fs::path& folder, const std::string& why) {
   return {ErrorCode::invalid, "Backup damaged", folder.string() + ": " + why, {}};
 }
 
-// A folder that is being written, gone again unless it is kept.
+// Creates a folder to write into, and deletes it in the destructor unless it was kept.
 class Unfinished {
  public:
   explicit Unfinished(fs::path folder) : folder_(std::move(folder)) {}
@@ -57,19 +57,20 @@ class Unfinished {
   fs::path folder_;
 };
 
-// For what a program says, and for a password: not where a backup goes, whose disk may be full.
+// Makes a folder for the output and the password file of the programs. It is not in the folder of
+// the backup, because that disk may be full.
 Result<fs::path> make_scratch() {
   std::error_code error;
   std::string folder = (fs::temp_directory_path(error) / "strata-backup-XXXXXX").string();
   if (!mkdtemp(folder.data()))
-    return fail(ErrorCode::internal, "Folder cannot be made",
+    return fail(ErrorCode::internal, "Cannot create folder",
                 folder + ": " + std::strerror(errno) + ".");
   return fs::path(folder);
 }
 
 // --- the programs of PostgreSQL
 
-// For a field of libpq's password file.
+// Escapes a value for a field of libpq's password file.
 std::string passfile_field(std::string_view value) {
   std::string out;
   for (const char c : value) {
@@ -79,8 +80,8 @@ std::string passfile_field(std::string_view value) {
   return out;
 }
 
-// pg_dump and pg_restore show their arguments to everybody on the machine: a password goes by the
-// file.
+// Moves the password of a connection string into a password file, because every user of the machine
+// can see the arguments of pg_dump and pg_restore.
 Result<std::string> hide_password(const std::string& dsn, const fs::path& file) {
   char* error = nullptr;
   const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(
@@ -88,7 +89,7 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
   if (!options) {
     const std::string why = error ? error : "not understood";
     PQfreemem(error);
-    return fail(ErrorCode::malformed, "Database not understood", why, "--database");
+    return fail(ErrorCode::malformed, "Unexpected database content", why, "--database");
   }
   std::string shown, password;
   for (const PQconninfoOption* option = options.get(); option->keyword; ++option) {
@@ -109,7 +110,8 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
   return shown + "passfile=" + dsn_value(file.string());
 }
 
-// Runs until it ends; `watch` is called now and then. What it says goes to `log`.
+// Runs a program until it ends, and calls `watch` from time to time. The output of the program goes
+// to `log`.
 Result<void> run_program(const std::vector<std::string>& command, const fs::path& log,
                          const Progress& progress, const std::function<void()>& watch) {
   const auto child = STRATA_TRY(spawn(command, DatabaseUser{}, log, SIGKILL));
@@ -131,7 +133,7 @@ Result<void> run_program(const std::vector<std::string>& command, const fs::path
   return fail(ErrorCode::internal, "Not done", name + " failed: " + said);
 }
 
-// The programs must not be older than the server whose data they read.
+// Finds programs that are not older than the server whose data they read.
 Result<fs::path> programs_for(PgConnection& connection) {
   auto version =
       STRATA_TRY(connection.query("SELECT current_setting('server_version_num')::int8 / 10000"));
@@ -139,11 +141,11 @@ Result<fs::path> programs_for(PgConnection& connection) {
   return find_programs(0);
 }
 
-// --- what a database holds
+// --- the content of a database
 
 Result<PgConnection> connect(const std::string& dsn) {
   auto connection = STRATA_TRY(PgConnection::connect(dsn, kMigrationLimits));
-  // Rows are compared as texts: everything that changes how one is written is set.
+  // Rows are compared as text: set everything that changes how a value is written.
   if (auto set = connection.script(
           "SET datestyle = 'ISO'; SET intervalstyle = 'postgres'; SET timezone = 'UTC'; "
           "SET extra_float_digits = 1; SET bytea_output = 'hex'; SET search_path = ''");
@@ -176,8 +178,8 @@ Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progres
   for (const Relation& table : tables) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(double(done) / double(all), "Reading it over");
-    // Sixty bits of a hash of each row, added up: the order of rows does not matter, and two that
-    // are alike do not cancel out.
+    // Add up sixty bits of a hash of each row: the order of the rows has no effect, and two equal
+    // rows do not cancel each other.
     auto sum = STRATA_TRY(connection.query_once(
         "SELECT count(*), coalesce(sum(('x' || left(md5(t::text), 15))::bit(60)::int8), 0)::text FROM ONLY " +
         table.name + " t"));
@@ -198,7 +200,8 @@ Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progres
 
 Result<void> read_dump(const fs::path& file, BackupFacts& facts, Progress& progress) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) return fail(ErrorCode::not_found, "No backup", "Cannot read " + file.string() + ".");
+  if (!in)
+    return fail(ErrorCode::not_found, "Backup not found", "Cannot read " + file.string() + ".");
   std::error_code error;
   const double size = std::max<double>(1, double(fs::file_size(file, error)));
   Sha256Stream digest;
@@ -236,14 +239,14 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
   const auto size = fs::file_size(file, error);
   if (error)
     return fail(
-        ErrorCode::not_found, "No backup",
-        "There is no " + file.string() + ": name a folder that `strata backup` has written.");
+        ErrorCode::not_found, "Backup not found",
+        "There is no " + file.string() + ". Enter a folder that `strata backup` has written.");
   if (size > kMaxManifest) return tl::unexpected(damaged(folder, "the manifest is too large."));
   std::ifstream in(file);
   const json manifest = json::parse(in, nullptr, false);
   try {
     if (manifest.at("format").get<int>() != kFormat)
-      return fail(ErrorCode::invalid, "Another format",
+      return fail(ErrorCode::invalid, "Newer backup format",
                   folder.string() + " was written by a newer version of this program.");
     BackupFacts facts;
     facts.made = manifest.at("made").get<std::string>();
@@ -257,7 +260,8 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
     facts.sequences = manifest.at("sequences").get<std::map<std::string, std::int64_t>>();
     return facts;
   } catch (const json::exception&) {
-    return tl::unexpected(damaged(folder, std::string(kManifest) + " is not what a backup has."));
+    return tl::unexpected(
+        damaged(folder, std::string(kManifest) + " is not the manifest of a backup."));
   }
 }
 
@@ -300,18 +304,18 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
                                  Progress& progress) {
   std::error_code error;
   if (fs::exists(folder, error))
-    return fail(ErrorCode::conflict, "Already there",
-                folder.string() + " exists: a backup makes a folder of its own.", "folder");
+    return fail(ErrorCode::conflict, "Folder already exists",
+                folder.string() + " exists. A backup creates a new folder: enter another path.",
+                "folder");
   auto connection = STRATA_TRY(connect(dsn));
 
-  // Others may read a backup only if they are let: it holds everything, hashes of passwords among
-  // it.
+  // Only the owner can read a backup: it contains everything, also the hashes of passwords.
   fs::path part = folder;
   part += ".part";
-  fs::remove_all(part, error);  // of one that was killed
+  fs::remove_all(part, error);  // left by a process that was killed
   fs::create_directories(fs::absolute(part, error).parent_path(), error);
   if (mkdir(part.c_str(), 0700) != 0)
-    return fail(ErrorCode::internal, "Folder cannot be made",
+    return fail(ErrorCode::internal, "Cannot create folder",
                 part.string() + ": " + std::strerror(errno) + ".", "folder");
   Unfinished unfinished(part);
 
@@ -325,8 +329,8 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   facts.schema_version = state.integer(0, 2);
   facts.server_version = state.text(0, 3);
 
-  // Before the dump: sequences go on, whatever moment is looked at, and the dump's must not stand
-  // behind these.
+  // Read the contents before the dump: sequences are not part of a snapshot. In the dump, they are
+  // then equal to these values or later.
   progress.begin_stage(0, 0.4);
   STRATA_TRY(read_contents(connection, facts, progress));
   progress.begin_stage(0.4, 0.9);
@@ -350,8 +354,8 @@ Result<BackupFacts> check_backup(const fs::path& folder, Progress& progress) {
                                               std::to_string(found.bytes) + " bytes; " +
                                               std::to_string(facts.bytes) + " were written."));
   if (found.sha256 != facts.sha256)
-    return tl::unexpected(
-        damaged(folder, std::string(kDump) + " is not what was written: its checksum differs."));
+    return tl::unexpected(damaged(
+        folder, std::string(kDump) + " has changed since it was written: its checksum differs."));
   return facts;
 }
 
@@ -360,10 +364,11 @@ Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
   auto connection = STRATA_TRY(connect(dsn));
   const auto there = STRATA_TRY(relations(connection, "r"));
   if (!there.empty())
-    return fail(ErrorCode::conflict, "Database not empty",
-                "A backup is restored into an empty database only; this one has the table " +
-                    there.front().name + ".",
-                "--database");
+    return fail(
+        ErrorCode::conflict, "Database not empty",
+        "A backup can be restored into an empty database only. This database has the table " +
+            there.front().name + ".",
+        "--database");
   const auto programs = STRATA_TRY(programs_for(connection));
 
   const auto made = STRATA_TRY(make_scratch());
@@ -382,11 +387,12 @@ Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
   for (const auto& [name, table] : facts.tables)
     if (const auto found = now.tables.find(name);
         found == now.tables.end() || found->second != table)
-      return tl::unexpected(damaged(folder, "the table " + name + " is not what was backed up."));
+      return tl::unexpected(damaged(folder, "the table " + name + " differs from the backup."));
   for (const auto& [name, last] : facts.sequences)
     if (const auto found = now.sequences.find(name);
         found == now.sequences.end() || found->second < last)
-      return tl::unexpected(damaged(folder, "the sequence " + name + " would give numbers again."));
+      return tl::unexpected(
+          damaged(folder, "the sequence " + name + " would assign numbers that are in use."));
   return {};
 }
 

@@ -35,7 +35,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kMaxSocketPathLength = 107;  // sockaddr_un
 constexpr std::uintmax_t kMaxLog = 16u << 20;
 
-// Where the socket lies: in the folder, or in a short one where its path would be too long for a
+// Returns the folder of the socket: `folder`, or a short one if the path would be too long for a
 // socket.
 fs::path socket_folder(const fs::path& folder) {
   if ((folder / ".s.PGSQL.65535.lock").string().size() <= kMaxSocketPathLength) return folder;
@@ -44,13 +44,13 @@ fs::path socket_folder(const fs::path& folder) {
 
 constexpr int kUsualPort = 5432;
 
-// PostgreSQL has one port, which names its socket, too.
+// PostgreSQL uses its port also in the name of its socket.
 std::string dsn_of(const fs::path& sockets, int port, const std::string& database) {
   return "host=" + dsn_value(sockets.string()) + " port=" + std::to_string(port) +
          " user=strata dbname=" + dsn_value(database);
 }
 
-// Of the postmaster that has the data open, from the fourth line of its file.
+// Returns the port of the postmaster that has the data open, from the fourth line of its file.
 int running_port(const fs::path& data) {
   std::ifstream file(data / "postmaster.pid");
   std::string line;
@@ -75,14 +75,14 @@ int version_of(const fs::path& data) {
 struct Cluster::Impl {
   fs::path folder;   // data_dir/postgres
   fs::path data;     // folder/pgdata
-  fs::path sockets;  // folder, or a short one where its path is too long for a socket
+  fs::path sockets;  // `folder`, or a short one if its path is too long for a socket
   fs::path programs;
   fs::path log_file;
   DatabaseUser user;
   std::optional<SqlListen> sql;
   int lock_fd = -1;
 
-  // The keeper thread runs every fork and wait; others hand it work.
+  // The keeper thread runs every fork and wait; other threads queue tasks for it.
   std::thread keeper;
   std::mutex mutex;
   std::condition_variable changed;
@@ -95,7 +95,7 @@ struct Cluster::Impl {
     if (keeper.joinable()) {
       {
         std::lock_guard lock(mutex);
-        watching = false;  // what stops now was asked to
+        watching = false;  // do not restart PostgreSQL during the shutdown
       }
       (void)on_keeper([this] { return stop(); });
       {
@@ -156,19 +156,19 @@ struct Cluster::Impl {
     if (lock_fd < 0 || flock(lock_fd, LOCK_EX | LOCK_NB) != 0)
       return fail(ErrorCode::conflict, "Data folder in use",
                   "Another Strata server uses " + data_dir.string() +
-                      ". Stop it, or choose another --data.");
+                      ". Stop that server, or choose another folder with --data.");
 
     sockets = socket_folder(folder);
     if (sockets != folder) {
       if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user &&
           chown(sockets.c_str(), user.uid, user.gid) != 0)
-        return fail(ErrorCode::internal, "Socket folder not usable",
+        return fail(ErrorCode::internal, "Socket folder unavailable",
                     "Cannot give " + sockets.string() + " to " + user.name + ".");
       struct stat info {};
       if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid ||
           (info.st_mode & 077) != 0)
-        return fail(ErrorCode::internal, "Socket folder not usable",
-                    sockets.string() + " belongs to someone else. Remove it.");
+        return fail(ErrorCode::internal, "Socket folder unavailable",
+                    sockets.string() + " belongs to another user. Remove it.");
     }
     if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kMaxLog)
       fs::rename(log_file, folder / "postgres.log.1", error);
@@ -180,8 +180,8 @@ struct Cluster::Impl {
     return write_access_rules();
   }
 
-  // Who may connect: by the socket, in a folder of the database user's own, the server; by TCP
-  // analysts alone.
+  // Writes the access rules: the server connects by the socket, in a folder that only the database
+  // user can enter; analysts, and nobody else, connect by TCP.
   Result<void> write_access_rules() {
     std::ofstream file(access_rules(), std::ios::trunc);
     file << "local all all trust\n";
@@ -197,8 +197,8 @@ struct Cluster::Impl {
   }
   fs::path access_rules() const { return folder / "access.conf"; }
 
-  // In a folder of another name first: an initdb cut short leaves nothing that looks like a
-  // database.
+  // Runs initdb in a folder of another name first: an interrupted initdb leaves nothing that looks
+  // like a database.
   Result<void> initialise() {
     const fs::path fresh = folder / "pgdata.new";
     std::error_code error;
@@ -210,11 +210,11 @@ struct Cluster::Impl {
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     if (status != 0)
-      return fail(ErrorCode::internal, "Database not made",
+      return fail(ErrorCode::internal, "Database not created",
                   "initdb failed in " + folder.string() + ": " + tail(log_file));
     fs::rename(fresh, data, error);
     if (error)
-      return fail(ErrorCode::internal, "Database not made",
+      return fail(ErrorCode::internal, "Database not created",
                   "Cannot rename " + fresh.string() + ": " + error.message() + ".");
     return {};
   }
@@ -229,8 +229,8 @@ struct Cluster::Impl {
     return false;
   }
 
-  // The one that answers is ours, not one that a killed server left behind and that is still
-  // ending.
+  // Returns true if the running server is ours, and not a server that a killed process left and
+  // that has not ended yet.
   bool owns_data() const {
     pid_t owner = 0;
     std::ifstream(data / "postmaster.pid") >> owner;
@@ -240,8 +240,8 @@ struct Cluster::Impl {
   int port() const { return sql ? sql->port : kUsualPort; }
   std::string dsn(const std::string& database) const { return dsn_of(sockets, port(), database); }
 
-  // After a `kill -9` of the postmaster its orphans hold the lock file and the shared memory until
-  // they notice, so a start that fails at once is tried again every 100 ms.
+  // Starts PostgreSQL. After a `kill -9` of the postmaster, its orphans hold the lock file and the
+  // shared memory for a while, so a start that fails at once is repeated every 100 ms.
   Result<void> run() {
     if (running()) return {};
     const auto deadline = Clock::now() + 30s;
@@ -273,7 +273,7 @@ struct Cluster::Impl {
       if (!child) return tl::unexpected(child.error());
       postmaster = *child;
       // Replaying the log after a crash may take minutes; it ends by itself, or the postmaster
-      // does.
+      // ends.
       while (running()) {
         if (owns_data() && PQping(dsn("postgres").c_str()) == PQPING_OK) return {};
         std::this_thread::sleep_for(10ms);
@@ -285,8 +285,8 @@ struct Cluster::Impl {
     }
   }
 
-  // Fast: ends sessions, writes a checkpoint. One that hangs is ended less gently; its log makes
-  // that whole at the next start.
+  // Stops PostgreSQL with a fast shutdown, which ends sessions and writes a checkpoint. If it does
+  // not end, stronger signals follow; then the next start recovers the data from the log.
   Result<void> stop() {
     for (const auto& [signal_number, patience] :
          {std::pair{SIGINT, 30s}, std::pair{SIGQUIT, 5s}, std::pair{SIGKILL, 5s}}) {

@@ -30,10 +30,9 @@ Result<DatabaseUser> database_user() {
   }
   const passwd* entry = getpwnam("postgres");
   if (!entry)
-    return fail(
-        ErrorCode::internal, "No database user",
-        "PostgreSQL refuses to run as root and there is no user `postgres`. Install postgresql, run Strata as "
-        "another user, or give --database.");
+    return fail(ErrorCode::internal, "No database user",
+                "PostgreSQL does not run as root, and there is no user `postgres`. Install "
+                "postgresql, run Strata as another user, or use --database.");
   user.switch_user = true;
   user.name = entry->pw_name;
   user.uid = entry->pw_uid;
@@ -45,7 +44,7 @@ Result<DatabaseUser> database_user() {
   return user;
 }
 
-Result<fs::path> find_programs(int wanted_major) {
+Result<fs::path> find_programs(int expected_major) {
   int best = 0;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator("/usr/lib/postgresql", error)) {
@@ -54,10 +53,10 @@ Result<fs::path> find_programs(int wanted_major) {
         !fs::exists(entry.path() / "bin/postgres", error))
       continue;
     const int major = std::stoi(version);
-    if (major > best && (wanted_major == 0 || major == wanted_major)) best = major;
+    if (major > best && (expected_major == 0 || major == expected_major)) best = major;
   }
   if (best > 0) return fs::path("/usr/lib/postgresql") / std::to_string(best) / "bin";
-  if (const char* path = std::getenv("PATH"); path && wanted_major == 0) {
+  if (const char* path = std::getenv("PATH"); path && expected_major == 0) {
     std::string rest = path;
     while (!rest.empty()) {
       const fs::path folder = rest.substr(0, rest.find(':'));
@@ -67,17 +66,17 @@ Result<fs::path> find_programs(int wanted_major) {
     }
   }
   const std::string which =
-      wanted_major ? "PostgreSQL " + std::to_string(wanted_major) + ", which wrote the data,"
-                   : "PostgreSQL";
-  return fail(
-      ErrorCode::internal, "PostgreSQL missing",
-      which +
-          " is not installed (looked in /usr/lib/postgresql/*/bin). Install postgresql, or give --database.");
+      expected_major ? "PostgreSQL " + std::to_string(expected_major) + ", which wrote the data,"
+                     : "PostgreSQL";
+  return fail(ErrorCode::internal, "PostgreSQL missing",
+              which +
+                  " is not installed (Strata searched /usr/lib/postgresql/*/bin). Install "
+                  "postgresql, or use --database.");
 }
 
 namespace {
 
-// Only system calls here: other threads may hold the locks of malloc and stdio at the time of the
+// Makes only system calls: other threads may hold the locks of malloc and stdio at the time of the
 // fork.
 bool become(const DatabaseUser& user) {
   if (!user.switch_user) return true;
@@ -89,26 +88,26 @@ bool become(const DatabaseUser& user) {
 
 Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   std::error_code error;
-  // Every folder made here can be passed through by the database user; what is in them decides for
-  // itself.
+  // The database user can pass through every folder that is made here; the permissions of the
+  // folders inside protect the content.
   fs::path made;
   for (const auto& part : folder) {
     made /= part;
     if (fs::exists(made, error)) continue;
     if (mkdir(made.c_str(), 0755) != 0 && errno != EEXIST)
-      return fail(ErrorCode::internal, "Data folder not usable",
+      return fail(ErrorCode::internal, "Data folder unavailable",
                   "Cannot make " + made.string() + ": " + std::strerror(errno) + ".");
     chmod(made.c_str(), 0755);
   }
   struct stat info {};
   if (lstat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
-    return fail(ErrorCode::internal, "Data folder not usable",
+    return fail(ErrorCode::internal, "Data folder unavailable",
                 folder.string() + " is not a folder.");
   if ((user.switch_user && info.st_uid != user.uid &&
        chown(folder.c_str(), user.uid, user.gid) != 0) ||
       chmod(folder.c_str(), 0700) != 0)
     return fail(
-        ErrorCode::internal, "Data folder not usable",
+        ErrorCode::internal, "Data folder unavailable",
         "Cannot give " + folder.string() + " to " + user.name + ": " + std::strerror(errno) + ".");
 
   const pid_t child = fork();
@@ -131,14 +130,14 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   std::vector<char*> environment;
-  // PGDATA, PGPORT… are someone else's
+  // PGDATA, PGPORT… belong to other programs
   for (char** variable = environ; *variable; ++variable)
     if (std::strncmp(*variable, "PG", 2) != 0) environment.push_back(*variable);
   environment.push_back(nullptr);
 
   const int output = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
   if (output < 0)
-    return fail(ErrorCode::internal, "Data folder not usable",
+    return fail(ErrorCode::internal, "Data folder unavailable",
                 "Cannot write " + log.string() + ": " + std::strerror(errno));
   const pid_t parent = getpid();
   const pid_t child = fork();
@@ -153,7 +152,7 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
     for (int fd = 3; fd < 4096; ++fd) close(fd);
     if (!become(user)) _exit(126);
     prctl(PR_SET_PDEATHSIG, death_signal);  // after setuid, which clears it
-    if (getppid() != parent) _exit(126);    // died meanwhile
+    if (getppid() != parent) _exit(126);    // the parent died before prctl
     umask(0077);
     if (chdir("/") != 0) _exit(126);
     execve(arguments[0], arguments.data(), environment.data());

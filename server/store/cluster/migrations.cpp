@@ -13,14 +13,14 @@
 namespace strata::store {
 namespace {
 
-// Any fixed number: the lock that every starting server takes.
+// The advisory lock that every starting server takes; the number is arbitrary but fixed.
 constexpr const char* kLock = "SELECT pg_advisory_lock(7130915062201)";
 constexpr const char* kUnlock = "SELECT pg_advisory_unlock(7130915062201)";
 
 Result<Migration> parse(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   const auto bad = [&](const std::string& why) {
-    return fail(ErrorCode::internal, "Bad migration", name + ": " + why, "migrations");
+    return fail(ErrorCode::internal, "Invalid migration", name + ": " + why, "migrations");
   };
   std::ifstream in(file, std::ios::binary);
   std::stringstream content;
@@ -86,15 +86,15 @@ Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<
   for (const auto& [version, sum] : applied) {
     const auto ours = std::ranges::find(known, version, &Migration::version);
     if (ours == known.end())
-      return fail(ErrorCode::conflict, "Schema too new",
+      return fail(ErrorCode::conflict, "Database is newer",
                   "The database has migration " + version +
                       ", which this version of Strata does not know. "
                       "Start the version that wrote it, or a later one.");
     if (!sum.empty() && sum != ours->sha256)
       return fail(ErrorCode::conflict, "Migration changed",
                   "Migration " + ours->name +
-                      " was applied with another content. Applied migrations must never be "
-                      "edited: restore the file and put the change into a new one.");
+                      " has changed since it was applied. Do not edit applied migrations: restore "
+                      "the file and put the change into a new migration.");
     if (sum.empty()) {  // applied by dbmate
       STRATA_TRY(connection.query("INSERT INTO schema_checksums (version, sha256) VALUES ($1, $2)",
                                   Params().text(version).text(ours->sha256)));
@@ -120,21 +120,23 @@ Result<std::vector<Migration>> read_migrations(const std::filesystem::path& fold
   }
   if (error || migrations.empty())
     return fail(ErrorCode::internal, "No migrations",
-                "No migration files in " + folder.string() + ": is the installation complete?");
+                "There are no migration files in " + folder.string() +
+                    ". Check that the installation is complete.");
   std::sort(migrations.begin(), migrations.end(), [](const Migration& a, const Migration& b) {
     return std::stoll(a.version) < std::stoll(b.version);
   });
   for (std::size_t i = 1; i < migrations.size(); ++i)
     if (std::stoll(migrations[i - 1].version) == std::stoll(migrations[i].version))
-      return fail(ErrorCode::internal, "Bad migration",
-                  migrations[i - 1].name + " and " + migrations[i].name + " have one version.");
+      return fail(
+          ErrorCode::internal, "Invalid migration",
+          migrations[i - 1].name + " and " + migrations[i].name + " have the same version.");
   return migrations;
 }
 
 Result<std::int64_t> migrate(PgConnection& connection, const std::vector<Migration>& known) {
   STRATA_TRY(connection.script(kLock));
   auto outcome = migrate_locked(connection, known);
-  (void)connection.script(kUnlock);  // a broken connection has lost its lock with it
+  (void)connection.script(kUnlock);  // a broken connection has already released its lock
   return outcome;
 }
 

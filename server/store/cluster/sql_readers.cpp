@@ -16,7 +16,7 @@ namespace {
 
 Result<std::string> password_in(const fs::path& file) {
   const auto trouble = [&](const char* why) {
-    return fail(ErrorCode::internal, "Password not usable", file.string() + " " + why,
+    return fail(ErrorCode::internal, "Invalid password file", file.string() + " " + why,
                 "--sql-listen");
   };
   std::error_code error;
@@ -31,7 +31,8 @@ Result<std::string> password_in(const fs::path& file) {
   }
   struct stat info {};
   if (stat(file.c_str(), &info) != 0 || (info.st_mode & 077) != 0)
-    return trouble("can be read by others. Remove it, and a new password is made.");
+    return trouble(
+        "can be read by other users. Remove it; the server then creates a new password.");
   std::string password;
   std::ifstream(file) >> password;
   const auto is_plain = [](char c) {
@@ -40,13 +41,14 @@ Result<std::string> password_in(const fs::path& file) {
   };
   if (password.size() < 16 || !std::ranges::all_of(password, is_plain))
     return trouble(
-        "holds no password of 16 letters, digits, - and _ or more. Remove it, and a new one is made.");
+        "does not contain a password of at least 16 letters, digits, - and _. Remove "
+        "it; the server then creates a new password.");
   return password;
 }
 
 }  // namespace
 
-// Identifiers and settings are ours; the password has no character that means anything in SQL.
+// The identifiers and settings are constants; the password has no character that is special in SQL.
 Result<void> admit_readers(const std::string& dsn, const fs::path& password_file) {
   const auto password = STRATA_TRY(password_in(password_file));
   auto connection = STRATA_TRY(PgConnection::connect(dsn));
@@ -74,8 +76,8 @@ Result<void> admit_readers(const std::string& dsn, const fs::path& password_file
          "; "
          "ALTER DEFAULT PRIVILEGES IN SCHEMA analysis GRANT SELECT ON TABLES TO " +
          role + "; ";
-  // Functions that everybody may call in a fresh database, and that keep something or hold others
-  // up.
+  // Revoke functions that everybody may call in a fresh database and that store data or block other
+  // sessions.
   sql +=
       "DO $$ DECLARE f regprocedure; BEGIN FOR f IN SELECT p.oid::regprocedure FROM pg_proc p "
       "WHERE p.pronamespace = 'pg_catalog'::regnamespace AND p.proname ~ '^(lo_|lowrite|loread|pg_(try_)?advisory_|pg_notify)' "

@@ -6,8 +6,8 @@ namespace {
 
 Result<void> check_key(const std::string& key) {
   if (key.empty() || key.size() > kMaxNameLength)
-    return fail(ErrorCode::malformed, "Bad Idempotency-Key",
-                "An Idempotency-Key has 1 to 255 bytes.", "Idempotency-Key");
+    return fail(ErrorCode::malformed, "Invalid Idempotency-Key",
+                "An Idempotency-Key must have 1 to 255 bytes.", "Idempotency-Key");
   return check_text(key, "Idempotency-Key");
 }
 
@@ -24,8 +24,8 @@ Result<std::optional<nlohmann::json>> Answers::find(const std::string& key) {
   });
 }
 
-// Those past their time make room. Another server may be doing the same: each takes what the other
-// has not.
+// Deletes some expired answers first. Another server may do the same: each skips the rows that the
+// other has locked.
 Result<void> insert_answer(PgConnection& connection, const std::string& key,
                            const nlohmann::json& answer) {
   STRATA_TRY(check_key(key));
@@ -33,14 +33,15 @@ Result<void> insert_answer(PgConnection& connection, const std::string& key,
   STRATA_TRY(connection.query(
       "DELETE FROM answers WHERE key IN (SELECT key FROM answers "
       "WHERE time <= now() - interval '7 days' LIMIT 1000 FOR UPDATE SKIP LOCKED)"));
-  auto kept = STRATA_TRY(
+  auto inserted = STRATA_TRY(
       connection.query("INSERT INTO answers (key, answer) VALUES ($1, $2) "
                        "ON CONFLICT (key) DO UPDATE SET answer = excluded.answer, time = now() "
                        "WHERE answers.time <= now() - interval '7 days'",
                        Params().text(key).json(answer)));
-  if (kept.affected() == 0)
-    return fail(ErrorCode::conflict, "Done already",
-                "Another call with this Idempotency-Key was quicker; ask again for its answer.",
+  if (inserted.affected() == 0)
+    return fail(ErrorCode::conflict, "Already done",
+                "Another request with this Idempotency-Key was faster. Send the request again "
+                "to get its answer.",
                 "Idempotency-Key");
   return {};
 }

@@ -10,8 +10,8 @@ namespace strata::store {
 
 class Pool;
 
-// Answers to changing HTTP calls, by Idempotency-Key; kept for 7 days. Part of Store: its rules
-// for threads and errors hold.
+// Answers to HTTP calls that change something, by Idempotency-Key; kept for 7 days. Part of Store:
+// its rules for threads and errors hold.
 class Answers {
  public:
   explicit Answers(Pool& pool) : pool_(pool) {}

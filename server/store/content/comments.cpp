@@ -6,21 +6,21 @@
 #include "store/pg/sql.h"
 #include "store/store_impl.h"
 
-// A thread's first comment is locked by whoever adds or takes away a reply, so that it is not
-// deleted, or kept, for what is no longer so.
+// A transaction that adds or removes a reply locks the thread's first comment, so that its replies
+// cannot change between the check whether it is deleted or kept and the commit.
 
 namespace strata::store {
 namespace {
 
 constexpr std::size_t kMaxTextLength = 10'000;  // characters
 
-// Who sees the layer that the thread is about, in the Trash or not, sees the thread. Also of a
-// comment that a statement has just made.
+// The visibility of a thread is that of the layer that it is about, in the Trash or not. This also
+// works for a comment that the same statement has just made.
 constexpr auto kCommentVisibility = sql(
     "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) "
     "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "
     "WHERE f.id = c.thread_id) END");
-// One in the Trash is not told, and is there again when it comes back.
+// A layer in the Trash is not returned; it is returned again when it is restored.
 constexpr auto kCommentLayer = sql("(SELECT id FROM layers WHERE id = c.layer_id) AS layer_id");
 constexpr auto kCommentColumns = sql(
     "c.id, c.model_id, c.thread_id, c.position, c.normal, ", kCommentLayer,
@@ -43,7 +43,7 @@ Comment read_comment(const PgResult& rows, int i) {
   comment.layer_id = row.id<std::optional<LayerId>>();
   comment.table_id = row.id<std::optional<TableId>>();
   const auto record = row.optional_integer();
-  // A key says nothing without its table, which may have been deleted.
+  // A key has no meaning without its table, which may have been deleted.
   if (comment.table_id) comment.record = record;
   comment.text = row.text();
   comment.user = row.text();
@@ -54,7 +54,7 @@ Comment read_comment(const PgResult& rows, int i) {
   const auto resolved_by = row.optional_text();
   if (resolved && resolved_by) comment.resolved = {*resolved_by, *resolved};
   comment.version = row.integer();
-  // What cannot be told is not shown.
+  // An unknown visibility counts as the most restricted one.
   comment.visibility = parse_visibility(row.text()).value_or(Visibility::curators);
   return comment;
 }
@@ -68,21 +68,22 @@ PgArray array_of(const glm::dvec3& point) {
 Result<void> check_words(const std::string& text) {
   STRATA_TRY(check_text(text, "text"));
   if (text.find_first_not_of(" \t\r\n\v\f") == std::string::npos)
-    return fail(ErrorCode::invalid, "Nothing written", "`text` is blank.", "text");
+    return fail(ErrorCode::invalid, "Text missing", "`text` is empty. Enter a text.", "text");
   const auto begins_character = [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
   };
   if (static_cast<std::size_t>(std::ranges::count_if(text, begins_character)) > kMaxTextLength)
     return fail(ErrorCode::invalid, "Text too long",
-                "`text` has at most " + std::to_string(kMaxTextLength) + " characters.", "text");
+                "`text` can have at most " + std::to_string(kMaxTextLength) + " characters.",
+                "text");
   return {};
 }
 
-// One of a model that is there.
+// Finds a comment of a model that is not in the Trash.
 constexpr auto kComment =
     sql("FROM comments c WHERE id = $1 AND EXISTS (SELECT 1 FROM models WHERE id = c.model_id)");
 
-enum class Lock { none, keep, change };  // `keep`: it stays while this transaction lasts
+enum class Lock { none, keep, change };  // `keep`: it cannot change while this transaction lasts
 
 Result<Comment> load(PgConnection& connection, CommentId id, Lock lock) {
   constexpr auto kRead = sql("SELECT ", kCommentColumns, " ", kComment);
@@ -100,7 +101,7 @@ Result<Comment> load_thread(PgConnection& connection, CommentId id, Lock lock) {
   auto first = load(connection, id, lock);
   if (first && first->thread)
     return fail(ErrorCode::invalid, "A reply",
-                "Replies are to the first comment of a thread, which is " +
+                "You can reply only to the first comment of a thread, which is " +
                     to_string(*first->thread) + " here.");
   return first;
 }
@@ -117,8 +118,8 @@ Result<Comments::Page> page_of(Result<PgResult> total, Result<PgResult> rows) {
 }  // namespace
 
 Result<Comments::Page> Comments::of_model(ModelId model_id, Role seen_by, const Query& query) {
-  // Clients get times in milliseconds, so `since` includes changes of that millisecond.
-  constexpr auto kAskedComments = sql(
+  // Clients receive times in milliseconds, so `since` includes changes of that millisecond.
+  constexpr auto kMatchingComments = sql(
       " FROM comments c JOIN comments first ON first.id = coalesce(c.thread_id, c.id) WHERE c.model_id = $1"
       " AND ($2::text IS NULL OR ($2 = 'resolved') = (first.resolved IS NOT NULL))"
       " AND ($3::text IS NULL OR date_trunc('milliseconds', c.changed) >= $3::timestamptz)"
@@ -127,13 +128,13 @@ Result<Comments::Page> Comments::of_model(ModelId model_id, Role seen_by, const 
   std::optional<std::string> state;
   if (query.resolved) state = *query.resolved ? "resolved" : "open";
   return pool_.read([&](PgConnection& connection) {
-    auto total = connection.query(sql("SELECT count(*)", kAskedComments),
+    auto total = connection.query(sql("SELECT count(*)", kMatchingComments),
                                   Params()
                                       .id(model_id)
                                       .optional_text(state)
                                       .optional_text(query.since)
                                       .array(visibilities_seen_by(seen_by)));
-    auto rows = connection.query(sql("SELECT ", kCommentColumns, kAskedComments,
+    auto rows = connection.query(sql("SELECT ", kCommentColumns, kMatchingComments,
                                      " AND c.id > $7 ORDER BY c.id LIMIT $5 OFFSET $6"),
                                  Params()
                                      .id(model_id)
@@ -180,7 +181,7 @@ Result<Comment> Comments::create(const Comment& comment,
       auto first = STRATA_TRY(load_thread(connection, *comment.thread, Lock::keep));
       model_id = first.model_id;
     }
-    // Locked, so that of two at once the later one counts the earlier.
+    // Locked, so that the later of two concurrent transactions counts the comment of the earlier.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(model_id)));
     if (model.rows() == 0) return no_such("model", to_string(model_id));
@@ -188,7 +189,7 @@ Result<Comment> Comments::create(const Comment& comment,
                                              Params().id(model_id)));
     if (count.integer(0, 0) >= kMaxComments)
       return fail(ErrorCode::conflict, "Too many comments",
-                  "A model holds at most " + std::to_string(kMaxComments) +
+                  "A model can have at most " + std::to_string(kMaxComments) +
                       " comments. Delete some first.");
     PgArray position(oid::kFloat8), normal(oid::kFloat8);
     if (comment.place) {
@@ -246,8 +247,9 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
     auto now = STRATA_TRY(comment.thread ? load(connection, comment.id, Lock::change) : first);
     if (now.version != comment.version) return stale("comment");
     if (now.deleted)
-      return fail(ErrorCode::conflict, "Deleted already",
-                  "The comment was deleted; it stands there for its replies until they are.");
+      return fail(
+          ErrorCode::conflict, "Already deleted",
+          "Somebody deleted this comment. It disappears when its replies are deleted, too.");
     auto others =
         connection.query("SELECT count(*) FROM comments WHERE thread_id = $1 AND id <> $2",
                          Params().id(thread).id(comment.id));

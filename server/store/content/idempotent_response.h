@@ -9,19 +9,19 @@
 
 namespace strata::store {
 
-// The answer to a call with an Idempotency-Key, kept in the transaction of the call's effect:
-// either both are there or neither, whatever dies in between. `make` turns the effect (what was
-// created or changed) into the answer; it may run more than once.
+// The answer to a call with an Idempotency-Key, stored in the transaction of the call's effect:
+// after a crash, either both exist or neither does. `make` turns the effect (the created or changed
+// object) into the answer; it may run more than once.
 template <class... Effect>
 struct IdempotentResponse {
-  std::string key;  // empty: none is kept
+  std::string key;  // empty: no answer is stored
   std::function<nlohmann::json(const Effect&...)> make;
-  // Who asked, for the project's activity; empty: nobody, so that what is changed is not told
-  // there, and what is made or deleted is by no name. (Entries of journals have names of their
-  // own.)
+  // The user who made the call, for the project's activity. Empty: the activity does not list
+  // changes, and lists creations and deletions without a name. (Journal entries have a separate
+  // user name.)
   std::string user{};
-  // The job that does it, of the jobs that are kept: in the same transaction it is done, and `make`
-  // says what it made. 0: no job.
+  // The stored job that does this work: the same transaction marks it as done, with `make` as its
+  // result. 0: no job.
   JobId job = 0;
 };
 

@@ -24,30 +24,30 @@ Result<std::vector<StoredJob>> Jobs::take_over(int most) {
 
 Result<void> Jobs::begin(const StoredJob& job) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    auto kept = STRATA_TRY(connection.query(
+    auto inserted = STRATA_TRY(connection.query(
         "INSERT INTO jobs (id, project_id, user_name, kind) SELECT $1, id, $3, $4 FROM projects WHERE id = $2",
         Params().id(job.id).id(job.project_id).text(job.user).text(job.kind)));
-    return kept.affected() > 0 ? Result<void>() : no_such("project", to_string(job.project_id));
+    return inserted.affected() > 0 ? Result<void>() : no_such("project", to_string(job.project_id));
   });
 }
 
 Result<void> Jobs::end(const StoredJob& job) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    auto kept = connection.query(
+    auto updated = connection.query(
         "UPDATE jobs SET state = $2, problem = nullif($3, 'null'), result = nullif($4, 'null'), ended = now() "
         "WHERE id = $1 AND (state = 'begun' OR ($2 = 'done' AND state = 'done'))",
         Params().id(job.id).text(job.state).json(job.problem).json(job.result));
-    return kept ? Result<void>() : tl::unexpected(kept.error());
+    return updated ? Result<void>() : tl::unexpected(updated.error());
   });
 }
 
 Result<void> finish_job(PgConnection& connection, JobId job, nlohmann::json result) {
   result.erase("request");
   STRATA_TRY(check_json(result, "result"));
-  auto kept =
+  auto updated =
       connection.query("UPDATE jobs SET state = 'done', result = $2, ended = now() WHERE id = $1",
                        Params().id(job).json(result));
-  return kept ? Result<void>() : tl::unexpected(kept.error());
+  return updated ? Result<void>() : tl::unexpected(updated.error());
 }
 
 }  // namespace strata::store

@@ -9,7 +9,7 @@
 namespace strata::store {
 namespace {
 
-// Something that a computed layer reads is newer than it, or gone.
+// True if an input of a computed layer is newer than the layer, or deleted.
 constexpr auto kLayerStale = sql(
     "(expression IS NOT NULL AND (computed_sequence = 0 OR EXISTS (SELECT 1 FROM layer_inputs i LEFT JOIN layers l ON "
     "l.id = i.input_id LEFT JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND (l.id IS NULL OR "
@@ -27,7 +27,8 @@ constexpr auto kLayerColumns = sql(
     "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') "
     "FROM layer_inputs i WHERE i.layer_id = layers.id)");
 
-// A palette without points is that of the terms, where the layer's table is a list of such.
+// Replaces a palette without points by the palette of the terms, if the layer's table is a term
+// list.
 Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
   if (!layer.table || !takes_term_colors(layer.palette)) return {};
   auto palette = STRATA_TRY(term_palette_of(connection, *layer.table));
@@ -36,7 +37,7 @@ Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
   return {};
 }
 
-// As it is kept: one of the terms has no points of its own.
+// Returns the palette as stored: a palette of terms has no points.
 nlohmann::json palette_to_keep(const Layer& layer) {
   if (!layer.palette_of_terms) return to_json(layer.palette);
   return to_json(terms_palette({}));
@@ -74,7 +75,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.sequence = row.integer();
   layer.version = row.integer();
   layer.locked = row.boolean();
-  // What cannot be told is not shown.
+  // An unknown visibility counts as the most restricted one.
   layer.visibility = parse_visibility(row.text()).value_or(Visibility::curators);
   layer.review = row.boolean();
   layer.labels = row.json().get<Labels>();
@@ -106,8 +107,8 @@ Result<Layer> load_layer(PgConnection& connection, LayerId id) {
   return read_layer(connection, row, 0);
 }
 
-// What the layer is computed from, in place of what it was computed from before. Refused (invalid):
-// a layer that is computed from itself, however many others stand between.
+// Replaces the layer's formula and its inputs. Refused (invalid): a layer that is computed from
+// itself, directly or through other layers.
 Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   auto gone =
       connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().id(layer.id));
@@ -118,7 +119,7 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
         Params().id(layer.id));
     return plain ? Result<void>{} : tl::unexpected(plain.error());
   }
-  // One at a time in a model: two changes that make a circle only together are not done together.
+  // Lock the model, so that two concurrent changes cannot create a cycle together.
   STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                               Params().id(layer.model_id)));
   for (const LayerFormula::Input& input : layer.formula->inputs) {
@@ -132,7 +133,7 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
       Params().id(layer.id)));
   if (circle.rows() > 0)
     return fail(ErrorCode::invalid, "Computed from itself",
-                "This expression reads layers that are computed from " + layer.name + ".",
+                "This expression reads a layer that is computed from " + layer.name + ".",
                 "expression");
   auto set = connection.query(
       "UPDATE layers SET expression = $2, automatic = $3, computed_sequence = 0 WHERE id = $1",
@@ -143,20 +144,20 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
 constexpr std::size_t kMaxDescriptionLength = 40000;  // bytes of 10000 characters
 Result<void> keep_origin(PgConnection& connection, LayerId layer_id, const Layer& layer) {
   if (!layer.origin) return {};
-  auto kept = connection.query(
+  auto inserted = connection.query(
       "INSERT INTO layer_origins (layer_id, origin, edited_by_hand) VALUES ($1, $2, $3) ON CONFLICT (layer_id) "
       "DO UPDATE SET origin = excluded.origin, edited_by_hand = excluded.edited_by_hand",
       Params()
           .id(layer_id)
           .text(*layer.origin == LayerOrigin::shape ? "shape" : "expression")
           .boolean(layer.edited_by_hand));
-  return kept ? Result<void>{} : tl::unexpected(kept.error());
+  return inserted ? Result<void>{} : tl::unexpected(inserted.error());
 }
 
 Result<void> check(const Layer& layer) {
   STRATA_TRY(check_name(layer.name));
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
-    return fail(ErrorCode::malformed, "Bad opacity", "`opacity` must be between 0 and 1.",
+    return fail(ErrorCode::malformed, "Invalid opacity", "`opacity` must be between 0 and 1.",
                 "opacity");
   STRATA_TRY(check_json(to_json(layer.palette), "palette"));
   STRATA_TRY(check_labels(layer.labels));
@@ -174,7 +175,7 @@ bool same_formula(const std::optional<LayerFormula>& a, const std::optional<Laye
                  a->inputs == b->inputs));
 }
 
-// The table of a database layer: of its model's project, or a new one.
+// Finds the table of a database layer in its model's project, or makes a new one.
 Result<void> find_table(PgConnection& connection, Layer& layer, ProjectId project_id,
                         const std::vector<Column>& columns) {
   if (!layer.table) {
@@ -190,7 +191,7 @@ Result<void> find_table(PgConnection& connection, Layer& layer, ProjectId projec
       "SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2 FOR KEY SHARE",
       Params().id(*layer.table).id(project_id)));
   if (known.rows() == 0)
-    return fail(ErrorCode::invalid, "No such table",
+    return fail(ErrorCode::invalid, "Table not found",
                 "The model's project has no table " + to_string(*layer.table) + ".", "table");
   return {};
 }
@@ -341,7 +342,8 @@ Result<Layer> Layers::set_computed(LayerId layer_id, const std::string& expressi
     STRATA_TRY(connection.query(
         "UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
         Params().id(layer_id).text(expression).integer(sequence)));
-    // What was edited by hand is overwritten, and as it was when it was made.
+    // The new content overwrites edits made by hand; the layer is locked again, as it was when it
+    // was made.
     STRATA_TRY(connection.query(
         "WITH whole AS (UPDATE layer_origins SET edited_by_hand = false WHERE layer_id = $1 AND edited_by_hand RETURNING layer_id) "
         "UPDATE layers SET locked = true, version = version + 1 FROM whole WHERE id = whole.layer_id",
@@ -382,7 +384,7 @@ namespace {
 
 constexpr int kRevisionsAtOnce = 256;
 
-// Bits of differences become those of the wider type as they are: the bits above are the same
+// Converts differences to the wider type without changing their bits: the bits above are the same
 // before and after.
 Result<void> widen_revisions(PgConnection& connection, const Layer& layer, ValueType type) {
   for (std::int64_t y = -1, x = 0, sequence = 0;;) {

@@ -55,7 +55,7 @@ Model read_model(const PgResult& rows, int i) {
   for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method,
                             &m.accuracy, &m.processing, &m.rights_uri, &m.credit})
     *text = row.text();
-  // What cannot be told is not given away.
+  // An unknown role must not make the files downloadable for more roles.
   m.source_download = parse_role(row.text()).value_or(Role::curator);
   m.sequence = row.integer();
   m.version = row.integer();
@@ -69,7 +69,7 @@ Model read_model(const PgResult& rows, int i) {
 Result<void> check(const Model& m) {
   STRATA_TRY(check_name(m.name));
   if (!is_up(m.up))
-    return fail(ErrorCode::malformed, "Bad direction",
+    return fail(ErrorCode::malformed, "Invalid direction",
                 "`up` must be one of x, y, z, -x, -y and -z.", "up");
   for (const auto& repair : m.repairs) STRATA_TRY(check_text(repair.what, "repairs"));
   return check_texts({{&m.slug, "slug"},
@@ -87,7 +87,7 @@ Result<void> check(const Model& m) {
                       {&m.atlas.source, "atlas"}});
 }
 
-// What can be changed later: $1 name, $2 slug, … $20 source_download.
+// Metadata that can be changed later: $1 name, $2 slug, … $20 source_download.
 Params metadata(const Model& m, const std::string& slug) {
   Params params;
   params.text(m.name)
@@ -171,18 +171,18 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
   STRATA_TRY(check(fresh.model));
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kMaxNameLength)
-      return fail(ErrorCode::malformed, "Bad file name", "A file's name must have 1 to 255 bytes.",
-                  "source_files");
+      return fail(ErrorCode::malformed, "Invalid file name",
+                  "The name of a file must have 1 to 255 bytes.", "source_files");
     STRATA_TRY(check_text(source.name, "source_files"));
   }
   if (fresh.images.size() > SurfaceImages::kMaxSurfaceImages)
     return fail(ErrorCode::invalid, "Too many surface images",
-                "A model holds at most " + std::to_string(SurfaceImages::kMaxSurfaceImages) +
+                "A model can have at most " + std::to_string(SurfaceImages::kMaxSurfaceImages) +
                     " surface images.",
                 "looks");
   for (std::size_t i = 0; i < fresh.images.size(); ++i)
     STRATA_TRY(check_surface_image(surface_image_of(fresh.images[i], i)));
-  // The geometry, its coarser copies, the looks, the source files.
+  // The geometry, its coarser copies, the surface images, the source files.
   std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
   for (const auto& level : fresh.detail_levels) contents.push_back(content_of(Bytes(level)));
   const std::size_t first_surface_image = contents.size();
@@ -268,9 +268,9 @@ Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
         "LIMIT 1",
         Params().id(m.id).id(m.project_id)));
     if (layer.rows() > 0)
-      return fail(ErrorCode::conflict, "Tables stay",
+      return fail(ErrorCode::conflict, "Tables belong to project",
                   "The keys of the layer " + layer.text(0, 0) +
-                      " are of a table of the model's present project.",
+                      " belong to a table of the current project of the model.",
                   "project");
     return now;
   });

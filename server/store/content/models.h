@@ -18,22 +18,21 @@ namespace strata::store {
 class Pool;
 
 struct NewModel {
-  Model model;                         // id 0; slug wished, made unique
+  Model model;                         // id 0; the slug is a suggestion, made unique
   std::vector<std::uint8_t> geometry;  // mesh::encode_geometry
   std::vector<std::vector<std::uint8_t>>
-      detail_levels;  // of mesh::make_detail_levels, encoded likewise, finest first
+      detail_levels;  // of mesh::make_detail_levels, encoded in the same way, finest first
   struct Source {
     std::string name;
     std::filesystem::path file;
   };
-  std::vector<Source> sources;  // streamed in bit for bit, hashed on the way
+  std::vector<Source> sources;  // streamed and hashed bit for bit
   struct NewSurfaceImage {
     std::string name, media_type;     // "image/jpeg" or "image/png"
     std::vector<std::uint8_t> bytes;  // of the encoded picture
     int width = 0, height = 0;
   };
-  std::vector<NewSurfaceImage>
-      images;  // bottom to top; the first is shown, the others wait to be chosen
+  std::vector<NewSurfaceImage> images;  // bottom to top; only the first is visible at first
 };
 
 // 3D models with their geometry and source files. Part of Store: its rules for threads and errors
@@ -47,12 +46,12 @@ class Models {
   Result<std::vector<Model>> all(std::optional<ProjectId> project_id = {});
   Result<Model> find(const std::string& ref);
   Result<Model> update(Model model, const IdempotentResponse<Model>& answer = {});
-  // for ever; people's go by the Trash
+  // permanent; deletion by users goes through the Trash
   Result<void> remove(ModelId id, const IdempotentResponse<>& answer = {});
   Result<std::vector<std::uint8_t>> geometry(ModelId model_id);
   // finest first
   Result<std::vector<std::vector<std::uint8_t>>> detail_levels(ModelId model_id);
-  // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
+  // Streams a source file in chunks of at most 1 MiB; `sink` returns false to stop.
   Result<SourceFile> read_source(ModelId model_id, const std::string& name,
                                  const std::function<bool(std::span<const std::uint8_t>)>& sink);
 

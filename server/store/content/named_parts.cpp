@@ -32,7 +32,7 @@ void put_for(std::string& text, std::string_view word, std::string_view value) {
 
 }  // namespace
 
-// With the kind's table for `TABLE`, and what `read_part` reads for `PART`.
+// Replaces `TABLE` by the table of the kind, and `PART` by the columns that `read_part` reads.
 std::string NamedParts::sql(std::string text) const {
   put_for(text, "TABLE", kind_.table);
   put_for(text, "PART", "id, model_id, slug, name, text, content, user_name, time, version");
@@ -85,7 +85,7 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
                                      const IdempotentResponse<NamedPart>& answer) {
   STRATA_TRY(check_part(part));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
-    // Locked, so that of two at once the later one counts the earlier.
+    // Locked, so that the later of two concurrent transactions counts the part of the earlier.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(part.model_id)));
     if (model.rows() == 0) return no_such("model", to_string(part.model_id));
@@ -115,7 +115,8 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
 
 namespace {
 
-// Where nothing was changed or deleted: because it is not there, or is of another version.
+// Returns the error for an update or deletion without effect: the part does not exist, or has
+// another version.
 tl::unexpected<Error> missed(const Result<PgResult>& known, const NamedParts::Kind& kind,
                              const NamedPart& part) {
   if (!known) return tl::unexpected(known.error());

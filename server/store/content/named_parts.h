@@ -15,36 +15,35 @@ namespace strata::store {
 
 class Pool;
 
-// What people make of a model and come back to: a view (where from, and what is shown how) or a
-// tour of views.
+// A saved view of a model (a camera with the shown layers, images and light) or a tour of views.
 struct NamedPart {
   NamedPartId id = 0;
   ModelId model_id = 0;
-  std::string slug;  // unique in the model; made of the name when it is empty
+  std::string slug;  // unique in the model; made from the name if it is empty
   std::string name;
   std::string text;  // plain, UTF-8, at most 10 000 characters
-  // the rest of what the protocol's View or Tour has, with ids in place of slugs
+  // the other fields of the protocol's View or Tour, with ids in place of slugs
   nlohmann::json content;
-  std::string user;  // who made it
+  std::string user;  // the user who made it
   std::chrono::system_clock::time_point time;
   std::int64_t version = 1;
 };
 
-// Named views of models, or tours; of a Store, and as thread-safe and blocking as that, with the
-// same Problems for what is not there, stale or away.
+// Saved views of models, or tours. Part of Store: thread-safe and blocking as Store is, with the
+// same errors for missing, stale or unreachable data.
 class NamedParts {
  public:
   struct Kind {
-    const char* name;   // of one
-    const char* table;  // they have the same columns
-    std::int64_t most;  // of a model
+    const char* name;   // singular
+    const char* table;  // all kinds have the same columns
+    std::int64_t most;  // limit for one model
   };
   static constexpr Kind kViews{"view", "views", 1000}, kTours{"tour", "tours", 100};
 
   NamedParts(Pool& pool, const Kind& kind) : pool_(pool), kind_(kind) {}
 
   struct Page {
-    std::vector<NamedPart> parts;  // in the order in which they were made
+    std::vector<NamedPart> parts;  // in the order of their creation
     std::int64_t total = 0;
   };
   // `after`: only those with higher ids.
@@ -52,12 +51,13 @@ class NamedParts {
   Result<std::map<NamedPartId, std::string>> slugs(ModelId model_id);  // of all, by id
   Result<NamedPart> find(ModelId model_id, const std::string& ref);
 
-  // Id, slug, time and version are given here. Refused: an empty name (malformed), one too many
+  // The store sets id, slug, time and version. Refused: an empty name (malformed), too many parts
   // (conflict).
   Result<NamedPart> create(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
-  // Name, text and content, where version equals; the slug stays, so that links go on.
+  // Changes name, text and content, if the version equals; the slug stays, so that links stay
+  // valid.
   Result<NamedPart> update(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
-  // where version equals
+  // if the version equals
   Result<void> remove(const NamedPart& part, const IdempotentResponse<>& answer = {});
 
  private:

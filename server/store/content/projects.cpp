@@ -15,7 +15,7 @@ Result<void> check(const Project& project) {
   return check_texts({{&project.slug, "slug"}, {&project.description, "description"}});
 }
 
-// What is gone for ever keeps no project, though its content is not erased yet.
+// Erases the models of a project that were erased from the Trash but whose content still exists.
 Result<void> erase_models_of(PgConnection& connection, ProjectId project_id) {
   auto models = STRATA_TRY(connection.query(
       "SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().id(project_id)));
@@ -71,7 +71,7 @@ Result<std::size_t> Projects::names_until(const NamedId& place, std::span<const 
 
 Result<std::string> Projects::state(ProjectId id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::string> {
-    // Ids and versions of the rows of a part, whose FROM clause follows.
+    // Returns the ids and versions of the rows of a part, whose FROM clause follows.
     const auto versions = [](const std::string& part) {
       return "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " +
              part + "), '')";
@@ -134,15 +134,16 @@ Result<void> Projects::remove(ProjectId id, const IdempotentResponse<>& answer) 
         Params().id(id)));
     if (row.rows() == 0) return no_such("project", to_string(id));
     if (row.text(0, 0) == "default")
-      return fail(ErrorCode::conflict, "Conflict",
-                  "The project `default` stays: models without a project belong to it.");
+      return fail(
+          ErrorCode::conflict, "Conflict",
+          "The project `default` cannot be deleted: models without a project belong to it.");
     if (row.integer(0, 1) > 0)
       return fail(ErrorCode::conflict, "Conflict",
                   "The project still has " + std::to_string(row.integer(0, 1)) +
                       " models. Delete them or move them to another project first.");
     if (row.integer(0, 3) > 0)
       return fail(ErrorCode::conflict, "Conflict",
-                  "The project's Trash still holds " + std::to_string(row.integer(0, 3)) +
+                  "The Trash of the project still contains " + std::to_string(row.integer(0, 3)) +
                       " models. Restore them, or erase them there first.");
     if (row.integer(0, 2) > 0)
       return fail(ErrorCode::conflict, "Conflict",

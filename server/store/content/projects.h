@@ -10,18 +10,12 @@
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "store/content/idempotent_response.h"
+#include "store/content/named_id.h"
 #include "store/people/activity.h"
 
 namespace strata::store {
 
 class Pool;
-
-// How many of the things, which are sorted by their names without regard to case and then by ids,
-// do not come after that place.
-struct NamedId {
-  std::string name;
-  std::int64_t id = 0;
-};
 
 // Projects of the site; `default` exists from the start. `ref` is an id in digits or a slug. Part
 // of Store: its rules for threads and errors hold.
@@ -32,17 +26,19 @@ class Projects {
   Result<std::vector<Project>> all();
   Result<Project> find(const std::string& ref);
   Result<Project> create(Project project, const IdempotentResponse<Project>& answer = {});
-  // Where version equals; returns it with version + 1.
+  // If the version equals; returns the project with version + 1.
   Result<Project> update(Project project, const IdempotentResponse<Project>& answer = {});
-  // refused (conflict) while it has models, and for `default`
+  // refused (conflict) while the project has models, and for `default`
   Result<void> remove(ProjectId id, const IdempotentResponse<>& answer = {});
+  // Returns the number of items that do not follow `place`. The items are sorted by name, ignoring
+  // case, and then by id.
   Result<std::size_t> names_until(const NamedId& place, std::span<const NamedId> sorted);
-  // Of all that is stored of it but edits, comments and people: another text whenever one of its
-  // models, layers, looks, views or tables was changed, made or deleted, or a record of its tables.
-  // For comparison alone.
+  // Returns a text that changes whenever stored data of the project changes: its models, layers,
+  // surface images, views, tables or records; not its edits, comments and people. For comparison
+  // only.
   Result<std::string> state(ProjectId id);
-  // What was done in it, but for what is about layers that the role does not see; a page costs the
-  // same however long its history is. An unknown project or model has none.
+  // Returns the project's activity without the lines about layers that the role does not see. A
+  // page costs the same for a history of any length. An unknown project or model has no activity.
   Result<ActivityPage> activity(ProjectId project_id, Role seen_by, const ActivityQuery& query);
 
  private:

@@ -7,8 +7,8 @@
 namespace strata::store {
 
 Result<void> check_surface_image(const SurfaceImage& image);
-// One row, its slug made from the wish or the name; `picture` is a blob that the transaction at
-// hand keeps.
+// Inserts one row, with a slug made from the requested slug or the name; `picture` is a blob that
+// the current transaction keeps.
 Result<SurfaceImage> insert_surface_image(PgConnection& connection, const SurfaceImage& image,
                                           const Sha256& picture);
 

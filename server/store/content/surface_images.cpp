@@ -38,14 +38,14 @@ SurfaceImage read_surface_image(const PgResult& rows, int i) {
 Result<void> check_surface_image(const SurfaceImage& image) {
   STRATA_TRY(check_name(image.name));
   if (!(image.opacity >= 0 && image.opacity <= 1))
-    return fail(ErrorCode::malformed, "Bad opacity", "`opacity` must be between 0 and 1.",
+    return fail(ErrorCode::malformed, "Invalid opacity", "`opacity` must be between 0 and 1.",
                 "opacity");
   if (image.media_type != "image/jpeg" && image.media_type != "image/png")
-    return fail(ErrorCode::unsupported, "Bad picture", "A surface image is a JPEG or PNG picture.",
-                "media_type");
+    return fail(ErrorCode::unsupported, "Invalid picture",
+                "A surface image must be a JPEG or PNG picture.", "media_type");
   if (image.width < 1 || image.height < 1)
-    return fail(ErrorCode::invalid, "Bad picture",
-                "A surface image has at least one pixel on each side.", "width");
+    return fail(ErrorCode::invalid, "Invalid picture",
+                "A surface image must have at least one pixel on each side.", "width");
   return check_texts({{&image.slug, "slug"}, {&image.description, "description"}});
 }
 
@@ -113,7 +113,7 @@ Result<SurfaceImage> SurfaceImages::create(const SurfaceImage& image,
   STRATA_TRY(check_surface_image(image));
   const Content content = content_of(picture);
   const auto work = [&](PgConnection& connection) -> Result<SurfaceImage> {
-    // Locked, so that of two at once the later one counts the earlier.
+    // Locked, so that the later of two concurrent transactions counts the image of the earlier.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(image.model_id)));
     if (model.rows() == 0) return no_such("model", to_string(image.model_id));
@@ -121,7 +121,7 @@ Result<SurfaceImage> SurfaceImages::create(const SurfaceImage& image,
                                              Params().id(image.model_id)));
     if (count.integer(0, 0) >= kMaxSurfaceImages)
       return fail(ErrorCode::conflict, "Too many surface images",
-                  "A model holds at most " + std::to_string(kMaxSurfaceImages) +
+                  "A model can have at most " + std::to_string(kMaxSurfaceImages) +
                       " surface images. Delete one first.");
     STRATA_TRY(keep_blob(connection, content, {}));
     return insert_surface_image(connection, image, content.hash);

@@ -14,8 +14,8 @@ namespace strata::store {
 
 class Pool;
 
-// Pictures of a model's surface, kept as they came. Part of Store: its rules for threads and
-// errors hold.
+// Pictures of a model's surface, stored unchanged. Part of Store: its rules for threads and errors
+// hold.
 class SurfaceImages {
  public:
   explicit SurfaceImages(Pool& pool) : pool_(pool) {}
@@ -26,7 +26,7 @@ class SurfaceImages {
   Result<SurfaceImage> find(ModelId model_id, const std::string& ref);
   Result<SurfaceImage> create(const SurfaceImage& image, std::span<const std::uint8_t> picture,
                               const IdempotentResponse<SurfaceImage>& answer = {});
-  // all but its picture
+  // changes everything except the picture
   Result<SurfaceImage> update(const SurfaceImage& image,
                               const IdempotentResponse<SurfaceImage>& answer = {});
   Result<void> remove(SurfaceImageId id, const IdempotentResponse<>& answer = {});

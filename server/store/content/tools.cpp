@@ -65,13 +65,15 @@ Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
   STRATA_TRY(check_text(tool.slug, "slug"));
   const auto cells = bytes_of(shape);
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
-    // Locked, so that of two at once the later one counts the earlier; reading goes on.
+    // Locked, so that the later of two concurrent transactions counts the tool of the earlier;
+    // reading is not blocked.
     STRATA_TRY(connection.query("LOCK TABLE tool_shapes IN SHARE ROW EXCLUSIVE MODE"));
     auto count =
         STRATA_TRY(connection.query("SELECT count(*) FROM tool_shapes WHERE deleted IS NULL"));
     if (count.integer(0, 0) >= kMaxTools)
-      return fail(ErrorCode::conflict, "Too many tools",
-                  "A site has at most " + std::to_string(kMaxTools) + " tools. Delete one first.");
+      return fail(
+          ErrorCode::conflict, "Too many tools",
+          "A server can have at most " + std::to_string(kMaxTools) + " tools. Delete one first.");
     auto row = STRATA_TRY(insert_with_slug(
         connection,
         "SELECT slug::text FROM tool_shapes WHERE slug LIKE $1 AND deleted IS NULL "

@@ -14,21 +14,22 @@ namespace strata::store {
 
 class Pool;
 
-// Shapes for the brush, of the whole site. Part of Store: its rules for threads and errors hold.
+// Brush shapes of the whole site. Part of Store: its rules for threads and errors hold.
 class Tools {
  public:
   explicit Tools(Pool& pool) : pool_(pool) {}
 
-  static constexpr int kMaxTools = 200;  // that are not deleted
+  static constexpr int kMaxTools = 200;  // without deleted ones
 
-  Result<std::vector<Tool>> all();  // that are not deleted, by name
-  // By slug, those that are not deleted; by id, deleted ones, too.
+  Result<std::vector<Tool>> all();  // without deleted ones, by name
+  // A slug finds only tools that are not deleted; an id finds deleted tools, too.
   Result<Tool> find(const std::string& ref);
   Result<Tool> create(const Tool& tool, const ShapeBits& shape,
                       const IdempotentResponse<Tool>& answer = {});
-  Result<Tool> update(const Tool& tool, const IdempotentResponse<Tool>& answer = {});  // its name
+  Result<Tool> update(const Tool& tool, const IdempotentResponse<Tool>& answer = {});  // changes
+                                                                                       // the name
   Result<void> remove(ToolId id, const IdempotentResponse<>& answer = {});
-  Result<ShapeBits> shape(ToolId id);  // deleted or not
+  Result<ShapeBits> shape(ToolId id);  // of a deleted tool, too
 
  private:
   Pool& pool_;

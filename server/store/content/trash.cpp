@@ -13,9 +13,9 @@ using Kind = TrashEntry::Kind;
 
 constexpr int kRowsAtOnce = 2000;
 
-// What is in the Trash of project $1 and of a model that is there: layers and models that have one
-// of the visibilities $2 where $3 (curators), and records that were deleted in the last $4 days and
-// not made again since.
+// The content of the Trash of project $1 and of its models that are not in the Trash: layers and
+// models with one of the visibilities $2 if $3 (curators), and records that were deleted in the
+// last $4 days and not created again since.
 constexpr auto kTrash = sql(
     "(SELECT 'layer' AS kind, l.id, l.name, l.model_id, m.name AS model_name, 0::bigint AS table_id, '' AS table_name, "
     "l.binned_by, l.binned, l.binned_bytes FROM all_layers l JOIN models m ON m.id = l.model_id WHERE m.project_id = $1 "
@@ -64,10 +64,10 @@ const char* name_of(Kind kind) {
 tl::unexpected<Error> not_in_trash(const TrashEntry& entry) {
   return fail(ErrorCode::not_found, "Not in the Trash",
               "The " + std::string(name_of(entry.kind)) + " " + entry.name +
-                  " is no longer in the Trash: it was restored or erased.");
+                  " is not in the Trash any more: somebody restored or erased it.");
 }
 
-// Done where one row was changed; `id` is of something that may not be there.
+// Success if one row was changed; otherwise the layer or model `id` does not exist.
 Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t id) {
   if (!done) return tl::unexpected(done.error());
   return done->affected() > 0 ? Result<void>{} : no_such(name_of(kind), std::to_string(id));
@@ -76,7 +76,7 @@ Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t i
 }  // namespace
 
 Result<void> erase_layer(PgConnection& connection, LayerId id) {
-  // What was written about it is seen by no more people than before.
+  // Comments about the layer keep its visibility, so that no more people see them than before.
   STRATA_TRY(connection.query(
       "UPDATE comments c SET visibility = l.visibility FROM all_layers l WHERE l.id = $1 AND c.layer_id = l.id",
       Params().id(id)));
@@ -174,8 +174,8 @@ Result<TrashRestored> Trash::restore(const TrashEntry& entry,
                                      const IdempotentResponse<TrashRestored>& answer) {
   const bool is_layer = entry.kind == Kind::layer;
   return change(pool_, answer, [&](PgConnection& connection) -> Result<TrashRestored> {
-    // Of a layer the model first, which must not go into the Trash meanwhile, and gets no layer of
-    // that short name.
+    // Lock the model of a layer first: it must not go into the Trash, or get a layer with this
+    // slug, before the commit.
     if (is_layer) {
       auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
                                                Params().id(entry.model_id)));
@@ -230,15 +230,16 @@ Result<TableChange> Trash::restore_record(const TrashEntry& entry, const std::st
         cells[cell.key()] = *cell;
     auto done = apply_edit(connection, open, std::move(edit));
     if (done && !done->problems.empty())
-      return fail(ErrorCode::conflict, "Cannot be restored", done->problems.front().problem.detail);
+      return fail(ErrorCode::conflict, "Cannot restore", done->problems.front().problem.detail);
     return done;
   });
 }
 
 Result<void> Trash::erase(const TrashEntry& entry, const IdempotentResponse<>& answer) {
   if (entry.kind == Kind::record)
-    return fail(ErrorCode::conflict, "Records are kept",
-                "What the record said stays in the history of its table, where nothing is erased.");
+    return fail(ErrorCode::conflict, "Records cannot be erased",
+                "The history of the table keeps the values of deleted records, so they cannot "
+                "be erased.");
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
         entry.kind == Kind::layer

@@ -10,37 +10,37 @@
 #include "core/ids.h"
 #include "domain/people/role.h"
 #include "store/content/idempotent_response.h"
-#include "store/tables/table_changes.h"
 
 namespace strata::store {
 
 class Pool;
+struct TableChange;
 
-// Something that was deleted and can be restored.
+// A deleted object that can be restored.
 struct TrashEntry {
   enum class Kind { layer, model, record };
   Kind kind = Kind::layer;
   std::int64_t id = 0;  // of the layer or model; key of the record
   std::string name;
-  ModelId model_id = 0;    // where a layer lay; of a model its own
+  ModelId model_id = 0;    // model of a layer; of a model, its own id
   std::string model_name;  // of a layer
   TableId table_id = 0;    // of a record
-  std::string table_name;  // the same
-  std::string user;        // who deleted it; empty: the server itself
+  std::string table_name;  // of a record
+  std::string user;        // the user who deleted it; empty: the server
   std::chrono::system_clock::time_point deleted;
-  std::uint64_t bytes = 0;  // of its files and history, about
+  std::uint64_t bytes = 0;  // of its files and history, approximately
 };
 
 struct TrashRestored {
   TrashEntry entry;
-  std::string slug;         // that it has now
-  std::string former_slug;  // that it had, where something else has it meanwhile; else empty
+  std::string slug;         // after restoring
+  std::string former_slug;  // before, if another object uses it now; else empty
 };
 
-// What was deleted in projects; of a Store, and as thread-safe and blocking as that, with the same
-// Problems for what is not there or away. Models and layers that are in it are there for nothing
-// else (db/migrations/000023_bin.sql). Records are never erased: their tables' journals keep what
-// they were, and the Trash finds them there.
+// The Trash of projects. Part of Store: thread-safe and blocking as Store is, with the same errors
+// for missing or unreachable data. All other parts of Store ignore models and layers that are in
+// the Trash (db/migrations/000023_bin.sql). Records are never erased: the journals of their tables
+// keep their values, and the Trash finds them there.
 class Trash {
  public:
   explicit Trash(Pool& pool) : pool_(pool) {}
@@ -50,42 +50,42 @@ class Trash {
     std::int64_t total = 0;
   };
   struct Sight {
-    Role role = Role::viewer;      // layers and models are for curators, records for annotators
-    std::chrono::days records{0};  // for how long they are told
+    Role role = Role::viewer;      // curators see layers and models, annotators see records
+    std::chrono::days records{0};  // how long deleted records are listed
   };
-  // Where a page ends: at this entry.
+  // The entry where a page ends.
   struct Place {
     std::int64_t deleted_us = 0;  // since 1970
     TrashEntry::Kind kind = TrashEntry::Kind::layer;
     TableId table_id = 0;
     std::int64_t id = 0;
   };
-  // Layers that lie on a model in the Trash come back with it, and are no entries. `after`: only
-  // those that follow it.
+  // Layers on a model in the Trash are restored with the model, and are not listed. `after`: only
+  // the entries that follow it.
   Result<Page> of_project(ProjectId project_id, const Sight& sight, int limit, int offset,
                           const std::optional<Place>& after = {});
-  // `table_id` is of a record.
+  // `table_id` is the table of a record.
   Result<TrashEntry> entry(ProjectId project_id, TrashEntry::Kind kind, std::int64_t id,
                            TableId table_id, const Sight& sight);
 
-  // Into it, by whom the answer is for.
+  // Moves a layer or model into the Trash, as the user in `answer`.
   Result<void> put_layer(LayerId id, const IdempotentResponse<>& answer);
   Result<void> put_model(ModelId id, const IdempotentResponse<>& answer);
-  // A layer or model out of it, with the short name that it had where that is free. A room that is
-  // open does not know it yet.
+  // Restores a layer or model, with its former slug if that is free. An open room does not contain
+  // it yet.
   Result<TrashRestored> restore(const TrashEntry& entry,
                                 const IdempotentResponse<TrashRestored>& answer);
-  // A record, with its key, as an entry of the table's journal. Refused (conflict): its values do
-  // not fit the table as it is now, or it is there.
+  // Restores a record, with its key, as an entry of the table's journal. Refused (conflict): its
+  // values do not fit the present table, or it exists.
   Result<TableChange> restore_record(const TrashEntry& entry, const std::string& user,
                                      const IdempotentResponse<TableChange>& answer);
-  // A layer or model, gone for ever; its content is left to `erase_some`.
+  // Erases a layer or model permanently; `erase_some` erases its content later.
   Result<void> erase(const TrashEntry& entry, const IdempotentResponse<>& answer);
 
-  // What was put in longer ago is gone for ever, likewise.
+  // Erases, in the same way, everything that is in the Trash for longer than `after`.
   Result<void> expire(std::chrono::days after);
-  // Some of the content of what is gone for ever, so little that nobody waits for it; false: there
-  // is none.
+  // Erases some of the content of erased models and layers, so little that no other caller has to
+  // wait. Returns false if nothing is left.
   Result<bool> erase_some();
 
  private:

@@ -57,8 +57,8 @@ Result<HistoryPage> Journal::history(LayerId layer_id, int limit, int offset,
 }
 
 Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids) {
-  PgArray wanted(oid::kUuid);
-  for (const Uuid& id : ids) wanted.add(id);
+  PgArray requested(oid::kUuid);
+  for (const Uuid& id : ids) requested.add(id);
   return pool_.read([&](PgConnection& connection) -> Result<JournalState> {
     auto model =
         connection.query("SELECT sequence FROM models WHERE id = $1", Params().id(model_id));
@@ -68,7 +68,7 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
     if (ids.empty()) return state;
     auto rows =
         connection.query(sql("SELECT ", kEditColumns, "WHERE e.model_id = $1 AND e.id = any($2)"),
-                         Params().id(model_id).array(wanted));
+                         Params().id(model_id).array(requested));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
     return state;
@@ -89,9 +89,9 @@ Result<std::vector<std::int64_t>> Journal::undoable(LayerId layer_id, const std:
   });
 }
 
-// The batches that the newest undo took, unless paint made after that undo is in force. (Strokes
-// that redo brought back are older than it, so that undo, undo, redo, redo works.) What was
-// rejected only a curator brings back.
+// Returns the batches that the newest undo disabled, unless paint made after that undo is in force.
+// (Strokes that a redo restored are older than the undo, so undo, undo, redo, redo works.) Only a
+// curator can restore rejected edits.
 Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std::string& user,
                                                     bool pending_only) {
   STRATA_TRY(check_text(user, "user"));
@@ -111,7 +111,7 @@ Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std:
 
 Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    // Times are told in milliseconds: one that was read counts its own edit.
+    // Times are shown in milliseconds: a time that was read from an edit includes that edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM edits "
         "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
@@ -137,8 +137,8 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
                                 mentions_them("record ->> 'reason'"));
   for (const char* statement :
        {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
-        // Decisions on what waited for review tell whose edits were meant, and a reason in words.
-        // Other records may be large.
+        // Decisions of a review contain the user of the edits and a text with the reason. Other
+        // records are not searched, because they may be large.
         "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
         "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
         kReasons.c_str()})

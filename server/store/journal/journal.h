@@ -16,17 +16,17 @@
 
 namespace strata::store {
 
-// What a tile holds of a key, in model space and units: the sum of area × position, and the box of
-// its texels.
+// The sum of one key in one tile, in model space and units: area × position, and the box of the
+// texels.
 struct KeySum {
-  std::optional<std::int64_t> key;  // nothing: values of the layer are not told apart
+  std::optional<std::int64_t> key;  // nothing: the layer does not distinguish values
   std::uint64_t texels = 0;
   double area = 0;
   glm::dvec3 moment{0}, low{0}, high{0};
 };
 struct TileKeys {
   TileAddress tile;
-  std::vector<KeySum> keys;  // none: nothing in it is valid
+  std::vector<KeySum> keys;  // empty: no texel of the tile is valid
 };
 
 // One edit with everything that becomes durable with it, in one transaction.
@@ -39,8 +39,8 @@ struct JournalEntry {
   Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits
   // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
   std::string op;
-  nlohmann::json record;  // the edit as it was asked for
-  nlohmann::json answer;  // what the caller was told; a repeat of `id` gets this again
+  nlohmann::json record;  // the edit as requested
+  nlohmann::json answer;  // the answer to the caller; a repeat of `id` receives it again
   std::chrono::system_clock::time_point time;
   struct Revision {
     TileAddress tile;
@@ -49,8 +49,8 @@ struct JournalEntry {
     std::vector<std::uint8_t> key_tile;
   };
   std::vector<Revision> revisions;
-  // What the tiles of the revisions hold after the edit; asked for on the writer's thread, at each
-  // try. Empty: it is not known, and the layer is to be counted anew (Layers::to_sum).
+  // Returns the sums of the tiles in `revisions` after the edit; called on the writer's thread, at
+  // each attempt. Empty: not known, and the layer must be counted again (Layers::to_sum).
   std::function<std::vector<TileKeys>()> sum_tiles;
   // undo, redo, reviews: the sequences whose `in_force` becomes false / true with this entry
   std::vector<std::int64_t> disable, enable;
@@ -59,7 +59,7 @@ struct JournalEntry {
     std::vector<std::int64_t> edits;
     Review becomes = Review::pending;
   };
-  std::optional<Reviewed> reviewed;  // what the entry decides
+  std::optional<Reviewed> reviewed;  // the decision that the entry makes
 };
 
 // A row of a layer's history (GET …/edits), newest first.
@@ -71,22 +71,22 @@ struct JournalRow {
   std::chrono::system_clock::time_point time;
   bool in_force = true;
   Review review = Review::none;
-  struct Reviewer {  // of what was accepted or rejected
+  struct Reviewer {  // of accepted or rejected edits
     std::string user, reason;
     std::chrono::system_clock::time_point time;
   };
   std::optional<Reviewer> reviewer{};
 };
 
-// What waits for review on a layer.
+// The edits of a layer that wait for review.
 struct ReviewQueue {
   struct Stroke {  // or another edit
     Uuid stroke;
-    std::int64_t sequence = 0;  // of its first batch, by which it is named; of the last one
+    std::int64_t sequence = 0;  // of its first batch, which identifies the stroke
     std::int64_t last = 0;
     std::string user, op;
     std::chrono::system_clock::time_point begun, time;  // of the first batch and the last
-    std::uint64_t texels = 0;                           // changed one after the other
+    std::uint64_t texels = 0;                           // sum over all batches
     double area_m2 = 0;
     nlohmann::json record;  // of the first batch
   };
@@ -94,12 +94,12 @@ struct ReviewQueue {
     std::string user;
     std::int64_t strokes = 0;
   };
-  std::vector<Stroke> strokes;  // of a page, the oldest first
+  std::vector<Stroke> strokes;  // of a page, oldest first
   std::int64_t total = 0;
   std::vector<Person> people;  // of the whole layer, by name
 };
 
-// Which edits a decision is about: these, those of a person, or where neither is given all.
+// Selects the edits of a decision: these edits, those of a user, or, if neither is given, all.
 struct Reviewees {
   std::vector<std::int64_t> edits;
   std::optional<std::string> user;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kBytesPerInsert = 8u << 20;
 constexpr int kTilesASide = 16384 / kTileSize;
 
-// A message without these can never be written; everything else is the database's to refuse.
+// A message that fails these checks can never be written; the database makes all other checks.
 Result<void> check(const JournalEntry& entry) {
   STRATA_TRY(check_texts({{&entry.user, "user"}, {&entry.op, "op"}}));
   STRATA_TRY(check_json(entry.record, "record"));
@@ -20,7 +20,7 @@ Result<void> check(const JournalEntry& entry) {
   for (const auto& revision : entry.revisions)
     if (revision.tile.x >= kTilesASide || revision.tile.y >= kTilesASide ||
         revision.difference.empty())
-      return fail(ErrorCode::malformed, "Bad edit",
+      return fail(ErrorCode::malformed, "Invalid edit",
                   "A tile revision is outside every layer, or empty.", "revisions");
   return {};
 }
@@ -29,7 +29,7 @@ struct Span {
   std::int64_t first, last;
 };
 
-// The run of sequences of each model; they must be consecutive.
+// Returns the range of sequences of each model; they must be consecutive.
 Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const> entries) {
   std::map<ModelId, Span> spans;
   for (const JournalEntry* entry : entries) {
@@ -156,8 +156,8 @@ void insert_revisions(std::span<const JournalEntry* const> entries, Statements& 
   columns.flush(out);
 }
 
-// After the inserts and in the order of the entries: an undo may come in the same transaction as
-// the edit it undoes.
+// Runs after the inserts and in the order of the entries: an undo may be in the same transaction as
+// the edit that it undoes.
 void switch_edits(std::span<const JournalEntry* const> entries, Statements& out) {
   for (const JournalEntry* entry : entries)
     for (const auto* sequences : {&entry->disable, &entry->enable}) {
@@ -220,13 +220,14 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
   const auto results = connection.pipeline(statements);
   if (!results) return failed(results.error());
   if ((*results)[1].affected() != static_cast<std::int64_t>(spans->size()))
-    return never(
-        {ErrorCode::conflict, "Journal out of order",
-         "The model was deleted, or an edit before this one was not saved. Nothing was changed; read the layer again.",
-         ""});
+    return never({ErrorCode::conflict, "Journal out of order",
+                  "The model was deleted, or an earlier edit was not saved. Nothing changed. "
+                  "Read the layer again.",
+                  ""});
   if ((*results)[2].affected() != static_cast<std::int64_t>(layer_count))
-    return never({ErrorCode::conflict, "Layer gone",
-                  "The layer was deleted meanwhile; the edit was not saved.", ""});
+    return never(
+        {ErrorCode::conflict, "Layer was deleted",
+         "Somebody deleted the layer in the meantime, so the server did not save the edit.", ""});
   if (auto committed = transaction.commit(); !committed) return failed(committed.error());
   return {};
 }

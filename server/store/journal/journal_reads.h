@@ -29,49 +29,51 @@ struct HistoryPage {
   std::int64_t total = 0;
 };
 
-// The model's last sequence, and those of the messages that were in the journal after it was
+// The model's last sequence, and the rows of the messages that were in the journal after it was
 // read.
 struct JournalState {
   std::int64_t last_sequence = 0;
   std::vector<JournalRow> known;
 };
 
-// What the journal of edits holds. Writes go through JournalWriter. Part of Store: its rules for
-// threads and errors hold.
+// Reads the journal of edits. Writes go through JournalWriter. Part of Store: its rules for threads
+// and errors hold.
 class Journal {
  public:
   explicit Journal(Pool& pool) : pool_(pool) {}
 
-  // All tiles of a layer after `at_sequence` (nothing: the newest).
+  // Returns all tiles of a layer after `at_sequence` (nothing: the newest).
   Result<TileMirror::Snapshot> load_tiles(const Layer& layer,
                                           std::optional<std::int64_t> at_sequence = {});
-  // Revisions of a tile that are older than `before`, newest first, `limit` at most, with what
-  // their edits are now.
+  // Returns revisions of a tile older than `before`, newest first, at most `limit`, with the
+  // present state of their edits.
   Result<std::vector<PastRevision>> tile_history(const Layer& layer, TileAddress tile,
                                                  std::int64_t before, int limit);
   Result<std::vector<WrittenTiles>> written_by(const Layer& layer,
                                                std::span<const std::int64_t> sequences);
-  // The newest first; `before`: only those with lower sequences.
+  // Newest first; `before`: only edits with lower sequences.
   Result<HistoryPage> history(LayerId layer_id, int limit, int offset,
                               std::optional<std::int64_t> before = {});
   Result<JournalState> state(ModelId model_id, std::span<const Uuid> ids);
-  // The sequences (ascending) of the newest stroke of `user` on the layer that is in force / that
-  // is undone and not followed by a newer in-force stroke of the same user; empty when there is
-  // none. `pending_only`: of those that wait for review.
+  // Return the sequences (ascending) of the newest stroke of `user` on the layer that is in force /
+  // that is undone and not followed by a newer in-force stroke of the same user; empty if there is
+  // no such stroke. `pending_only`: only strokes that wait for review.
   Result<std::vector<std::int64_t>> undoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
   Result<std::vector<std::int64_t>> redoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
-  // review.cpp: strokes and other edits in force on a layer that wait for review, the oldest first.
-  // `after`: only those that begin with a higher sequence.
+  // review.cpp: returns the strokes and other edits of a layer that are in force and wait for
+  // review, oldest first. `after`: only those that begin with a higher sequence.
   Result<ReviewQueue> review_queue(LayerId layer_id, const std::optional<std::string>& user,
                                    int limit, int offset, std::int64_t after = 0);
-  // The edits that a decision is about: those that wait, in force, and with `reopen` those that
-  // were accepted or rejected. Batches of a stroke belong together: one of them stands for all.
+  // Returns the edits that a decision affects: those that wait for review and are in force, and,
+  // for `reopen`, those that were accepted or rejected. Batches of a stroke belong together: naming
+  // one of them selects all.
   Result<std::vector<UnderReview>> under_review(LayerId layer_id, Decision decision,
                                                 const Reviewees& which);
   Result<std::int64_t> last_sequence(ModelId model_id);
-  // Of the last edit until a time (core/text/timestamp.h's text); 0 before the first.
+  // Returns the sequence of the last edit until a time (the text of core/text/timestamp.h); 0
+  // before the first edit.
   Result<std::int64_t> sequence_at(ModelId model_id, const std::string& utc);
   Result<std::uint64_t> revision_bytes(ModelId model_id);
 

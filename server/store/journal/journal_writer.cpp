@@ -60,13 +60,13 @@ struct JournalWriter::Impl {
   mutable std::mutex mutex;
   std::condition_variable changed;
   std::deque<Waiting> queue;
-  std::size_t waiting_bytes = 0;  // in the queue and in the group at hand
+  std::size_t waiting_bytes = 0;  // in the queue and in the current group
   std::uint64_t submitted = 0;
   std::uint64_t answered = 0;
   bool closing = false;
   bool failing = false;  // the last commit failed and is being retried
 
-  // Of the writer's thread alone.
+  // Used only by the writer's thread.
   std::optional<PgConnection> connection;
   std::thread thread;
 
@@ -98,7 +98,8 @@ struct JournalWriter::Impl {
       group.pop_front();
       waiting.done(result);
       bytes = waiting.bytes;
-    }  // gone before it counts as answered: who drains takes down what it refers to
+    }  // Destroyed before it counts as answered: after a drain, the caller may destroy objects that
+       // it refers to.
     std::lock_guard lock(mutex);
     waiting_bytes -= bytes;
     ++answered;
@@ -111,7 +112,7 @@ struct JournalWriter::Impl {
     changed.notify_all();
   }
 
-  // Until the group is answered.
+  // Retries until the group is answered.
   void write(std::deque<Waiting>& group) {
     const auto started = Clock::now();
     bool failed_before = false;
@@ -152,8 +153,8 @@ struct JournalWriter::Impl {
     return &*connection;
   }
 
-  // Answers those at the front that an earlier try committed although its answer was lost. A
-  // transaction is whole: what is in the journal is the front of the group.
+  // Answers the entries at the front that an earlier attempt committed although its answer was
+  // lost. A transaction is atomic: the saved entries are the front of the group.
   tl::expected<void, CommitFailure> skip_saved(PgConnection& to, std::deque<Waiting>& group) {
     const auto saved = find_saved(to, pointers(group));
     if (!saved) return tl::unexpected(CommitFailure{saved.error(), true});
@@ -168,9 +169,9 @@ struct JournalWriter::Impl {
                          : commit_entries(*to, pointers(group));
   }
 
-  // One of the group can never be written: the others are, each in a transaction of its own, except
-  // those of the same model that come after it, since they were made on top of it. (A lower
-  // sequence is the model's owner starting anew.)
+  // Commits each entry in a separate transaction, because one of the group can never be written.
+  // Later entries of the same model fail too, since they were made on top of it. (A lower sequence
+  // means that the model's owner started again.)
   tl::expected<void, CommitFailure> one_by_one(std::deque<Waiting>& group) {
     struct Broken {
       std::int64_t sequence;
@@ -183,7 +184,8 @@ struct JournalWriter::Impl {
           before != broken.end() && entry->sequence > before->second.sequence) {
         Error problem = before->second.problem;
         problem.detail =
-            "An edit before this one was not saved, so this one was not, either: " + problem.detail;
+            "The server did not save this edit, because it could not save an earlier one: " +
+            problem.detail;
         answer_front(group, tl::unexpected(problem));
         continue;
       }
@@ -238,7 +240,7 @@ JournalWriter::~JournalWriter() {
 bool JournalWriter::submit(JournalEntry entry, Done done) {
   const std::size_t bytes = bytes_of(entry);
   std::lock_guard lock(impl_->mutex);
-  // One entry larger than the bound (a large import) still goes through when nothing else waits.
+  // A single entry larger than the limit (a large import) is accepted when nothing else waits.
   const bool full =
       impl_->waiting_bytes > 0 && impl_->waiting_bytes + bytes > impl_->options.max_waiting_bytes;
   if (impl_->closing || impl_->failing || full) return false;

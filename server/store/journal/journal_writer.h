@@ -12,14 +12,14 @@ namespace strata::store {
 
 class Store;
 
-// The thread that makes edits durable, with a connection of its own (synchronous_commit on).
-// Entries commit in the order given; what waits is grouped into one transaction. A failed commit is
-// retried in order until `retry_for` has passed since its first try began (reconnecting each time;
-// an entry whose id is already in the journal with the same sequence counts as saved, since the
-// first try may have committed before the answer was lost). Then every waiting entry is answered
-// with the Error, in order, and the writer starts anew with what comes later. A database that
-// hangs fails as one that is away does: no try lasts longer than `limits.answer` without a byte
-// moving.
+// The thread that makes edits durable, with a separate connection (synchronous_commit on). Entries
+// commit in the given order; waiting entries are grouped into one transaction. A failed commit is
+// retried in order until `retry_for` has passed since its first attempt began (reconnecting each
+// time; an entry whose id is already in the journal with the same sequence counts as saved, since
+// the first attempt may have committed before the answer was lost). Then every waiting entry is
+// answered with the Error, in order, and the writer continues with later entries. A database that
+// hangs fails like one that is unreachable: no attempt lasts longer than `limits.answer` without a
+// byte transferred.
 class JournalWriter {
  public:
   struct Options {
@@ -30,13 +30,13 @@ class JournalWriter {
   using Done = std::function<void(Result<void>)>;  // called on the writer's thread, in order
 
   JournalWriter(Store& store, Options options);
-  ~JournalWriter();  // writes what waits, then joins
+  ~JournalWriter();  // writes the waiting entries, then joins
 
-  // False when the queue is full or failing: the caller refuses new edits (`accepting()` tells
-  // beforehand).
+  // Returns false when the queue is full or failing: the caller refuses new edits (`accepting()`
+  // returns the same in advance).
   bool submit(JournalEntry entry, Done done);
   bool accepting() const;
-  void drain();  // waits until everything submitted before is answered, and new entries are taken
+  void drain();  // waits until all earlier entries are answered and new ones are accepted
 
  private:
   struct Impl;

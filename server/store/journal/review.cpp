@@ -18,8 +18,8 @@ Result<ReviewQueue> Journal::review_queue(LayerId layer_id, const std::optional<
       if (!user || *user == queue.people.back().user) queue.total += queue.people.back().strokes;
     }
     auto rows = STRATA_TRY(connection.query(
-        // A stroke's id is its author's choice: two people's strokes are two. Records, which hold
-        // whole paths, are read of a page only.
+        // The author's client chooses the id of a stroke: equal ids of two users are two strokes.
+        // Records contain whole paths and are read for one page only.
         "SELECT w.stroke, w.first, w.last, w.user_name, e.op, w.begun, w.time, w.texels, w.area, e.record FROM "
         "(SELECT model_id, stroke, user_name, min(sequence) AS first, max(sequence) AS last, min(time) AS begun, "
         "max(time) AS time, sum((answer ->> 'texels_changed')::bigint)::bigint AS texels, "
@@ -54,8 +54,8 @@ Result<std::vector<UnderReview>> Journal::under_review(LayerId layer_id, Decisio
         (decision == Decision::reopen
              ? "((review = 'accepted' AND in_force) OR review = 'rejected')"
              : "review = 'pending' AND in_force") +
-        // With the batches of the same stroke that stand alike: of one that was decided in parts,
-        // one decision is meant.
+        // Includes the batches of the same stroke with the same decision: if parts of a stroke were
+        // decided separately, only one decision is selected.
         " AND ($2::text IS NULL OR user_name = $2) AND (cardinality($3) = 0 OR "
         "(stroke, user_name, coalesce(reviewed_by, 0)) IN (SELECT stroke, user_name, coalesce(reviewed_by, 0) "
         "FROM edits WHERE layer_id = $1 AND sequence = any($3))) ORDER BY sequence";

@@ -13,11 +13,11 @@ namespace strata::store {
 // By layer and tile.
 using TileKeysByPlace = std::map<std::pair<LayerId, TileAddress>, std::vector<KeySum>>;
 
-// The statements that write them in place of what was there.
+// Appends the statements that replace the stored sums.
 void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Statement>& out);
 
-// The same with what the entries say of their tiles, of which the last counts; layers of entries
-// that do not say it are marked.
+// Appends the same statements for the sums of the entries; the last entry of a tile counts. Layers
+// of entries without sums are marked.
 void write_tile_sums(std::span<const JournalEntry* const> entries,
                      std::deque<PgConnection::Statement>& out);
 

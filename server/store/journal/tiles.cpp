@@ -38,19 +38,19 @@ Result<Decoded> decode(const std::vector<StoredTile>& tiles, ValueType type) {
   return decoded;
 }
 
-// Collects rows into tiles and decodes batches of them on other threads, a bounded number at a
+// Collects rows into tiles and decodes batches of them on other threads, a limited number at a
 // time.
 class TileLoader {
  public:
   explicit TileLoader(ValueType type) : type_(type) {}
 
-  // Tiles by y and x, of each the revisions by sequence: another order would lose paint, so it is
-  // an error.
+  // Adds a row. Tiles must come by y and x, and the revisions of each tile by sequence: another
+  // order would lose paint, so it is an error.
   Result<void> add(TileAddress address, std::int64_t sequence, bool key, Bytes bytes) {
     const auto place = std::tuple(address.y, address.x, sequence);
     if (place <= last_)
       return fail(ErrorCode::internal, "Revisions out of order",
-                  "The database gave a layer's revisions in another order than asked for.");
+                  "The database returned the revisions of a layer in the wrong order.");
     last_ = place;
     if (batch_.empty() || batch_.back().address != address) {
       if (batch_bytes_ >= kBatchBytes) STRATA_TRY(flush());
@@ -73,7 +73,7 @@ class TileLoader {
 
  private:
   static constexpr std::size_t kBatchBytes = 4u << 20;
-  // about what decoding one row costs, in bytes
+  // approximate cost of decoding one row, in bytes
   static constexpr std::size_t kDecodedBytes = kTexelsPerTile;
 
   Result<void> flush() {
@@ -105,11 +105,11 @@ TileAddress read_address(const PgResult& rows, int i) {
           static_cast<std::uint16_t>(rows.integer(i, 0))};
 }
 
-// From tile to tile by the primary key; of each, what came since its last whole tile. What is older
-// is not touched, so that a layer opens as fast after a year of painting as after a day. A sort
-// would hold every row: the order is that of the nested loops. Places are compared as rows, which
-// only the primary key serves: of a fresh table the planner knows nothing, and read the index by
-// sequence from end to end for each tile.
+// Reads tile by tile by the primary key; of each tile, the rows since its last key tile. Older rows
+// are not read, so that a layer opens as fast after a year of painting as after a day. The order
+// comes from the nested loops, because a sort would hold every row in memory. Places are compared
+// as rows, which only the primary key supports: without statistics of a fresh table, the planner
+// would read the whole index by sequence for each tile.
 constexpr const char* kLoadTiles =
     "WITH RECURSIVE tiles AS ("
     "(SELECT tile_y, tile_x FROM tile_revisions WHERE layer_id = $1 ORDER BY tile_y, tile_x LIMIT 1) UNION ALL "

@@ -10,16 +10,16 @@
 namespace strata::store {
 namespace {
 
-// Of what is about a layer, or in a thread about one: to whoever sees that layer, in the Trash or
-// not, or saw it when it was erased.
+// A line about a layer, or in a thread about a layer, is visible to users who see that layer, in
+// the Trash or not, or who saw it when it was erased.
 constexpr auto kActivityIsSeen = sql(
     "coalesce((SELECT l.visibility FROM all_layers l WHERE l.id = activities.layer_id), activities.visibility) = any($6) "
     "AND (activities.comment_id IS NULL OR (SELECT coalesce(l.visibility, f.visibility) FROM comments c JOIN comments "
     "f ON f.id = coalesce(c.thread_id, c.id) LEFT JOIN all_layers l ON l.id = f.layer_id "
     "WHERE c.id = activities.comment_id) = any($6))");
-// The page is found first, by indexes alone; what its lines are about is looked up for those.
-consteval auto activity_lines(const auto& asked) {
-  return sql("(SELECT * FROM activities WHERE ", asked,
+// Finds the page first, by indexes alone; then looks up the objects of its lines.
+consteval auto activity_lines(const auto& condition) {
+  return sql("(SELECT * FROM activities WHERE ", condition,
              " AND (time, id) < (timestamptz 'epoch' + $2 * interval '1 microsecond', $3::bigint) "
              "AND ($4 OR kind <> 'member') AND ",
              kActivityIsSeen, " ORDER BY time DESC, id DESC LIMIT $5)");
@@ -35,7 +35,7 @@ consteval auto activity_page(const auto& lines) {
       "LEFT JOIN record_tables t ON t.id = a.table_id LEFT JOIN comments c ON c.id = a.comment_id "
       "ORDER BY a.time DESC, a.id DESC");
 }
-// Of the model, and of each table whose records lie on it.
+// Lines of the model, and of each table whose records lie on it.
 constexpr auto kActivityOfModel =
     sql("SELECT * FROM (", activity_lines("model_id = $1"),
         " UNION ALL SELECT of_table.* FROM (SELECT DISTINCT table_id FROM layers "
@@ -44,7 +44,7 @@ constexpr auto kActivityOfModel =
         " of_table) found "
         "ORDER BY time DESC, id DESC LIMIT $5");
 
-constexpr int kTimeColumn = 21;  // of a page: in microseconds, for the place of the next
+constexpr int kTimeColumn = 21;  // of a page: in microseconds, for the place of the next page
 // the year 2286
 constexpr ActivityPlace kAfterAll{9'999'999'999'999'999, std::numeric_limits<std::int64_t>::max()};
 
@@ -89,7 +89,7 @@ Result<ActivityPage> Projects::activity(ProjectId project_id, Role seen_by,
         .integer(before.time_us)
         .integer(before.id)
         .boolean(query.with_members)
-        .integer(limit + 1)  // one more tells whether there is a next page
+        .integer(limit + 1)  // one more line shows whether there is a next page
         .array(visibilities_seen_by(seen_by));
     constexpr auto kOfModel = activity_page(kActivityOfModel);
     constexpr auto kOfProject = activity_page(activity_lines("project_id = $1"));

@@ -7,8 +7,8 @@
 #include "store/pg/sql.h"
 #include "store/store_impl.h"
 
-// Who changes a group locks it first, and people after it, by their names: what is said of both in
-// that moment holds until it is written.
+// A change of a group locks the group first, and then users in the order of their names. Facts that
+// were read about both in between stay true until the commit.
 
 namespace strata::store {
 namespace {
@@ -56,8 +56,8 @@ Result<GroupDetail> load_detail(PgConnection& connection, GroupId id) {
   for (int i = 0; i < projects.rows(); ++i)
     detail.projects.push_back(
         {projects.text(i, 0), projects.text(i, 1), read_role(projects, i, 2)});
-  // Those for whom nothing else is as high: neither what they may do everywhere, nor a role of
-  // their own, nor one by another group.
+  // Count users who have no role as high from another source: their role in the site, a role in the
+  // project, or another group.
   auto losing = STRATA_TRY(connection.query(
       "SELECT count(*) FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1 AND "
       "u.disabled IS NULL AND EXISTS (SELECT 1 FROM project_groups g WHERE g.group_id = $1 AND "
@@ -78,8 +78,8 @@ Result<std::vector<std::string>> people_in(PgConnection& connection, GroupId id)
   return people;
 }
 
-// For whoever makes or renames one: the names and their number are those of now until it is
-// written.
+// Checks the name of a new or renamed group: the lock keeps the names and their number until the
+// commit.
 Result<void> check_name(PgConnection& connection, const std::string& name, GroupId own_id) {
   STRATA_TRY(connection.query("LOCK TABLE groups IN SHARE ROW EXCLUSIVE MODE"));
   auto taken =
@@ -87,9 +87,10 @@ Result<void> check_name(PgConnection& connection, const std::string& name, Group
                        Params().text(name).id(own_id));
   if (!taken) return tl::unexpected(taken.error());
   if (taken->rows() > 0)
-    return fail(ErrorCode::conflict, "Name taken",
-                "There is a group called `" + taken->text(0, 0) + "`. Choose another name.",
-                "name");
+    return fail(
+        ErrorCode::conflict, "Name already used",
+        "There is already a group with the name `" + taken->text(0, 0) + "`. Choose another name.",
+        "name");
   return {};
 }
 
@@ -98,27 +99,28 @@ Result<void> check_spelling(const std::string& name) {
   const auto characters = std::ranges::count_if(name, [](char c) { return (c & 0xc0) != 0x80; });
   if (name.empty() || static_cast<std::size_t>(characters) > kMaxGroupNameLength ||
       is_blank(name.front()) || is_blank(name.back()))
-    return fail(ErrorCode::invalid, "Bad name",
-                "A group's name has 1 to 100 characters, and no blank before or behind it.",
+    return fail(ErrorCode::invalid, "Invalid name",
+                "The name of a group must have 1 to 100 characters, without spaces at the "
+                "beginning or the end.",
                 "name");
   return check_text(name, "name");
 }
 
-// Locked, each once.
+// Returns the users, locked, each once.
 Result<std::vector<Person>> lock_people(PgConnection& connection,
                                         const std::vector<std::string>& names, const char* field) {
   std::vector<Person> people;
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
     auto person = lock_person(connection, name);
     if (!person && person.error().code == ErrorCode::not_found)
-      return fail(ErrorCode::invalid, "Nobody called that", person.error().detail, field);
+      return fail(ErrorCode::invalid, "Person not found", person.error().detail, field);
     if (!person) return tl::unexpected(person.error());
     people.push_back(std::move(*person));
   }
   return people;
 }
 
-// Of a group that is locked. True: they were not in it.
+// The group must be locked. Returns true if the user was not in it.
 Result<bool> put_person(PgConnection& connection, GroupId group_id, PersonId person_id) {
   auto put = STRATA_TRY(connection.query(
       "INSERT INTO group_people (group_id, user_id) VALUES ($1, $2) ON CONFLICT DO NOTHING RETURNING 1",
@@ -131,7 +133,8 @@ Result<void> check_not_too_full(PgConnection& connection, GroupId group_id, cons
                                            Params().id(group_id)));
   if (count.integer(0, 0) > Groups::kMaxPeople)
     return fail(ErrorCode::conflict, "Too many people",
-                "A group has at most " + std::to_string(Groups::kMaxPeople) + " people.", field);
+                "A group can have at most " + std::to_string(Groups::kMaxPeople) + " people.",
+                field);
   return {};
 }
 
@@ -175,7 +178,7 @@ Result<void> join_groups(PgConnection& connection, PersonId person_id,
   for (const GroupId id : std::set<GroupId>(groups.begin(), groups.end())) {
     const auto group = lock_group(connection, id);
     if (!group && group.error().code == ErrorCode::not_found)
-      return fail(ErrorCode::invalid, "No such group", group.error().detail, "groups");
+      return fail(ErrorCode::invalid, "Group not found", group.error().detail, "groups");
     if (!group) return tl::unexpected(group.error());
     STRATA_TRY(put_person(connection, id, person_id));
     STRATA_TRY(check_not_too_full(connection, id, "groups"));
@@ -206,7 +209,7 @@ Result<GroupDetail> Groups::create(const std::string& name,
     auto count = STRATA_TRY(connection.query("SELECT count(*) FROM groups"));
     if (count.integer(0, 0) >= kMaxGroups)
       return fail(ErrorCode::conflict, "Too many groups",
-                  "There are " + std::to_string(kMaxGroups) + " groups. Delete some first.",
+                  "There are " + std::to_string(kMaxGroups) + " groups. Delete some groups first.",
                   "name");
     auto made =
         connection.query("INSERT INTO groups (name) VALUES ($1) RETURNING id", Params().text(name));
@@ -228,7 +231,7 @@ Result<Regrouped<GroupDetail>> Groups::change(GroupId id, const GroupChange& cha
     auto put = STRATA_TRY(put_people(connection, id, change.add, "add"));
     auto detail = STRATA_TRY(load_detail(connection, id));
     std::vector<std::string> people;
-    // In a group without roles nobody may do anything else than before.
+    // In a group without roles, no user's rights change.
     if (!detail.projects.empty()) std::ranges::set_union(taken, put, std::back_inserter(people));
     return Regrouped<GroupDetail>{std::move(detail), std::move(people)};
   });
@@ -239,7 +242,7 @@ Result<std::vector<std::string>> Groups::remove(GroupId id, const std::string& b
     STRATA_TRY(act_as(connection, by));
     STRATA_TRY(lock_group(connection, id));
     auto people = STRATA_TRY(people_in(connection, id));
-    // The roles first: what the projects' activity tells is that they end.
+    // Delete the roles first: the projects' activity then lists that they end.
     for (const char* sql :
          {"DELETE FROM project_groups WHERE group_id = $1", "DELETE FROM groups WHERE id = $1"})
       STRATA_TRY(connection.query(sql, Params().id(id)));

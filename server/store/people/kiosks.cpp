@@ -14,7 +14,7 @@ constexpr auto kKiosks = sql(
     "k.expires, k.last_seen, k.revoked, k.wants_reload FROM kiosks k JOIN tours t ON t.id = k.tour_id "
     "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id ");
 constexpr auto kGoodKiosk = sql("(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))");
-// Others are cleared away when the next link is made; none is listed longer.
+// Older links are deleted when the next one is made; they are not listed any longer.
 constexpr auto kListedKiosk = sql(
     "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')");
 
@@ -90,7 +90,7 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
   STRATA_TRY(check_name(name));
   STRATA_TRY(check_texts({{&user, "user"}}));
   return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
-    // Locked, so that of two at once the later one counts the earlier.
+    // Locked, so that the later of two concurrent transactions counts the link of the earlier.
     auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
                                             Params().id(tour_id)));
     if (tour.rows() == 0) return no_such("tour", to_string(tour_id));
@@ -103,7 +103,7 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
                          Params().id(tour_id)));
     if (count.integer(0, 0) >= kMaxKiosks)
       return fail(ErrorCode::conflict, "Too many kiosks",
-                  "A tour has links for at most " + std::to_string(kMaxKiosks) +
+                  "A tour can have links for at most " + std::to_string(kMaxKiosks) +
                       " kiosks. Revoke some first.");
     NewKiosk made;
     made.secret = random_token();
@@ -155,8 +155,8 @@ Result<Kiosk> Kiosks::ask_reload(KioskId id) {
         Params().id(id)));
     auto kiosk = load(connection, id);
     if (kiosk && done.affected() == 0)
-      return fail(ErrorCode::conflict, "Link not valid",
-                  "The link of this kiosk is revoked or expired: it does not ask any more.");
+      return fail(ErrorCode::conflict, "Link is not valid",
+                  "The link of this kiosk is revoked or expired. Create a new link.");
     return kiosk;
   });
 }

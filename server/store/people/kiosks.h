@@ -13,53 +13,52 @@ namespace strata::store {
 
 class Pool;
 
-// A screen that shows one tour to whoever stands before it.
+// A screen that shows one tour to visitors.
 struct Kiosk {
   KioskId id = 0;
-  std::string name;  // where it stands
+  std::string name;  // the place of the screen
   NamedPartId tour_id = 0;
   ModelId model_id = 0;
   ProjectId project_id = 0;
   std::string tour, tour_name, model, model_name, project;  // slugs and names
-  std::string user;                                         // who made the link
+  std::string user;                                         // the user who made the link
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> expires, last_seen, revoked;
-  bool wants_reload = false;  // it was asked to, and did not come again since
+  bool wants_reload = false;  // a reload was requested, and the page was not loaded since
 };
 
 struct NewKiosk {
-  std::string secret;  // told this once: its SHA-256 is kept, of 256 random bits
+  std::string secret;  // returned only once: the store keeps its SHA-256; it has 256 random bits
   Kiosk kiosk;
 };
 
-// Links of kiosks; of a Store, and as thread-safe and blocking as that, with the same Problems for
-// what is not there or away.
+// Links of kiosks. Part of Store: thread-safe and blocking as Store is, with the same errors for
+// missing or unreachable data.
 class Kiosks {
  public:
-  static constexpr std::int64_t kMaxKiosks = 100;  // good ones of a tour
+  static constexpr std::int64_t kMaxKiosks = 100;  // valid ones of a tour
 
   explicit Kiosks(Pool& pool) : pool_(pool) {}
 
   struct Page {
-    std::vector<Kiosk> kiosks;  // in the order in which they were made; bad ones for 30 days
+    std::vector<Kiosk> kiosks;  // in the order of their creation; invalid ones for 30 days
     std::int64_t total = 0;
   };
-  // Of these projects, or of all. `after`: only those with higher ids.
+  // Returns the kiosks of these projects, or of all. `after`: only those with higher ids.
   Result<Page> all(const std::optional<std::vector<ProjectId>>& projects, int limit, int offset,
                    std::int64_t after = 0);
   Result<Kiosk> kiosk(KioskId id);
-  Result<std::vector<KioskId>> of_tour(NamedPartId tour_id);  // ids, good or not
+  Result<std::vector<KioskId>> of_tour(NamedPartId tour_id);  // ids, valid or not
 
-  // Refused: an empty name (malformed), a tour that is not there (not_found), one too many
-  // (conflict).
+  // Refused: an empty name (malformed), an unknown tour (not_found), too many kiosks (conflict).
   Result<NewKiosk> create(NamedPartId tour_id, const std::string& name, const std::string& user,
                           std::optional<std::chrono::seconds> lifetime);
   // Nothing: unknown, expired or revoked.
   Result<std::optional<Kiosk>> find(const std::string& secret);
-  // That it is there, to a minute. `loaded`: its page was loaded just now, as it may have been
-  // asked to.
+  // Records that the kiosk is running, to a minute. `loaded`: its page was loaded just now, which
+  // ends a requested reload.
   Result<void> seen(KioskId id, bool loaded);
-  Result<void> revoke(KioskId id);       // again is the same
+  Result<void> revoke(KioskId id);       // no effect if it is revoked already
   Result<Kiosk> ask_reload(KioskId id);  // conflict: it is revoked or expired
 
  private:

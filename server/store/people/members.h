@@ -13,19 +13,19 @@ namespace strata::store {
 
 class Pool;
 
-// Roles of people in single projects. Part of Store: its rules for threads and errors hold.
+// Roles of users in single projects. Part of Store: its rules for threads and errors hold.
 class Members {
  public:
   explicit Members(Pool& pool) : pool_(pool) {}
 
-  // Who has a role in the project beside the one they have everywhere, by name.
+  // Returns users with a role in the project in addition to their role in the site, by name.
   Result<std::vector<Membership>> of_project(ProjectId project_id);
-  // Gives the role (viewer, annotator or curator) in place of the one they had there. not_found:
-  // the project or the person is not there. `by`: who asked, for the project's activity; empty: it
-  // is not told there.
+  // Gives the role (viewer, annotator or curator), which replaces the former one there. not_found:
+  // the project or the user does not exist. `by`: the user named in the project's activity; empty:
+  // no entry.
   Result<Membership> put(ProjectId project_id, const std::string& user, Role role,
                          const std::string& by = {});
-  // not_found: the person has no role of their own there.
+  // not_found: the user has no role of their own there.
   Result<void> remove(ProjectId project_id, const std::string& user, const std::string& by = {});
 
  private:

@@ -17,25 +17,27 @@ Result<void> check_password(std::string_view password, std::string_view user,
   };
   if (password.size() > kMaxPasswordLength)
     return fail(ErrorCode::invalid, "Password too long",
-                "A password has at most " + std::to_string(kMaxPasswordLength) + " bytes.", field);
+                "A password can have at most " + std::to_string(kMaxPasswordLength) + " bytes.",
+                field);
   const auto characters =
       std::ranges::count_if(password, [](char c) { return (c & 0xc0) != 0x80; });
   if (static_cast<std::size_t>(characters) < kMinPasswordLength)
-    return fail(
-        ErrorCode::invalid, "Password too short",
-        "A password has " + std::to_string(kMinPasswordLength) +
-            " characters or more. A few words that belong together to nobody but you are good.",
-        field);
+    return fail(ErrorCode::invalid, "Password too short",
+                "A password must have " + std::to_string(kMinPasswordLength) +
+                    " characters or more. Use several words that nobody can guess.",
+                field);
   if (std::ranges::search(password, user, same).size() > 0 &&
       password.size() < user.size() + kMinPasswordLength)
-    return fail(ErrorCode::invalid, "Password too easy",
-                "The name and little more is the first thing that is tried.", field);
+    return fail(ErrorCode::invalid, "Password too simple",
+                "The password is your user name with few other characters, which is easy to "
+                "guess. Choose another password.",
+                field);
   return {};
 }
 
 namespace {
 
-std::counting_semaphore<2> free_slots{2};  // each takes 64 MiB and a core
+std::counting_semaphore<2> free_slots{2};  // each hash takes 64 MiB and a core
 
 struct Slot {
   const bool is_had = free_slots.try_acquire_for(std::chrono::seconds(2));
@@ -46,7 +48,7 @@ struct Slot {
 
 tl::unexpected<Error> too_many() {
   return fail(ErrorCode::too_many_requests, "Too many sign-ins",
-              "Many sign in at this moment. Wait a little and try again.");
+              "Many people are signing in at the moment. Wait a few seconds and try again.");
 }
 
 std::string hash_of(std::string_view password) {

@@ -11,8 +11,8 @@
 #include "store/pg/sql.h"
 #include "store/store_impl.h"
 
-// Who is changed, or gets or loses a secret, is locked first (`lock_person`): what is said of them
-// in that moment holds until it is written.
+// A transaction that changes a user, or adds or removes a secret, locks the user first
+// (`lock_person`). Facts that were read about the user then stay true until the commit.
 
 namespace strata::store {
 namespace {
@@ -65,7 +65,7 @@ bool is_ascii(const std::string& text) {
 }
 
 Result<Person> load_person(PgConnection& connection, const std::string& name, bool lock) {
-  // Names are ASCII. Other letters of which one has the same lower case must not lead to them.
+  // Names are ASCII. Other letters must not match a name through their lower case.
   if (!is_ascii(name) || !check_text(name, "user")) return no_such("person", name);
   constexpr auto kRead = sql("SELECT ", kPersonColumns,
                              " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL");
@@ -81,12 +81,12 @@ Result<void> run(PgConnection& connection, const auto& sql, const Params& params
 }
 
 Result<void> revoke_tokens(PgConnection& connection, const std::string& user, TokenKind kind,
-                           std::optional<TokenId> kept) {
+                           std::optional<TokenId> kept_token) {
   return run(
       connection,
       "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND revoked IS NULL AND "
       "id IS DISTINCT FROM $3",
-      Params().text(user).text(name(kind)).optional_id(kept));
+      Params().text(user).text(name(kind)).optional_id(kept_token));
 }
 
 Result<std::int64_t> count_good(PgConnection& connection, const std::string& user, TokenKind kind) {
@@ -112,7 +112,7 @@ Token read_token(const PgResult& rows, TokenKind kind, int i) {
 constexpr auto kTokenColumns = sql(
     "id, label, role, created, expires, last_used, (SELECT slug FROM projects p WHERE p.id = tokens.project_id)");
 
-// Of somebody who is locked.
+// The user must be locked.
 Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user,
                               Role role, std::optional<std::chrono::seconds> lifetime,
                               const std::string& label, std::optional<ProjectId> project = {}) {
@@ -157,7 +157,7 @@ Result<NewToken> open_session(PgConnection& connection, const Person& person,
 
 struct Found {
   Principal principal;
-  bool is_fresh = false;  // it was used a moment ago, and that is written
+  bool is_fresh = false;  // its use was recorded a moment ago
 };
 Result<std::optional<Found>> find_secret(PgConnection& connection, const std::string& secret) {
   auto row = STRATA_TRY(connection.query(
@@ -193,10 +193,10 @@ Result<std::optional<Found>> find_secret(PgConnection& connection, const std::st
 }
 
 Result<void> put_password(PgConnection& connection, const std::string& user,
-                          const std::string& hash, std::optional<TokenId> kept) {
+                          const std::string& hash, std::optional<TokenId> kept_token) {
   STRATA_TRY(run(connection, "UPDATE users SET password = $2 WHERE name = $1",
                  Params().text(user).text(hash)));
-  STRATA_TRY(revoke_tokens(connection, user, TokenKind::session, kept));
+  STRATA_TRY(revoke_tokens(connection, user, TokenKind::session, kept_token));
   for (const TokenKind link : {TokenKind::invitation, TokenKind::owner_link})
     STRATA_TRY(revoke_tokens(connection, user, link, {}));
   return {};
@@ -223,12 +223,13 @@ Result<Person> Accounts::find(const std::string& name) {
 }
 
 Result<std::vector<Person>> Accounts::called(const std::vector<std::string>& names) {
-  PgArray asked(oid::kText);
+  PgArray requested(oid::kText);
   for (const std::string& name : names)
-    if (check_text(name, "user")) asked.add(std::string_view(name));
+    if (check_text(name, "user")) requested.add(std::string_view(name));
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
-    auto rows = STRATA_TRY(connection.query(
-        sql("SELECT ", kPersonColumns, " FROM users WHERE name = any($1)"), Params().array(asked)));
+    auto rows = STRATA_TRY(
+        connection.query(sql("SELECT ", kPersonColumns, " FROM users WHERE name = any($1)"),
+                         Params().array(requested)));
     std::vector<Person> people;
     for (int i = 0; i < rows.rows(); ++i) people.push_back(read_person(rows, i));
     return people;
@@ -245,16 +246,17 @@ Result<Person> Accounts::create(const std::string& name, const std::string& full
   };
   if (name.empty() || name.size() > 64 || !is_plain(name.front()) ||
       !std::ranges::all_of(name, may_stand))
-    return fail(
-        ErrorCode::invalid, "Bad name",
-        "A name has 1 to 64 letters (a to z), digits, `.`, `_`, `@` and `-`, and begins with a letter or digit.",
-        "user");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "A user name must have 1 to 64 letters (a to z), digits, `.`, `_`, `@` and "
+                "`-`. It must begin with a letter or digit.",
+                "user");
   std::string lower = name;
   for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   if (lower.starts_with(kFormer))
-    return fail(ErrorCode::conflict, "Name taken",
-                "Names that begin with `former-` are kept for who is deleted. Choose another name.",
+    return fail(ErrorCode::conflict, "Name reserved",
+                "User names that begin with `former-` are reserved for deleted accounts. "
+                "Choose another name.",
                 "user");
   STRATA_TRY(check_texts({{&full_name, "full_name"}}));
   return pool_.write([&](PgConnection& connection) -> Result<Person> {
@@ -264,8 +266,10 @@ Result<Person> Accounts::create(const std::string& name, const std::string& full
             kPersonColumns),
         Params().text(name).text(full_name).text(strata::name(role))));
     if (made.rows() == 0)
-      return fail(ErrorCode::conflict, "Name taken",
-                  "There is somebody called `" + name + "`. Choose another name.", "user");
+      return fail(
+          ErrorCode::conflict, "Name already used",
+          "There is already a person with the user name `" + name + "`. Choose another name.",
+          "user");
     if (groups.empty()) return read_person(made, 0);
     STRATA_TRY(act_as(connection, by));
     STRATA_TRY(join_groups(connection, made.id<PersonId>(0, 0), groups));
@@ -326,8 +330,8 @@ Result<void> Accounts::remove(const std::string& name) {
     STRATA_TRY(rename_in_journal(connection, person.name, former));
     STRATA_TRY(rename_in_comments(connection, person.name, former));
     STRATA_TRY(rename_in_activity(connection, person.name, former));
-    // Answers that are kept for calls that come again may tell it, as the name of somebody or in
-    // what is said to them; names hold nothing that JSON writes otherwise.
+    // Stored answers for repeated calls may contain the name, as a user name or in a mention. JSON
+    // escapes no character of a name.
     return run(
         connection,
         sql("DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
@@ -356,8 +360,8 @@ Result<std::vector<Membership>> Members::of_project(ProjectId project_id) {
 
 Result<void> check_project_role(Role role) {
   if (role < Role::viewer || role > Role::curator)
-    return fail(ErrorCode::invalid, "No role in a project",
-                "In a project people are viewer, annotator or curator.", "role");
+    return fail(ErrorCode::invalid, "Not a project role",
+                "The role in a project must be viewer, annotator or curator.", "role");
   return {};
 }
 
@@ -416,10 +420,10 @@ Result<std::string> Accounts::password_of(const std::string& name) {
 }
 
 Result<void> Accounts::set_password(const std::string& name, const std::string& hash,
-                                    std::optional<TokenId> kept) {
+                                    std::optional<TokenId> kept_token) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto person = STRATA_TRY(lock_person(connection, name));
-    return put_password(connection, person.name, hash, kept);
+    return put_password(connection, person.name, hash, kept_token);
   });
 }
 
@@ -436,14 +440,14 @@ Result<NewToken> Tokens::create(TokenKind kind, const std::string& user, Role ro
                                               Params().id(person.id).text(*hash)));
       if (same.rows() == 0)
         return fail(ErrorCode::unauthenticated, "Not signed in",
-                    "The password was changed meanwhile.", "password");
+                    "The password was changed in the meantime. Sign in again.", "password");
     }
     if (kind == TokenKind::session) return open_session(connection, person, lifetime, label);
     const auto good = count_good(connection, person.name, kind);
     if (!good) return tl::unexpected(good.error());
     if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMaxTokens))
       return fail(ErrorCode::conflict, "Too many tokens",
-                  "There are " + std::to_string(kMaxTokens) + " tokens. Revoke some first.");
+                  "There are " + std::to_string(kMaxTokens) + " tokens. Revoke some tokens first.");
     if (project) {
       STRATA_TRY(check_project_role(role));
       STRATA_TRY(lock_project(connection, *project));
@@ -467,7 +471,7 @@ Result<std::optional<Principal>> Tokens::find(const std::string& secret) {
       pool_.read([&](PgConnection& connection) { return find_secret(connection, secret); }));
   if (!found) return std::optional<Principal>();
   const Principal& principal = found->principal;
-  // That it was used is only remembered: whoever asks is let in also where nothing can be written.
+  // Recording the use is optional: the secret stays valid even if nothing can be written.
   if (!found->is_fresh &&
       (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
     (void)pool_.write([&](PgConnection& connection) {
@@ -518,8 +522,8 @@ Result<std::optional<std::string>> Accounts::accept_invitation(
     auto invited = STRATA_TRY(find_secret(connection, invitation));
     if (!is_good(invited)) return std::optional<std::string>();
     auto person = STRATA_TRY(lock_person(connection, invited->principal.user));
-    // Of two who use it at once, one came first; and the person may have been disabled before the
-    // lock was had.
+    // Two calls may use the invitation at once, and the user may have been disabled before this
+    // transaction got the lock.
     auto still = STRATA_TRY(find_secret(connection, invitation));
     if (!is_good(still)) return std::optional<std::string>();
     STRATA_TRY(put_password(connection, person.name, hash, {}));
@@ -552,9 +556,9 @@ Result<void> Tokens::revoke(const std::string& user, TokenKind kind, TokenId id)
 }
 
 Result<void> Tokens::revoke_all(const std::string& user, TokenKind kind,
-                                std::optional<TokenId> kept) {
+                                std::optional<TokenId> kept_token) {
   return pool_.write(
-      [&](PgConnection& connection) { return revoke_tokens(connection, user, kind, kept); });
+      [&](PgConnection& connection) { return revoke_tokens(connection, user, kind, kept_token); });
 }
 
 }  // namespace strata::store

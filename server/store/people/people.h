@@ -12,11 +12,11 @@
 namespace strata::store {
 
 inline constexpr std::chrono::hours kInvitationLifetime{24 * 7};
-// good sessions of a person, and as many for scripts
+// valid sessions of a user, and as many tokens for scripts
 inline constexpr std::size_t kMaxTokens = 100;
 
-// Someone with an account. `name` is what they sign in with, in any case, and what journals say of
-// them.
+// A user with an account. `name` is the name for signing in, ignoring case, and the name in
+// journals.
 struct Person {
   PersonId id = 0;
   std::string name;
@@ -26,10 +26,10 @@ struct Person {
   bool disabled = false;
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> last_seen;  // to some minutes
-  std::vector<std::string> groups;                                 // that they are in, by name
+  std::vector<std::string> groups;                                 // by name
 };
 
-// What is to be changed of somebody; the rest stays as it is.
+// The change of a user; empty members stay unchanged.
 struct PersonChange {
   std::optional<std::string> full_name;
   std::optional<Role> role;
@@ -37,36 +37,37 @@ struct PersonChange {
 };
 
 enum class TokenKind {
-  session,  // of a browser; does what its person may do
-  // the same, but no more than its own role, and, where it has a project, nothing elsewhere
+  session,  // of a browser; has the rights of its user
+  // the same, but limited to its own role, and, if it has a project, to this project
   script,
-  owner_link,  // is traded for sessions until it expires
-  invitation,  // is traded for a password and a session, once
+  owner_link,  // can be exchanged for sessions until it expires
+  invitation,  // can be exchanged for a password and a session, once
 };
 
-// What a secret stands for. The secret itself is nowhere: its SHA-256 is kept, of 256 random bits.
+// The description of a secret. The secret itself is not stored: the store keeps its SHA-256; a
+// secret has 256 random bits.
 struct Token {
   TokenId id = 0;
   TokenKind kind = TokenKind::session;
-  std::string label;  // what the browser calls itself, or what the token is for
+  std::string label;  // name of the browser, or purpose of the token
   Role role = Role::viewer;
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> expires, last_used;
-  std::optional<std::string> project;  // slug of the only one that it is good in
+  std::optional<std::string> project;  // slug of the only project where it is valid
 };
 
 struct NewToken {
-  std::string secret;  // told this once
+  std::string secret;  // returned only once
   Token token;
 };
 
-// Somebody's role in one project: viewer, annotator or curator.
+// A user's role in one project: viewer, annotator or curator.
 struct Membership {
   Person person;
   Role role = Role::viewer;
 };
 
-// Who a secret speaks for, and as what.
+// The user, the roles and the kind of a secret.
 struct Principal {
   std::string user;
   Roles roles;

@@ -4,7 +4,7 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 20;  // as the table has it
+constexpr std::size_t kMaxBytes = 1 << 20;  // as in the table
 
 }  // namespace
 
@@ -20,11 +20,11 @@ Result<nlohmann::json> PersonalViews::find(const std::string& user, ModelId mode
 Result<void> PersonalViews::keep(const std::string& user, ModelId model_id,
                                  const nlohmann::json& layers) {
   STRATA_TRY(check_json(layers, "layers"));
-  // PostgreSQL writes a blank behind every comma and colon: half of the room is enough for any of
-  // them.
+  // PostgreSQL writes a space after every comma and colon: half of the limit is enough in every
+  // case.
   if (layers.dump().size() > kMaxBytes / 2)
-    return fail(ErrorCode::too_large, "Too much to keep",
-                "What is kept of a model for a person has at most 512 KiB.", "layers");
+    return fail(ErrorCode::too_large, "Settings too large",
+                "The personal settings of one model can have at most 512 KiB.", "layers");
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done =
         layers.empty()

@@ -34,7 +34,7 @@ Result<void> copy_chunks(PgConnection& connection, const Sha256& hash, const Nex
   }
 }
 
-// True when the blob is new and its chunks must be written.
+// Returns true when the blob is new and its chunks must be written.
 Result<bool> claim(PgConnection& connection, const Sha256& hash, std::int64_t bytes) {
   for (;;) {
     auto made =
@@ -56,7 +56,7 @@ Content content_of(Bytes memory) {
 
 namespace {
 
-// The next chunk of a file, empty at its end.
+// Returns the next chunk of a file, empty at its end.
 Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer,
                          const std::filesystem::path& file) {
   in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size()));
@@ -68,7 +68,7 @@ Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer,
 
 }  // namespace
 
-// Files are hashed before they are sent: a scan that is kept already is not sent again.
+// Hashes a file before it is sent: a scan that is stored already is not sent again.
 Result<Content> content_of(const std::filesystem::path& file,
                            const std::function<bool()>& cancelled) {
   std::ifstream in(file, std::ios::binary);
@@ -131,7 +131,7 @@ Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha2
                                  }));
   if (content.size() != static_cast<std::size_t>(bytes))
     return fail(ErrorCode::internal, "Damaged content",
-                "Stored content is incomplete: restore the database from a backup.");
+                "The stored content is incomplete. Restore the database from a backup.");
   return content;
 }
 
@@ -145,7 +145,8 @@ Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, st
     }));
     const std::size_t skipped = at % kChunkBytes;
     if (chunk.rows() == 0 || chunk.bytes(0, 0).size() <= skipped)
-      return fail(ErrorCode::not_found, "Not found", "The file was deleted while it was read.");
+      return fail(ErrorCode::not_found, "Not found",
+                  "Somebody deleted the file while the server was reading it.");
     Bytes piece = chunk.bytes(0, 0).subspan(skipped);
     piece = piece.first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), end - at)));
     if (!sink(piece)) break;
@@ -165,8 +166,8 @@ Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes) {
   PgArray list(oid::kBytea);
   for (const auto& hash : hashes) list.add(Bytes(hash));
-  // Locked first: of two deletions at once, the later one then sees that the earlier one's model is
-  // gone.
+  // Lock first: of two concurrent deletions, the later one then sees that the model of the earlier
+  // one is deleted.
   auto locked =
       connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE",
                        Params().array(list));

@@ -10,15 +10,15 @@ namespace strata::store {
 
 inline constexpr std::size_t kChunkBytes = 1u << 20;
 
-// Large content by its SHA-256, in chunks. All run inside the caller's transaction and leave the
-// blob's row locked against deletion until it ends. `cancelled` is asked once a chunk. Keep several
-// in the order of their hashes: then two imports and deletions of the same ones cannot wait for
-// each other.
+// Large content by its SHA-256, in chunks. All functions run inside the caller's transaction and
+// lock the blob's row against deletion until it ends. `cancelled` is called once per chunk. Store
+// several blobs in the order of their hashes: then two imports and deletions of the same blobs
+// cannot deadlock.
 struct Content {
   Sha256 hash{};
   std::int64_t bytes = 0;
   Bytes memory;                // the content, or
-  std::filesystem::path file;  // where it is
+  std::filesystem::path file;  // the file that holds it
 };
 Content content_of(Bytes memory);
 Result<Content> content_of(const std::filesystem::path& file,
@@ -29,16 +29,17 @@ Result<void> keep_blob(PgConnection& connection, const Content& content,
 Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256,
                                             std::int64_t bytes);
 
-// Hands out the bytes from `begin` to before `end` in pieces of kChunkBytes at most, until `sink`
-// returns false. One query a piece: a slow reader holds no connection while it reads. `not_found`
-// where the blob goes meanwhile.
+// Passes the bytes from `begin` to before `end` in pieces of at most kChunkBytes, until `sink`
+// returns false. One query for each piece: a slow reader holds no connection while it reads.
+// `not_found` if the blob is deleted during the call.
 Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin,
                          std::uint64_t end, const std::function<bool(Bytes)>& sink);
 
-// Deletes those of the blobs that nothing uses any more.
+// Deletes those of the blobs that are no longer used.
 Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes);
-// All such blobs, but for those that somebody is about to use. Returns how many.
+// Deletes all unused blobs, except those that another transaction is about to use. Returns their
+// number.
 Result<std::int64_t> drop_all_unused(PgConnection& connection);
 
 }  // namespace strata::store

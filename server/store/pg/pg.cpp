@@ -26,10 +26,11 @@ constexpr const char* kConnectionLost = "08006";
 constexpr std::chrono::milliseconds kConnectFor{5000};
 
 Error unknown_outcome(Error lost) {
-  lost.title = "Outcome unknown";
+  lost.title = "Result unknown";
   lost.detail =
-      "The database's answer to the last step was lost, so this may have been done or not. Look before you repeat it; a "
-      "repeat with the same Idempotency-Key does nothing twice.";
+      "The server lost the connection to the database, so it does not know whether "
+      "the change was saved. Check before you repeat it. A repeat with the same "
+      "Idempotency-Key is safe.";
   return lost;
 }
 
@@ -38,7 +39,7 @@ Error unknown_outcome(Error lost) {
 Error unavailable(std::string_view why) {
   return {ErrorCode::unavailable, "Database unavailable",
           "PostgreSQL does not answer (" + one_line(why) +
-              "). Nothing was changed by this call; try again.",
+              "). This request changed nothing. Try again.",
           ""};
 }
 
@@ -47,29 +48,31 @@ Error problem_of(std::string_view sqlstate, std::string_view message) {
   if (sqlstate.empty() || starts_with_any(sqlstate, {"08", "57P"})) return unavailable(message);
   if (sqlstate == "53100")
     return {ErrorCode::storage_full, "Disk full",
-            "The database's disk is full (" + what + "). Free space on it; nothing was changed.",
+            "The database's disk is full (" + what +
+                "). Nothing changed. Ask an administrator to free disk space.",
             ""};
   if (sqlstate.starts_with("53"))
     return {ErrorCode::busy, "Database overloaded",
             "PostgreSQL is out of resources (" + what + "). Try again shortly.", ""};
   if (sqlstate == "23505")
     return {ErrorCode::conflict, "Already exists",
-            "Something with this name or id exists already (" + what + ").", ""};
+            "Something with this name or id already exists (" + what + ").", ""};
   if (sqlstate == "23503")
     return {ErrorCode::conflict, "Conflict",
-            "What this refers to does not exist, or is still in use (" + what + ").", ""};
+            "This refers to something that does not exist, or it is still in use (" + what + ").",
+            ""};
   if (sqlstate.starts_with("23"))
-    return {ErrorCode::conflict, "Conflict", "The database refuses these values (" + what + ").",
+    return {ErrorCode::conflict, "Conflict", "The database rejected these values (" + what + ").",
             ""};
   if (sqlstate == "22021" || sqlstate == "22P05")
-    return {ErrorCode::malformed, "Text not storable",
+    return {ErrorCode::malformed, "Text cannot be stored",
             "Text must be UTF-8 without the character U+0000.", ""};
   if (starts_with_any(sqlstate, {"22", "54"}))
-    return {ErrorCode::malformed, "Value not storable",
-            "The database cannot keep a value (" + what + ").", ""};
+    return {ErrorCode::malformed, "Value cannot be stored",
+            "The database cannot store a value (" + what + ").", ""};
   if (starts_with_any(sqlstate, {"40", "55P03", "57014", "25006"}))
     return {ErrorCode::busy, "Database busy",
-            "PostgreSQL could not do it now (" + what + "). Try again.", ""};
+            "PostgreSQL could not do this now (" + what + "). Try again.", ""};
   if (sqlstate.starts_with("58"))
     return {ErrorCode::unavailable, "Database unavailable",
             "PostgreSQL cannot read or write its files (" + what + "). Check its disk.", ""};
@@ -82,8 +85,8 @@ bool is_transient(std::string_view sqlstate) {
 }
 
 Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimits& limits) {
-  // libpq takes whole seconds, and 2 for 1. Settings given in the DSN come later in the list and
-  // win.
+  // libpq takes whole seconds, and 2 for 1. Settings in the DSN come later in the list and take
+  // precedence.
   const auto patience =
       std::chrono::ceil<std::chrono::seconds>(std::min(limits.answer, kConnectFor));
   const std::string connect_timeout = std::to_string(std::max<std::int64_t>(patience.count(), 2));
@@ -101,7 +104,8 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
   auto set =
       connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
   if (!set) return tl::unexpected(set.error());
-  // A session whose client gave up ends, and lets go of its locks. Not every system can do that.
+  // Ends a session, and releases its locks, when its client has disconnected. Not every system
+  // supports this.
   if (PQserverVersion(raw) >= 140000)
     (void)connection.script("SET client_connection_check_interval = '2s'");
   STRATA_TRY(connection.set_limits(limits));
@@ -125,13 +129,14 @@ bool PgConnection::alive() {
 }
 
 void PgConnection::close(std::string reason) {
-  // Shut first: saying goodbye to a database that hangs must not wait, either.
+  // Shut down first: the closing message must not wait for a database that hangs.
   shutdown(PQsocket(connection_.get()), SHUT_RDWR);
   connection_.reset();
   closed_because_ = std::move(reason);
 }
 
-// False: nothing moved for as long as the limits allow, and the connection is closed.
+// Returns false if nothing was transferred for as long as the limits allow; the connection is then
+// closed.
 bool PgConnection::wait_for_socket(short events) {
   const auto deadline = std::chrono::steady_clock::now() + limits_.answer;
   for (;;) {
@@ -146,8 +151,8 @@ bool PgConnection::wait_for_socket(short events) {
   }
 }
 
-// Until all that was queued is sent. What arrives meanwhile is read, so that both sides cannot wait
-// for each other.
+// Sends everything that is queued. Reads incoming data at the same time, so that the two sides
+// cannot wait for each other.
 bool PgConnection::flush() {
   for (;;) {
     const int rest = PQflush(connection_.get());
@@ -157,7 +162,7 @@ bool PgConnection::flush() {
   }
 }
 
-// Null at the end of a statement's results, and when the connection was closed.
+// Returns null at the end of a statement's results, and when the connection was closed.
 PGresult* PgConnection::next_result() {
   while (connection_ && PQisBusy(connection_.get())) {
     if (!wait_for_socket(POLLIN)) return nullptr;
@@ -166,7 +171,7 @@ PGresult* PgConnection::next_result() {
   return PQgetResult(connection_.get());
 }
 
-// The last result of what was sent, or the first failure.
+// Returns the last result of the sent statements, or the first failure.
 Result<PgResult> PgConnection::outcome() {
   if (!flush()) return failed(nullptr);
   Result<PgResult> last;
@@ -266,7 +271,7 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
     if (!PQsendQueryPrepared(raw, names[i].c_str(), p.count(), p.values(), p.lengths(), p.formats(),
                              1))
       return failed(nullptr);
-    // each before the next, so that one copy of the bytes is enough
+    // flush each before the next, so that one copy of the bytes is enough
     if (!flush()) return failed(nullptr);
   }
   if (!PQpipelineSync(raw) || !flush()) return failed(nullptr);
@@ -315,7 +320,7 @@ Result<void> PgConnection::copy_end() {
 }
 
 void PgConnection::copy_abort(const char* reason) {
-  if (PQputCopyEnd(connection_.get(), reason) == 1) (void)outcome();  // a refusal, as asked for
+  if (PQputCopyEnd(connection_.get(), reason) == 1) (void)outcome();  // fails, as requested
 }
 
 Result<Transaction> Transaction::begin(PgConnection& connection) {
@@ -329,7 +334,7 @@ Result<Transaction> Transaction::begin_reading(PgConnection& connection) {
 }
 
 Transaction::~Transaction() {
-  // a broken connection is closed by the pool
+  // the pool closes a broken connection
   if (connection_) (void)connection_->script("ROLLBACK");
 }
 

@@ -115,7 +115,7 @@ class PgResult {
   std::int64_t affected() const;
   bool null(int row, int column) const { return PQgetisnull(result_.get(), row, column) != 0; }
   std::int64_t integer(int row, int column) const;  // int2, int4, int8
-  // An id, or an optional one: SQL's null.
+  // Returns an id, or an optional one: SQL's null.
   template <class T>
   T id(int row, int column) const {
     if constexpr (requires { typename T::value_type; })
@@ -141,22 +141,23 @@ class PgResult {
 
 // One connection, used by one thread at a time. Statements are prepared once per connection. A call
 // that waits longer than the limits closes the connection: its Error is `unavailable` and its
-// sqlstate "08006", as when the server had closed it.
+// sqlstate "08006", as if the server had closed it.
 class PgConnection {
  public:
-  // One attempt, of at most 5 seconds. The session writes durably (synchronous_commit on) and
-  // speaks UTF-8.
+  // Makes one attempt of at most 5 seconds. The session writes durably (synchronous_commit on) and
+  // uses UTF-8.
   static Result<PgConnection> connect(const std::string& dsn,
                                       const PgLimits& limits = kRequestLimits);
-  // From the next call on; costs a round trip where they change.
+  // Sets the limits from the next call on; costs a round trip if they change.
   Result<void> set_limits(const PgLimits& limits);
 
-  // False once the server closed the connection; costs one system call.
+  // Returns false if the server has closed the connection; costs one system call.
   bool alive();
   // SQLSTATE of the last failure; "08006" when the connection broke.
   const std::string& sqlstate() const { return sqlstate_; }
 
-  // True once after a failure that was the server's choice of a victim in a deadlock.
+  // Returns true once after a failure because the server chose this session as the victim of a
+  // deadlock.
   bool take_deadlock() { return std::exchange(sqlstate_, {}) == "40P01"; }
 
   Result<void> script(const std::string& sql);  // any number of statements without parameters
@@ -165,17 +166,17 @@ class PgConnection {
   Result<PgResult> query(const SqlText<Length>& sql, const Params& params = {}) {
     return query(sql.c_str(), params);
   }
-  // The same without preparing it: for statements that name generated tables, of which there is no
-  // end.
+  // The same without preparing the statement: for statements that name generated tables, whose
+  // number is unlimited.
   Result<PgResult> query_once(const std::string& sql, const Params& params = {});
-  // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error
-  // of `on_row` ends it, and with it the connection, since asking the server to stop could wait for
-  // it without end.
+  // Passes rows as they arrive, one result of one row each, so that memory use stays small. An
+  // error of `on_row` ends the query and closes the connection, since canceling the query could
+  // wait for the server without limit.
   Result<void> each_row(const char* sql, const Params& params,
                         const std::function<Result<void>(const PgResult&)>& on_row);
 
-  // Sends statements without waiting between them; the first failure is returned and the rest are
-  // skipped by the server.
+  // Sends statements without waiting between them; returns the first failure, and the server skips
+  // the rest.
   struct Statement {
     const char* sql;
     Params params;
@@ -207,19 +208,19 @@ class PgConnection {
   std::string sqlstate_;
 };
 
-// BEGIN now, ROLLBACK unless committed.
+// Runs BEGIN on construction, and ROLLBACK unless committed.
 class Transaction {
  public:
   static Result<Transaction> begin(PgConnection& connection);
-  // All that is read in it is of one moment; nothing is written.
+  // Begins a read-only transaction in which all reads see one moment.
   static Result<Transaction> begin_reading(PgConnection& connection);
-  // For a transaction whose BEGIN goes out with a pipeline.
+  // For a transaction whose BEGIN is sent with a pipeline.
   static Transaction adopt(PgConnection& connection) { return Transaction(connection); }
   Transaction(Transaction&& other) noexcept
       : connection_(std::exchange(other.connection_, nullptr)) {}
   Transaction& operator=(Transaction&&) = delete;
   ~Transaction();
-  // Where the answer is lost nobody knows whether it was done: the Error says so.
+  // If the answer is lost, the Error says that the commit may or may not have happened.
   Result<void> commit();
 
  private:
@@ -227,22 +228,22 @@ class Transaction {
   PgConnection* connection_;
 };
 
-// COPY BINARY pieces.
+// Pieces of binary COPY.
 std::string copy_header();
 void append_field(std::string& row, Bytes bytes);
 void append_int4(std::string& row, std::int32_t value);  // field
 void append_row_start(std::string& row, std::int16_t fields);
 std::string copy_trailer();
 
-// What a failure of PostgreSQL means to our caller: connection → unavailable, 23xxx → conflict,
-// disk full → storage_full, bad text → `malformed` …
+// Returns the Error for a failure of PostgreSQL: connection → unavailable, 23xxx → conflict, disk
+// full → storage_full, bad text → `malformed` …
 Error problem_of(std::string_view sqlstate, std::string_view message);
 Error unavailable(std::string_view why);
-// True where trying the same again later can succeed (connection, resources, deadlocks), false
-// where it never can.
+// Returns true if a later retry can succeed (connection, resources, deadlocks), false if it never
+// can.
 bool is_transient(std::string_view sqlstate);
 
-// Refuses text that PostgreSQL cannot keep: invalid UTF-8 and U+0000.
+// Refuses text that PostgreSQL cannot store: invalid UTF-8 and U+0000.
 Result<void> check_text(std::string_view text, const std::string& field);
 
 }  // namespace strata::store

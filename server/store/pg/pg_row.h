@@ -8,13 +8,13 @@
 
 namespace strata::store {
 
-// The columns of one row, each read once and in the order of the SELECT. The row's result must live
-// as long.
+// The columns of one row, each read once and in the order of the SELECT. The result must outlive
+// the row.
 class PgRow {
  public:
   PgRow(const PgResult& rows, int row) : rows_(rows), row_(row) {}
 
-  // An id, or an optional one: SQL's null.
+  // Returns an id, or an optional one: SQL's null.
   template <class T>
   T id() {
     return rows_.id<T>(row_, column_++);
@@ -28,7 +28,7 @@ class PgRow {
   Time time() { return rows_.time(row_, column_++); }
   std::vector<double> reals() { return rows_.reals(row_, column_++); }
 
-  // No value where the column is null.
+  // Return no value if the column is null.
   std::optional<std::int64_t> optional_integer() { return optional(&PgRow::integer); }
   std::optional<double> optional_real() { return optional(&PgRow::real); }
   std::optional<std::string> optional_text() { return optional(&PgRow::text); }

@@ -209,7 +209,7 @@ std::string copy_trailer() { return big_endian(std::int16_t{-1}); }
 
 Result<void> check_text(std::string_view text, const std::string& field) {
   const auto refuse = [&] {
-    return fail(ErrorCode::malformed, "Text not storable",
+    return fail(ErrorCode::malformed, "Text cannot be stored",
                 "`" + field + "` must be UTF-8 without the character U+0000.", field);
   };
   std::size_t i = 0;

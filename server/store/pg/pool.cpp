@@ -8,9 +8,8 @@ Result<Pool::Lease> Pool::acquire(const PgLimits& limits) {
   {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, slot_for_, [&] { return free_slots_ > 0; }))
-      return fail(
-          ErrorCode::busy, "Database busy",
-          "All connections to the database are at work. Nothing was changed; try again shortly.");
+      return fail(ErrorCode::busy, "Database busy",
+                  "All connections to the database are busy. Nothing changed. Try again shortly.");
     --free_slots_;
   }
   auto connection = take(limits);
@@ -19,7 +18,7 @@ Result<Pool::Lease> Pool::acquire(const PgLimits& limits) {
   return tl::unexpected(connection.error());
 }
 
-// An idle connection, else a new one.
+// Returns an idle connection, or else a new one.
 Result<PgConnection> Pool::take(const PgLimits& limits) {
   for (;;) {
     std::unique_lock lock(mutex_);

@@ -9,9 +9,10 @@
 
 namespace strata::store {
 
-// Connections shared by threads. A caller waits for a free one, for `slot_for` at most
-// (unavailable); broken ones are replaced. When the database is away, connecting is tried again for
-// `kReconnectFor` (a restart takes about that long) before the Error `unavailable`.
+// Connections shared by threads. A caller waits for a free one, for at most `slot_for`
+// (unavailable); broken ones are replaced. When the database is unreachable, the pool repeats
+// connecting for `kReconnectFor` (about the time of a restart) before it returns the Error
+// `unavailable`.
 class Pool {
  public:
   static constexpr std::chrono::milliseconds kReconnectFor{3000};
@@ -39,7 +40,7 @@ class Pool {
   Result<Lease> acquire() { return acquire(limits_); }
   Result<Lease> acquire(const PgLimits& limits);
 
-  // Runs `work(connection)`, once more on a new connection when the old one broke: for reads.
+  // Runs `work(connection)`, and repeats it on a new connection if the old one broke: for reads.
   template <class Work>
   auto read(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     for (bool again = true;; again = false) {
@@ -50,8 +51,8 @@ class Pool {
     }
   }
 
-  // Runs `work(connection)` in one transaction, committed when it succeeds; from the start again
-  // after a deadlock.
+  // Runs `work(connection)` in one transaction, and commits if it succeeds; repeats the whole
+  // transaction after a deadlock.
   template <class Work>
   auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     return write_within(limits_, std::forward<Work>(work));

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-// Statements put together while compiling, from pieces that several of them share.
+// SQL statements assembled at compile time, from pieces that several of them share.
 namespace strata::store {
 
 template <std::size_t Length>
@@ -12,7 +12,7 @@ struct SqlText {
   std::array<char, Length + 1> text{};
 
   const char* c_str() const& { return text.data(); }
-  const char* c_str() const&& = delete;  // it would be gone before it is read
+  const char* c_str() const&& = delete;  // it would be destroyed before it is read
 };
 
 template <class Piece>
@@ -31,7 +31,7 @@ consteval const char* sql_begin(const SqlText<Length>& piece) {
   return piece.text.data();
 }
 
-// Of literals and of what this made before: sql("SELECT ", kColumns, " FROM layers").
+// Joins literals and results of this function: sql("SELECT ", kColumns, " FROM layers").
 template <class... Pieces>
 consteval auto sql(const Pieces&... pieces) {
   SqlText<(kSqlLength<Pieces> + ...)> joined;

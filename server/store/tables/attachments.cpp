@@ -50,33 +50,33 @@ Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, TableId ta
   return found;
 }
 
-// Where the files go: as wished, or the first column that takes them all.
-Result<const Column*> column_for(const Table& table, std::optional<ColumnId> wished,
+// Returns the column for the files: the requested one, or the first that accepts them all.
+Result<const Column*> column_for(const Table& table, std::optional<ColumnId> requested,
                                  const std::vector<NewAttachment>& files) {
   const auto is_picture = [](const auto& file) { return is_raster_picture(file.media_type); };
   const bool all_pictures = std::all_of(files.begin(), files.end(), is_picture);
   const Column *pictures = nullptr, *documents = nullptr;
   for (const Column& column : table.columns) {
-    if (wished && column.id == *wished) {
+    if (requested && column.id == *requested) {
       if (!holds_attachments(column.kind))
-        return fail(ErrorCode::invalid, "No column of files",
+        return fail(ErrorCode::invalid, "No column for files",
                     "\"" + column.name + "\" is of kind `" + std::string(name(column.kind)) +
-                        "`; files go to columns of kind `picture` or `document`.",
+                        "`. Choose a column of kind `picture` or `document`.",
                     "column");
       return &column;
     }
     if (column.kind == ColumnKind::picture && !pictures) pictures = &column;
     if (column.kind == ColumnKind::document && !documents) documents = &column;
   }
-  if (wished) return no_such("column", to_string(*wished));
+  if (requested) return no_such("column", to_string(*requested));
   if (all_pictures && pictures) return pictures;
   if (documents) return documents;
   return fail(
-      ErrorCode::invalid, "No column of files",
+      ErrorCode::invalid, "No column for files",
       pictures
           ? table.name +
-                " has columns of pictures only, and not all that was sent is one (JPEG, PNG, TIFF, WebP, "
-                "GIF, HEIC, AVIF, BMP, JPEG 2000)."
+                " has columns for pictures only, but some of the files are not pictures (JPEG, "
+                "PNG, TIFF, WebP, GIF, HEIC, AVIF, BMP, JPEG 2000)."
           : table.name + " has no column of kind `picture` or `document`. Add one first.",
       "column");
 }
@@ -140,13 +140,14 @@ Result<Attached> Attachments::attach(TableId table_id, std::int64_t key,
   for (const Content& content : contents) by_hash.push_back(&content);
   std::sort(by_hash.begin(), by_hash.end(),
             [](const Content* a, const Content* b) { return a->hash < b->hash; });
-  // What cannot be is told before gigabytes are kept for it; said for certain once the table is
-  // locked, which others wait for. Not in one transaction: having read the rows it would keep them
-  // from who deletes the table, and waits for them with the table locked.
+  // Check the request before storing gigabytes; the check is repeated once the table is locked,
+  // because other transactions wait for that lock. The first check is a separate transaction: a
+  // deletion of the table would wait for the rows that it has read, while it waits for the table
+  // that the deletion has locked.
   auto may = pool_.read([&](PgConnection& connection) -> Result<void> {
     auto open = STRATA_TRY(read_table(connection, table_id, who.role));
     if (auto there = record_of(connection, open, key, version); !there) {
-      // Deleted between the two looks.
+      // The table was deleted between the two reads.
       if (connection.sqlstate() == "42P01") return no_such("table", to_string(table_id));
       return tl::unexpected(there.error());
     }
@@ -279,11 +280,11 @@ Result<std::optional<std::vector<std::uint8_t>>> Attachments::thumbnail(
 Result<void> Attachments::keep_thumbnail(const Attachment& attachment, int side,
                                          std::span<const std::uint8_t> picture) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    auto kept = connection.query(
+    auto saved = connection.query(
         "INSERT INTO thumbnails (sha256, side, picture) SELECT sha256, $2, $3 FROM attachments WHERE id = $1 "
         "ON CONFLICT DO NOTHING",
         Params().id(attachment.id).integer(side).bytes(picture));
-    return kept ? Result<void>{} : tl::unexpected(kept.error());
+    return saved ? Result<void>{} : tl::unexpected(saved.error());
   });
 }
 

@@ -4,7 +4,7 @@
 
 namespace strata::store {
 
-// The answer where `after` names no place of the list that is asked for.
+// The error for an `after` that is no place of the requested list.
 inline tl::unexpected<Error> wrong_place() {
   return fail(
       ErrorCode::invalid, "Not a place in this list",

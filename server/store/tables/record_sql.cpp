@@ -16,7 +16,7 @@ namespace {
 
 using Op = Expression::Op;
 
-// Days as doubles tell milliseconds apart for some 100 000 years.
+// Days as doubles distinguish milliseconds for some 100 000 years.
 constexpr const char* kToEndOfDay = "0.99999999";
 
 enum class Kind { number, truth, text, time, keys, features };
@@ -50,12 +50,12 @@ Kind kind_of(const Column& column) {
   }
 }
 
-// Part of a statement. A time is two: days since 1970 when it begins and, in `end`, its last
-// moment.
+// Part of a statement. A time has two parts: `text` is its beginning in days since 1970, and `end`
+// its last moment.
 struct Sql {
   Kind kind = Kind::number;
   std::string text, end;
-  const Column* column = nullptr;  // where it is nothing but that
+  const Column* column = nullptr;  // if the part is a column and nothing else
 };
 
 std::string replaced(std::string text, std::string_view what, const std::string& by) {
@@ -64,8 +64,8 @@ std::string replaced(std::string text, std::string_view what, const std::string&
   return text;
 }
 
-// The SQL of an operator over its operands, which hold no braces: texts and numbers are parameters,
-// columns are called by their numbers. Each operand is computed once, however often it is named.
+// Returns the SQL of an operator over its operands, which contain no braces: texts and numbers are
+// parameters, and columns are numbers. Each operand is computed once, however often it is used.
 std::string of_operands(std::string_view sql, const std::string& a, const std::string& b = {}) {
   const auto is_once = [&](std::string_view name) { return sql.find(name) == sql.rfind(name); };
   if (is_once("{a}") && is_once("{b}"))
@@ -90,14 +90,14 @@ class Writer {
         params_(params),
         field_(field) {}
 
-  Result<std::string> write(const Expression& expression, Kind wanted) {
-    const std::string sql = wanted == Kind::truth ? condition(expression) : number(expression);
+  Result<std::string> write(const Expression& expression, Kind expected) {
+    const std::string sql = expected == Kind::truth ? condition(expression) : number(expression);
     if (problem_) return tl::unexpected(*problem_);
     return sql;
   }
 
  private:
-  // The first refusal is kept; what is written after it is never read.
+  // Keeps the first refusal; SQL that is written after it is never used.
   Sql refuse(const std::string& what, const Expression& at) {
     if (!problem_) problem_ = expression_problem(what, at.position.at, field_);
     return {};
@@ -138,7 +138,7 @@ class Writer {
   }
 
   Sql column(const Expression& e) {
-    // How a column of the row at hand is reached, by its name in the database.
+    // Returns the SQL for a column of the current row, by its name in the database.
     std::function<std::string(const std::string&)> reach = [](const std::string& name) {
       return "t." + name;
     };
@@ -147,7 +147,7 @@ class Writer {
       const Column* column = find_column(table->columns, e.path[step]);
       if (column == nullptr) return no_column(*table, e, step);
       if (column->kind != ColumnKind::term)
-        return refuse("'" + column->slug + "' holds no key of another table's record", e);
+        return refuse("'" + column->slug + "' does not contain a key of another table", e);
       const Table* target = target_of(*column);
       if (target == nullptr) return {};
       const std::string alias = "u" + std::to_string(++aliases_), key = reach(name_of(*column));
@@ -165,7 +165,7 @@ class Writer {
 
   Sql no_column(const Table& table, const Expression& e, std::size_t step) {
     return refuse(table.name.substr(0, 100) + " has no column '" + e.path[step].substr(0, 100) +
-                      "'; it has " + some_columns(table),
+                      "'. It has " + some_columns(table),
                   e);
   }
 
@@ -212,13 +212,13 @@ class Writer {
     return sql.text;
   }
 
-  static std::string wrong(const Expression& e, const Sql& sql, Kind wanted) {
+  static std::string wrong(const Expression& e, const Sql& sql, Kind expected) {
     const std::string what =
         e.is_column() ? "'" + e.path.back().substr(0, 100) + "' holds " : "These are ";
     std::string advice;
-    if (sql.column && sql.column->kind == ColumnKind::term && wanted == Kind::text)
+    if (sql.column && sql.column->kind == ColumnKind::term && expected == Kind::text)
       advice = "; name a column of the record behind the key, as in " + sql.column->slug + ".code";
-    return what + in_words(sql.kind) + ", not " + in_words(wanted) + advice;
+    return what + in_words(sql.kind) + ", not " + in_words(expected) + advice;
   }
 
   Sql time(const Expression& e) {
@@ -239,7 +239,7 @@ class Writer {
     }
     const auto moment = utc_timestamp(e.text);
     if (!moment)
-      return refuse("'" + e.text.substr(0, 100) + "' is no date; dates are written 2024-05-02", e);
+      return refuse("'" + e.text.substr(0, 100) + "' is not a date; write dates as 2024-05-02", e);
     sql.text = "(extract(epoch from " + parameter(*moment) + "::timestamptz)::float8 / 86400)";
     sql.end = sql.text;
     return sql;
@@ -262,7 +262,7 @@ class Writer {
         return "(SELECT CASE WHEN a THEN " + then + " WHEN NOT a THEN " + otherwise +
                " END FROM (SELECT " + when + " AS a) q)";
       }
-      case Op::layer: refuse("'" + e.name.substr(0, 100) + "' is no column", e); return {};
+      case Op::layer: refuse("'" + e.name.substr(0, 100) + "' is not a column", e); return {};
       default: return computed(e);
     }
   }
@@ -270,7 +270,7 @@ class Writer {
   std::string computed(const Expression& e) {
     const Operator* row = find_operator(e.op);
     if (!row || !row->apply) {
-      refuse("A number is wanted here", e);
+      refuse("Expected a number here", e);
       return {};
     }
     std::string all = number(e.parts[0]);
@@ -307,7 +307,7 @@ class Writer {
         const std::string like = text(e.parts[0]);
         return "(" + like + " LIKE " + text(e.parts[1]) + ")";
       }
-      case Op::valid: refuse("'" + e.name.substr(0, 100) + "' is no column", e); return {};
+      case Op::valid: refuse("'" + e.name.substr(0, 100) + "' is not a column", e); return {};
       default: break;
     }
     const Operator& row = *find_operator(e.op);
@@ -326,7 +326,7 @@ class Writer {
   }
 
   std::string comparison(const Expression& e, const Operator& row) {
-    // A text means what the other side holds.
+    // The other side determines how a text is read.
     const bool turned = e.parts[0].op == Op::text;
     const Expression &first = e.parts[turned ? 1 : 0], &second = e.parts[turned ? 0 : 1];
     const Sql a = operand(first);
@@ -354,8 +354,8 @@ class Writer {
     std::string known;
     for (const auto& choice : choices)
       if (known.size() < 300) known += (known.empty() ? "" : ", ") + choice.substr(0, 100);
-    refuse("'" + text.text.substr(0, 100) + "' is no choice of " + column.column->slug +
-               "; there are " + known,
+    refuse("'" + text.text.substr(0, 100) + "' is not a choice of " + column.column->slug +
+               ". Its choices are " + known,
            text);
   }
 
@@ -366,12 +366,12 @@ class Writer {
     for (const Expression& part : e.parts[1].parts) {
       if (part.op != Op::number || !(part.number >= 0 && part.number <= kMaxRecordKey) ||
           part.number != std::floor(part.number)) {
-        refuse("Keys are whole numbers from 0 to 4294967295", part);
+        refuse("A key must be a whole number from 0 to 4294967295", part);
         return {};
       }
       keys.push_back(static_cast<std::int64_t>(part.number));
     }
-    std::sort(keys.begin(), keys.end());  // as relations are kept
+    std::sort(keys.begin(), keys.end());  // relations are stored in this order
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     PgArray array(oid::kInt8);
     for (const auto key : keys) array.add(key);
@@ -405,7 +405,7 @@ Result<std::string> number_sql(const Expression& number, const OpenTable& open,
 Error unanswerable(const PgConnection& connection, Error problem, const std::string& field) {
   if (!connection.sqlstate().starts_with("22")) return problem;
   return {ErrorCode::invalid, "Number out of range",
-          "A number that this expression computes leaves the range of double precision.", field};
+          "A result of this expression is outside the range of double precision.", field};
 }
 
 }  // namespace strata::store

@@ -9,20 +9,20 @@
 
 namespace strata::store {
 
-// A formula over the columns that are seen of a table and of those that its terms name
-// (query::Names::columns) as SQL over its rows, which the statement calls `t`. What comes from
-// outside are parameters, added to `params` behind those that it has; columns are their ids.
-// Refused (invalid at `field`, with the character): a column that is not there or holds something
-// else, a text that is no date where one is wanted, no choice, no number. As in Expression
-// everything that has no finite value is NULL, but for what leaves the range of a double: there
-// PostgreSQL ends the statement (SQLSTATE 22003, see unanswerable).
+// Returns a formula over the visible columns of a table, and over those of the tables that its
+// terms name (query::Names::columns), as SQL over the rows, which the statement calls `t`. External
+// values are parameters, appended to `params`; columns are their ids. Refused (invalid at `field`,
+// with the character): a column that does not exist or has another kind, a text that is not a date,
+// choice or number where one is expected. As in Expression, a result without a finite value is
+// NULL, except for numbers beyond the range of a double: then PostgreSQL ends the statement
+// (SQLSTATE 22003, see unanswerable).
 Result<std::string> condition_sql(const Expression& condition, const OpenTable& open,
                                   PgConnection& connection, Params& params,
                                   const std::string& field);
 Result<std::string> number_sql(const Expression& number, const OpenTable& open,
                                PgConnection& connection, Params& params, const std::string& field);
 
-// What a failed statement with such an expression means to the caller: the expression's fault where
+// Returns the error for a failed statement with such an expression: an error of the expression if
 // its numbers were too large.
 Error unanswerable(const PgConnection& connection, Error problem, const std::string& field);
 

@@ -20,7 +20,7 @@ nlohmann::json keys_json(const std::vector<std::int64_t>& keys) {
       keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMaxRowProblems))));
 }
 
-// Whole numbers without a fraction, also of columns that may have one.
+// Writes whole numbers without a fraction, also for columns that may have one.
 std::string text_of(const nlohmann::json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_number_float()) return value.dump();
@@ -29,15 +29,15 @@ std::string text_of(const nlohmann::json& value) {
   return error == std::errc() ? std::string(text, end) : value.dump();
 }
 
-// What was asked for becomes cells, record by record.
+// Converts a request to cells, record by record.
 class Intake {
  public:
-  Intake(PgConnection& connection, const OpenTable& open, const WriteRecords& asked)
-      : connection_(connection), open_(open), asked_(asked) {}
+  Intake(PgConnection& connection, const OpenTable& open, const WriteRecords& request)
+      : connection_(connection), open_(open), request_(request) {}
 
   Result<TableEdit> read(const std::string& user) {
     std::vector<std::int64_t> keys;
-    for (const RecordInput& input : asked_.records)
+    for (const RecordInput& input : request_.records)
       if (input.key) keys.push_back(*input.key);
     auto rows = STRATA_TRY(load_rows(connection_, open_.table.id, open_.all, keys));
     for (Record& row : rows) now_[row.key] = std::move(row);
@@ -45,9 +45,9 @@ class Intake {
     gone_ = std::move(gone);
     named_.insert(keys.begin(), keys.end());
     next_key_ = open_.next_key;
-    TableEdit edit{user, asked_.op, {}, {}, {}};
-    for (std::size_t i = 0; i < asked_.records.size(); ++i)
-      if (auto cells = cells_for(asked_.records[i]); !cells)
+    TableEdit edit{user, request_.op, {}, {}, {}};
+    for (std::size_t i = 0; i < request_.records.size(); ++i)
+      if (auto cells = cells_for(request_.records[i]); !cells)
         add_problem(i, cells.error());
       else if (!cells->second.empty())
         edit.records.insert(std::move(*cells));
@@ -64,46 +64,48 @@ class Intake {
   }
 
  private:
-  // Keys that a record had once: it may come back by undo.
+  // Returns those of the keys that a record once had: an undo may restore it.
   Result<std::set<std::int64_t>> used_keys(const std::vector<std::int64_t>& keys) {
-    PgArray asked(oid::kInt8);
-    for (const auto key : keys) asked.add(key);
+    PgArray requested(oid::kInt8);
+    for (const auto key : keys) requested.add(key);
     auto rows = STRATA_TRY(connection_.query(
         "SELECT DISTINCT subject_id FROM table_changes WHERE table_id = $1 AND subject = 'record' AND subject_id = any($2)",
-        Params().id(open_.table.id).array(asked)));
+        Params().id(open_.table.id).array(requested)));
     std::set<std::int64_t> used;
     for (int i = 0; i < rows.rows(); ++i)
       if (!now_.contains(rows.integer(i, 0))) used.insert(rows.integer(i, 0));
     return used;
   }
 
-  // The cells that change; of a new record also those of its defaults.
+  // Returns the cells that change; for a new record, also the defaults.
   Result<std::pair<std::int64_t, Cells>> cells_for(const RecordInput& input) {
     const std::size_t index = next_index_++;
     if (input.key && (*input.key < 0 || *input.key > kMaxRecordKey))
-      return fail(ErrorCode::invalid, "Bad key", "Keys are whole numbers from 0 to 4294967295.",
-                  "key");
+      return fail(ErrorCode::invalid, "Invalid key",
+                  "A key must be a whole number from 0 to 4294967295.", "key");
     const auto now = input.key ? now_.find(*input.key) : now_.end();
     const bool exists = now != now_.end();
-    if (exists ? !asked_.may_change : !asked_.may_create)
-      return exists ? fail(ErrorCode::conflict, "Record exists",
+    if (exists ? !request_.may_change : !request_.may_create)
+      return exists ? fail(ErrorCode::conflict, "Record already exists",
                            "There is a record " + std::to_string(*input.key) + " already.", "key")
                     : Result<std::pair<std::int64_t, Cells>>(
                           no_such("record", std::to_string(input.key.value_or(0))));
     if (exists && input.version && *input.version != now->second.version) return stale("record");
     if (!exists && input.key && gone_.contains(*input.key))
-      return fail(ErrorCode::conflict, "Key used before",
-                  "Key " + std::to_string(*input.key) +
-                      " was a record's that is deleted. Keys are not given again.",
-                  "key");
+      return fail(
+          ErrorCode::conflict, "Key already used",
+          "Key " + std::to_string(*input.key) +
+              " belonged to a record that was deleted. The server does not use a key again. "
+              "Choose another key.",
+          "key");
     while (!input.key && named_.contains(next_key_)) ++next_key_;
     if (!input.key && next_key_ > kMaxRecordKey)
-      return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 were given.",
+      return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 are used.",
                   "key");
     const std::int64_t key = input.key ? *input.key : next_key_++;
     if (!index_of_.emplace(key, index).second)
-      return fail(ErrorCode::invalid, "Record named twice",
-                  "Record " + std::to_string(key) + " stands here twice.", "key");
+      return fail(ErrorCode::invalid, "Duplicate record",
+                  "Record " + std::to_string(key) + " appears twice. Send it once.", "key");
     Cells cells;
     if (!exists) cells["exists"] = true;
     for (const auto& [id, value] : input.values)
@@ -128,12 +130,12 @@ class Intake {
 
   void add_problem(std::size_t index, const Error& problem) {
     if (problems_.size() < kMaxRowProblems)
-      problems_.push_back({asked_.records[index].key.value_or(0), problem, index});
+      problems_.push_back({request_.records[index].key.value_or(0), problem, index});
   }
 
   PgConnection& connection_;
   const OpenTable& open_;
-  const WriteRecords& asked_;
+  const WriteRecords& request_;
   std::map<std::int64_t, Record> now_;
   std::set<std::int64_t> gone_, named_;
   std::map<std::int64_t, std::size_t> index_of_;
@@ -142,27 +144,27 @@ class Intake {
   std::vector<RowError> problems_;
 };
 
-Result<TableChange> write_all(PgConnection& connection, TableId table_id, const WriteRecords& asked,
-                              const std::string& user) {
+Result<TableChange> write_all(PgConnection& connection, TableId table_id,
+                              const WriteRecords& request, const std::string& user) {
   auto open = STRATA_TRY(lock_table(connection, table_id));
-  Intake intake(connection, open, asked);
+  Intake intake(connection, open, request);
   auto edit = STRATA_TRY(intake.read(user));
   TableChange change;
   change.table = open.table;
   change.problems = std::move(intake.problems());
-  // Nothing that was not so before: no entry.
+  // No change: no entry.
   if (!change.problems.empty() || edit.records.empty()) return change;
   auto done = STRATA_TRY(apply_edit(connection, open, std::move(edit)));
   for (RowError& problem : done.problems) problem.index = intake.index_of(problem.key);
   return done;
 }
 
-// The rows after a sequence, with `open` as it was then; nothing where that is now. Refused: what
-// has not happened yet.
+// Returns the rows after a sequence, with `open` as it was then; nothing if that is the present
+// state. Refused: a sequence in the future.
 Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection, OpenTable& open,
                                                         std::optional<std::int64_t> at) {
   if (at && *at > open.table.sequence)
-    return fail(ErrorCode::invalid, "Not yet there",
+    return fail(ErrorCode::invalid, "Sequence not reached",
                 "The newest sequence of this table is " + std::to_string(open.table.sequence) + ".",
                 "at");
   if (!at || *at == open.table.sequence) return std::optional<std::vector<Record>>();
@@ -172,25 +174,26 @@ Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection
 
 }  // namespace
 
-Result<TableChange> Records::write(TableId table_id, const WriteRecords& asked,
+Result<TableChange> Records::write(TableId table_id, const WriteRecords& request,
                                    const std::string& user,
                                    const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
-  if (asked.records.size() > kMaxRecordsAtOnce)
-    return fail(ErrorCode::too_large, "Too many records",
-                "At most " + std::to_string(kMaxRecordsAtOnce) + " records go in one call.");
-  // What is only tried, and what has problems, is rolled back, and told all the same.
-  std::optional<TableChange> told;
+  if (request.records.size() > kMaxRecordsAtOnce)
+    return fail(
+        ErrorCode::too_large, "Too many records",
+        "At most " + std::to_string(kMaxRecordsAtOnce) + " records are allowed in one request.");
+  // A dry run, or a change with problems, is rolled back, but its outcome is returned.
+  std::optional<TableChange> outcome;
   auto done = change(
       pool_, answer,
       [&](PgConnection& connection) -> Result<TableChange> {
-        auto change = write_all(connection, table_id, asked, user);
-        if (!change || (change->problems.empty() && !asked.dry_run)) return change;
-        told = std::move(*change);
-        return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
+        auto change = write_all(connection, table_id, request, user);
+        if (!change || (change->problems.empty() && !request.dry_run)) return change;
+        outcome = std::move(*change);
+        return fail(ErrorCode::conflict, "Not saved", "Nothing was written.");
       },
       kBulkLimits);
-  if (told) return std::move(*told);
+  if (outcome) return std::move(*outcome);
   return done;
 }
 
@@ -198,7 +201,7 @@ Result<TableChange> Records::remove(TableId table_id, std::int64_t key,
                                     std::optional<std::int64_t> version, const std::string& user,
                                     bool dry_run, const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
-  std::optional<TableChange> told;
+  std::optional<TableChange> outcome;
   auto done = change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     auto rows = STRATA_TRY(load_rows(connection, table_id, open.all, std::vector{key}));
@@ -213,10 +216,10 @@ Result<TableChange> Records::remove(TableId table_id, std::int64_t key,
     if (change && !change->problems.empty())
       return tl::unexpected(change->problems.front().problem);
     if (!change || !dry_run) return change;
-    told = std::move(*change);
-    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
+    outcome = std::move(*change);
+    return fail(ErrorCode::conflict, "Not saved", "Nothing was written.");
   });
-  if (told) return std::move(*told);
+  if (outcome) return std::move(*outcome);
   return done;
 }
 
@@ -247,11 +250,11 @@ Result<std::vector<KeyText>> Records::texts(TableId table_id, Role seen_by, cons
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     const Column* column = find_column(open.table.columns, ref);
     if (!column)
-      return fail(ErrorCode::invalid, "No such column",
+      return fail(ErrorCode::invalid, "Column not found",
                   "The table '" + open.table.name + "' has no column '" + ref + "'.", field);
     if (holds_lists(column->kind))
-      return fail(ErrorCode::invalid, "Column holds lists",
-                  "'" + column->name + "' may hold several values in one record.", field);
+      return fail(ErrorCode::invalid, "Column contains lists",
+                  "'" + column->name + "' may contain several values in one record.", field);
     auto rows = STRATA_TRY(load_all_rows(connection, table_id, {*column}));
     std::vector<KeyText> texts;
     for (const Record& row : rows) {
@@ -304,7 +307,7 @@ Result<RecordPage> Records::page(TableId table_id, Role seen_by, const RecordQue
       }
       const Column* column = find_column(open.table.columns, ref);
       if (!column)
-        return fail(ErrorCode::invalid, "No such column",
+        return fail(ErrorCode::invalid, "Column not found",
                     "The table has no column `" + ref.substr(0, 100) + "`.", "sortby");
       order.push_back({column->id, descending, *collation});
       if (column->kind != ColumnKind::term) continue;
@@ -351,7 +354,7 @@ Result<std::vector<std::int64_t>> Records::missing(TableId table_id,
 
 Result<std::int64_t> Tables::sequence_at(TableId table_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    // As for a model: a time that was read, in milliseconds, counts its own edit.
+    // As for a model: a time that was read, in milliseconds, includes its own edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits "
         "WHERE table_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
@@ -399,8 +402,8 @@ Result<TableChange> Tables::undo(TableId table_id, const std::string& user, bool
     auto change = STRATA_TRY(apply_edit(connection, open, std::move(undo.edit)));
     if (!change.problems.empty()) {
       Error problem = change.problems.front().problem;
-      return fail(ErrorCode::conflict, redo ? "Cannot be redone" : "Cannot be undone",
-                  problem.detail, problem.field);
+      return fail(ErrorCode::conflict, redo ? "Cannot redo" : "Cannot undo", problem.detail,
+                  problem.field);
     }
     STRATA_TRY(connection.query(
         "UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",

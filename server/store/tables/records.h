@@ -25,22 +25,22 @@ class Pool;
 
 struct RecordQuery {
   std::vector<std::pair<std::string, bool>> order;  // column (or `key`), descending
-  std::optional<std::vector<std::int64_t>> keys;    // only these, by key, whatever the page
+  std::optional<std::vector<std::int64_t>> keys;    // only these, by key, regardless of the page
   std::optional<std::int64_t> at;                   // as after that sequence of the table
   std::int64_t limit = 100, offset = 0;
-  std::optional<Expression> filter{};  // only those where this condition over columns holds
-  // in whose alphabet texts are sorted ("de-at"); empty: in none in particular
+  std::optional<Expression> filter{};  // only records for which this condition over columns is true
+  // language of the sort order of texts ("de-at"); empty: no particular language
   std::string language{};
-  // Only records that follow this place in the order: what RecordPage::last was. Refused
-  // (invalid, `after`): one of another order.
+  // Only records that follow this place in the order: a former RecordPage::last. Refused (invalid,
+  // `after`): a place of another order.
   std::optional<nlohmann::json> after{};
 };
 
 struct RecordPage {
-  Table table;  // with the columns of then
+  Table table;  // with the columns of that time
   std::vector<Record> records;
   std::int64_t total = 0;
-  // where the page ends, while records follow it: an array of texts, nulls and whole numbers
+  // place where the page ends, if more records follow: an array of texts, nulls and whole numbers
   std::optional<nlohmann::json> last{};
 };
 
@@ -50,21 +50,22 @@ class Records {
   explicit Records(Pool& pool) : pool_(pool) {}
 
   Result<RecordPage> page(TableId table_id, Role seen_by, const RecordQuery& query);
-  // What a number or a condition over columns is for each record, where it is known; after sequence
-  // `at` of the table, or now. Refused (invalid at `field`): what the columns do not fit.
+  // Returns the value of a number or condition over columns for each record where it is known;
+  // after sequence `at` of the table, or now. Refused (invalid at `field`): an expression that does
+  // not fit the columns.
   Result<std::vector<KeyNumber>> numbers(TableId table_id, Role seen_by,
                                          const Expression& expression,
                                          std::optional<std::int64_t> at, const std::string& field);
-  // What a column holds for each record that has a value there, now: as text, canonical (of a term,
-  // its key). Refused (invalid at `field`): a column that is not there or holds lists.
+  // Returns the present value of a column for each record that has one: as canonical text (of a
+  // term, its key). Refused (invalid at `field`): a column that does not exist or holds lists.
   Result<std::vector<KeyText>> texts(TableId table_id, Role seen_by, const std::string& column,
                                      const std::string& field);
-  // The lines and points that records of a table have on a model, by key; after sequence `at` of
-  // the table, or now.
+  // Returns the lines and points that records of a table have on a model, by key; after sequence
+  // `at` of the table, or now.
   Result<std::vector<KeyFeature>> features(TableId table_id, Role seen_by, ModelId model_id,
                                            std::optional<std::int64_t> at = {});
-  // All or none: where the change has problems, nothing was written.
-  Result<TableChange> write(TableId table_id, const WriteRecords& asked, const std::string& user,
+  // All or none: if the change has problems, nothing was written.
+  Result<TableChange> write(TableId table_id, const WriteRecords& request, const std::string& user,
                             const IdempotentResponse<TableChange>& answer = {});
   Result<TableChange> remove(TableId table_id, std::int64_t key,
                              std::optional<std::int64_t> version, const std::string& user,

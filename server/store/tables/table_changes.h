@@ -16,47 +16,48 @@ namespace strata::store {
 
 inline constexpr std::int64_t kMaxRecords = 1'000'000;     // of a table
 inline constexpr std::size_t kMaxRecordsAtOnce = 100'000;  // of a call
-inline constexpr std::size_t kMaxRowProblems = 100;        // that are told
-inline constexpr std::size_t kMaxUniqueTextLength = 1000;  // bytes: what an index takes
+inline constexpr std::size_t kMaxRowProblems = 100;        // that are returned
+inline constexpr std::size_t kMaxUniqueTextLength = 1000;  // bytes: the limit of an index
 
-// What is asked of one record.
+// The requested values of one record.
 struct RecordInput {
   std::optional<std::int64_t> key;  // none: a new record with the next key
-  // by column id; a new record gets the defaults of those that are not named
+  // by column id; a new record gets the defaults for missing columns
   std::map<ColumnId, nlohmann::json> values;
   std::optional<std::int64_t> version{};  // of the record as it was read: otherwise it is stale
 };
 struct WriteRecords {
   std::vector<RecordInput> records;
-  bool may_create = true;  // records of keys that are not there
-  bool may_change = true;  // records that are there
-  bool dry_run = false;    // everything is checked, and nothing kept
+  bool may_create = true;  // records of unused keys
+  bool may_change = true;  // existing records
+  bool dry_run = false;    // check everything, write nothing
   std::string op = "records";
 };
 
-// Why one of the records cannot be written.
+// The reason why one of the records cannot be written.
 struct RowError {
   std::int64_t key = 0;
   Error problem;
   std::optional<std::size_t> index;  // its place in WriteRecords
 };
 
-// What became of a table.
+// The result of a change of a table.
 struct TableChange {
   Table table;                // as it is now
-  std::int64_t sequence = 0;  // of the entry in its journal; 0: nothing was done
+  std::int64_t sequence = 0;  // of the entry in its journal; 0: no change
   bool columns_changed = false;
   std::vector<std::int64_t> created, changed, deleted;  // keys, ascending
-  std::vector<Record> records;                          // those created or changed, by key
-  nlohmann::json record;                                // what was done, as the journal keeps it
+  std::vector<Record> records;                          // the created or changed ones, by key
+  nlohmann::json record;                                // the change, as stored in the journal
   std::vector<RowError> problems;                       // not empty: nothing was written
 };
 
-// What undo or redo would do, so that it can be asked first what is painted.
+// The effect of an undo or redo before it is made, so that a caller can first check which records
+// are painted.
 struct UndoPlan {
-  std::int64_t table_sequence = 0;      // when it was planned
+  std::int64_t table_sequence = 0;      // at the time of the plan
   std::int64_t edit = 0;                // the entry that is undone or redone
-  std::vector<std::int64_t> vanishing;  // records that would be gone
+  std::vector<std::int64_t> vanishing;  // records that would be deleted
 };
 
 // A row of a table's journal, newest first.
@@ -71,9 +72,9 @@ struct TableEditRow {
     std::int64_t id = 0;  // key or column
     Cells before, after;
   };
-  std::vector<Change> changes;  // the first kMaxToldChanges of them
+  std::vector<Change> changes;  // the first kMaxListedChanges of them
   std::int64_t total_changes = 0;
 };
-inline constexpr int kMaxToldChanges = 100;
+inline constexpr int kMaxListedChanges = 100;
 
 }  // namespace strata::store

@@ -12,8 +12,9 @@ namespace {
 
 Cells cells_from(const nlohmann::json& json) { return json.get<Cells>(); }
 
-// The entry that undo takes: the person's newest in force. Redo: the one that the newest undo took,
-// unless what the person did after that undo is in force (as for layers, store/journal/edits.cpp).
+// Returns the entry for an undo: the user's newest in force. For a redo: the entry that the newest
+// undo disabled, unless a change that the user made after that undo is in force (as for layers,
+// store/journal/edits.cpp).
 Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, TableId table_id,
                                                  const std::string& user, bool redo) {
   auto row = STRATA_TRY(connection.query(
@@ -36,9 +37,9 @@ Result<std::map<Subject, Cells>> resolve(PgConnection& connection, TableId table
                                          std::int64_t flipped, bool in_force) {
   std::map<Subject, CellResolver> resolvers;
   PgArray ids(oid::kInt8);
-  for (const auto& [id, wanted] : names) {
+  for (const auto& [id, columns] : names) {
     ids.add(id);
-    resolvers.emplace(id, CellResolver(wanted));
+    resolvers.emplace(id, CellResolver(columns));
   }
   STRATA_TRY(connection.each_row(
       "SELECT c.subject_id, c.sequence, e.writer, e.in_force, c.before, c.after FROM table_changes c "
@@ -177,7 +178,7 @@ Result<TableHistory> read_history(PgConnection& connection, TableId table_id, Ro
             .id(table_id)
             .integer(row.sequence)
             .optional_integer(key)
-            .integer(kMaxToldChanges)));
+            .integer(kMaxListedChanges)));
     for (int c = 0; c < changes.rows(); ++c)
       row.changes.push_back({changes.boolean(c, 0), changes.integer(c, 1),
                              cells_from(changes.json(c, 2)), cells_from(changes.json(c, 3))});
@@ -191,10 +192,11 @@ Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                               const std::string& user, bool redo) {
   auto edit = STRATA_TRY(edit_to_flip(connection, open.table.id, user, redo));
   if (!edit)
-    return redo ? fail(ErrorCode::conflict, "Nothing to redo",
-                       "Nothing of yours in this table is undone, or you changed it since.")
-                : fail(ErrorCode::conflict, "Nothing to undo",
-                       "Nothing of yours in this table is in force.");
+    return redo
+               ? fail(ErrorCode::conflict, "Nothing to redo",
+                      "You have no undone change in this table, or you changed the table after it.")
+               : fail(ErrorCode::conflict, "Nothing to undo",
+                      "You have no change in this table to undo.");
   std::map<std::int64_t, std::set<std::string>> records;
   std::map<ColumnId, std::set<std::string>> columns;
   auto written = STRATA_TRY(connection.query(
@@ -205,7 +207,7 @@ Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                                         : records[written.integer(i, 1)];
     const Cells after = cells_from(written.json(i, 2));
     for (const auto& [name, value] : after) names.insert(name);
-    // A record that comes or goes does so with all that others wrote in it.
+    // A record appears or disappears with all its values, also those that other users wrote.
     if (after.contains("exists"))
       for (const Column& column : open.all) names.insert(to_string(column.id));
   }
@@ -233,7 +235,7 @@ Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
     const bool will = exists == cells.end() ? existed : exists->second == true;
     if (existed && !will) planned.plan.vanishing.push_back(key);
     if (!will) {
-      // Where another one's deletion stays in force, nothing is to be seen of it.
+      // If the deletion by another user stays in force, the values stay empty.
       for (auto& [name, value] : cells)
         if (name != "exists") value = nullptr;
       if (!existed && exists == cells.end()) {

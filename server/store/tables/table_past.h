@@ -5,10 +5,10 @@
 #include "store/tables/table_writer.h"
 #include "store/tables/tables.h"
 
-// What a table was, and what undo makes of it.
+// Past states of a table, and the computation of undo.
 namespace strata::store {
 
-// The records after a sequence, by key; `open` gets the columns of then.
+// Returns the records after a sequence, by key; `open` gets the columns of that time.
 Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
                                     std::int64_t sequence);
 
@@ -20,7 +20,7 @@ struct PlannedUndo {
   UndoPlan plan;
   TableEdit edit;
 };
-// By the rule of domain/tables/cell_history. `conflict` where the person has nothing to undo or
+// Follows the rule of domain/tables/cell_history. `conflict` if the user has nothing to undo or
 // redo.
 Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                               const std::string& user, bool redo);

@@ -13,7 +13,7 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 2000;  // of an INSERT: some MB of JSON at most for usual rows
+constexpr std::size_t kRowsAtOnce = 2000;  // of an INSERT: at most some MB of JSON for usual rows
 
 std::string table_name(TableId table_id) { return "records.t" + to_string(table_id); }
 std::string column_name(const Column& column) { return "c" + to_string(column.id); }
@@ -38,8 +38,8 @@ const char* sql_type(ColumnKind kind) {
   }
 }
 
-// The value as columns keep it: PostgreSQL prints times in its own way, and whole numbers without a
-// point.
+// Returns the value as columns hold it: PostgreSQL prints times in a different form, and whole
+// numbers without a decimal point.
 nlohmann::json value_of(const Column& column, const nlohmann::json& stored) {
   if (stored.is_null()) return stored;
   if (column.kind == ColumnKind::numeric) return stored.get<double>();
@@ -64,7 +64,7 @@ std::vector<Record> read_rows(const PgResult& rows, const std::vector<Column>& c
   return records;
 }
 
-// As jsonb_populate_recordset takes them.
+// Returns the rows in the form for jsonb_populate_recordset.
 nlohmann::json rows_json(const std::vector<Column>& columns, std::span<const Record> rows) {
   nlohmann::json list = nlohmann::json::array();
   for (const Record& row : rows) {
@@ -89,21 +89,21 @@ PgArray array_of(std::span<const std::int64_t> keys) {
   return array;
 }
 
-// One of the things by which rows are sorted, as SQL: of a row `t`, and of a value that the end of
-// a page keeps as text.
+// One sort criterion of rows as SQL: for a row `t`, and for a value that the end of a page stores
+// as text.
 struct SortKey {
-  std::string value;                                               // that is kept
-  std::string here;                                                // what is compared, of a row
-  std::function<std::string(const std::string& parameter)> there;  // and of a kept value
+  std::string value;                                               // the stored value
+  std::string here;                                                // compared value of a row
+  std::function<std::string(const std::string& parameter)> there;  // and of a stored value
   bool descending = false;
 };
 struct SortKeys {
-  std::vector<SortKey> keys;  // the last one tells all rows apart
-  std::string joins;          // behind FROM
+  std::vector<SortKey> keys;  // the last one is unique
+  std::string joins;          // after FROM
 };
 
-// Texts are compared by as many characters, so that the end of a page stays short enough for an
-// address.
+// Texts are compared by this many characters, so that the end of a page stays short enough for a
+// URL.
 constexpr int kSortedCharacters = 120;
 
 SortKey plain_key(const std::string& value, const std::string& type, bool descending) {
@@ -120,7 +120,7 @@ SortKey text_key(const std::string& column, const std::string& before, const std
   return {value, compared(value), compared, descending};
 }
 
-// By the place among what terms name.
+// Sorts by the order of the records that the terms name.
 void add_term_key(SortKeys& sort, const std::string& column, const RecordOrder& by,
                   Params& params) {
   params.array(array_of(*by.keys));
@@ -142,7 +142,7 @@ SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrd
   for (const RecordOrder& by : order) {
     if (by.column == 0) {
       sort.keys.push_back(plain_key("t.key", "bigint", by.descending));
-      return sort;  // nothing is left to decide
+      return sort;  // keys are unique: later criteria have no effect
     }
     const auto column = std::ranges::find(columns, by.column, &Column::id);
     if (column == columns.end()) continue;
@@ -159,7 +159,7 @@ SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrd
       sort.keys.push_back(text_key(name, "(", " COLLATE \"C\")", by.descending));
     } else if (holds_lists(column->kind) || type == "jsonb") {
       sort.keys.push_back(
-          // in any order, but always the same
+          // an arbitrary but stable order
           text_key(name + "::text", "(", " COLLATE \"C\")", by.descending));
     } else {
       sort.keys.push_back(plain_key(name, type, by.descending));
@@ -177,7 +177,7 @@ std::string order_by(const std::vector<SortKey>& keys) {
   return sql;
 }
 
-// What tells where a row stands: the values of the keys as texts, each once.
+// Returns the place of a row: the values of the sort keys as texts, each once.
 std::string place_of_row(const std::vector<SortKey>& keys) {
   std::string sql;
   for (std::size_t i = 0; i < keys.size(); ++i)
@@ -186,8 +186,8 @@ std::string place_of_row(const std::vector<SortKey>& keys) {
   return "to_jsonb(ARRAY[" + sql + "])";
 }
 
-// Whether a row stands behind a place, by the keys in turn; what has no value stands behind all
-// that has one.
+// Returns the condition that a row follows a place, by the keys in turn; rows without a value
+// follow all rows with one.
 Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohmann::json& place,
                                   Params& params) {
   std::string sql, equal_so_far = "true";
@@ -214,7 +214,7 @@ Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohma
   return "(" + sql + ")";
 }
 
-// The rows as `t`: of the table, or those of the past, which become a parameter.
+// Returns the rows as `t`: those of the table, or past rows, which become a parameter.
 std::string from_rows(TableId table_id, const std::vector<Column>& columns,
                       const std::optional<std::vector<Record>>& past, Params& params) {
   if (!past) return " FROM " + table_name(table_id) + " t";
@@ -228,7 +228,7 @@ Result<void> run(PgConnection& connection, const std::string& sql) {
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
-// An analyst's query must not keep a table from being changed (db/migrations/000011).
+// An analyst's query must not block a change of the table (db/migrations/000011).
 Result<void> make_way(PgConnection& connection, TableId table_id) {
   return run(connection, "SELECT analysis_make_way('" + table_name(table_id) + "')");
 }
@@ -299,7 +299,7 @@ Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
     auto behind = STRATA_TRY(stands_behind(keys, *part.after, params));
     only += (only.empty() ? " WHERE " : " AND ") + behind;
   }
-  // one more tells whether there is a next page
+  // one more row shows whether there is a next page
   params.integer(part.limit + 1).integer(part.offset);
   const int count = params.count();
   auto rows =
@@ -307,7 +307,8 @@ Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
                                 joins + only + order_by(keys) + " LIMIT $" +
                                 std::to_string(count - 1) + " OFFSET $" + std::to_string(count),
                             params);
-  // Of the values only those in the place are from outside and no texts of a condition.
+  // Only the values of the place can fail here: they are external, and they are not texts of a
+  // condition.
   if (!rows && part.after && connection.sqlstate().starts_with("22")) return wrong_place();
   if (!rows) return tl::unexpected(rows.error());
   page.rows = read_rows(*rows, columns);
@@ -319,27 +320,27 @@ Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
 }
 
 Result<std::string> collation_of(PgConnection& connection, const std::string& language) {
-  PgArray wanted(oid::kText);
+  PgArray candidates(oid::kText);
   std::string tag = language;
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
   };
   if (!std::ranges::all_of(tag, is_plain)) tag.clear();
   for (; !tag.empty(); tag.resize(tag.rfind('-') == std::string::npos ? 0 : tag.rfind('-')))
-    wanted.add(std::string_view(tag + "-x-icu"));
-  wanted.add(std::string_view("und-x-icu"));
+    candidates.add(std::string_view(tag + "-x-icu"));
+  candidates.add(std::string_view("und-x-icu"));
   auto row = STRATA_TRY(connection.query(
       "SELECT c.collname FROM unnest($1::text[]) WITH ORDINALITY AS w (name, place) JOIN pg_collation c ON "
       "lower(c.collname) = lower(w.name) AND c.collprovider = 'i' AND c.collnamespace = 'pg_catalog'::regnamespace "
       "ORDER BY w.place LIMIT 1",
-      Params().array(wanted)));
+      Params().array(candidates)));
   return row.rows() == 0 ? std::string() : row.text(0, 0);
 }
 
 Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, TableId table_id,
                                                 Role seen_by, const std::string& collation,
                                                 int depth) {
-  // a table may be called by the records of another, and so on, round in circles
+  // the title of a table may be a record of another table, and so on, possibly in a cycle
   constexpr int kDeepest = 3;
   auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
   std::vector<RecordOrder> order;

@@ -70,7 +70,7 @@ Column* column_by_id(OpenTable& open, ColumnId id) {
   return nullptr;
 }
 
-// Keys that a value names.
+// Adds the keys that a value names.
 void add_keys(const nlohmann::json& value, std::set<std::int64_t>& keys) {
   if (value.is_array())
     for (const auto& key : value) keys.insert(key.get<std::int64_t>());
@@ -89,7 +89,7 @@ Cells written_part(const Cells& now, const Cells& after) {
   return part;
 }
 
-// One edit on its way into a table.
+// Writes one edit into a table.
 class Writer {
  public:
   Writer(PgConnection& connection, OpenTable& open, TableEdit edit)
@@ -111,7 +111,8 @@ class Writer {
   }
 
  private:
-  // The catalogue. Those that go are hidden first, so that one that comes may have their slug.
+  // Changes the column definitions. Removed columns are hidden first, so that an added one may use
+  // their slug.
   Result<void> change_columns() {
     for (auto& [id, after] : edit_.columns)
       before_columns_[id] = written_part(cells_of(*column_by_id(open_, id)), after);
@@ -133,8 +134,8 @@ class Writer {
         "SELECT 1 FROM record_columns WHERE table_id = $1 AND id <> $2 AND NOT hidden AND properties ->> 'slug' = $3",
         Params().id(open_.table.id).id(column.id).text(column.slug)));
     if (!column.hidden && slugs.rows() > 0)
-      return fail(ErrorCode::conflict, "Slug taken",
-                  "The table has another column `" + column.slug + "`. Rename that one first.",
+      return fail(ErrorCode::conflict, "Slug already used",
+                  "The table has another column `" + column.slug + "`. Rename that column first.",
                   "slug");
     auto done = connection_.query(
         "UPDATE record_columns SET properties = $2, hidden = $3 WHERE id = $1",
@@ -175,7 +176,7 @@ class Writer {
                static_cast<std::int64_t>(change_.deleted.size());
     if (records_ > kMaxRecords)
       return fail(ErrorCode::conflict, "Table full",
-                  "A table has at most " + std::to_string(kMaxRecords) + " records.");
+                  "A table can have at most " + std::to_string(kMaxRecords) + " records.");
     for (const Record& record : then) check_record(record);
     if (!change_.problems.empty()) return {};
     STRATA_TRY(delete_rows(connection_, open_.table.id, keys));
@@ -184,10 +185,10 @@ class Writer {
       auto taken = STRATA_TRY(taken_value(connection_, open_.table.id, column, then));
       if (taken)
         add_problem(then[taken->row].key,
-                    {ErrorCode::conflict, "Not unique",
-                     (taken->by_sent
-                          ? "Another record that was sent has this value of \""
-                          : "Record " + std::to_string(taken->by_key) + " has this value of \"") +
+                    {ErrorCode::conflict, "Value is not unique",
+                     (taken->by_sent ? "Another record of this request has the same value of \""
+                                     : "Record " + std::to_string(taken->by_key) +
+                                           " already has this value of \"") +
                          column.name + "\".",
                      field_of(column)});
     }
@@ -203,8 +204,8 @@ class Writer {
     return {};
   }
 
-  // Values that the edit writes were checked by who made it, but those of the past fit the columns
-  // of the past.
+  // The caller checks new values, but values of the past fit the columns of the past, so they are
+  // checked again.
   void check_record(const Record& record) {
     const Cells& after = edit_.records.at(record.key);
     for (const Column& column : open_.table.columns) {
@@ -213,7 +214,7 @@ class Writer {
       if (column.unique && held.is_string() &&
           held.get_ref<const std::string&>().size() > kMaxUniqueTextLength)
         add_problem(record.key, {ErrorCode::invalid, "Text too long",
-                                 "Texts of a unique column have at most " +
+                                 "Texts of a unique column can have at most " +
                                      std::to_string(kMaxUniqueTextLength) + " bytes.",
                                  field_of(column)});
       const bool is_written = after.contains(to_string(column.id)) || after.contains(kExists);
@@ -223,7 +224,7 @@ class Writer {
     }
   }
 
-  // Terms and relations name records that are there.
+  // Terms and relations must name existing records.
   Result<void> check_targets(const Column& column, std::span<const Record> rows) {
     std::set<std::int64_t> named;
     for (const Record& row : rows)
@@ -239,9 +240,9 @@ class Writer {
         add_keys(value->second, keys);
       for (const auto key : keys)
         if (std::binary_search(missing->begin(), missing->end(), key)) {
-          add_problem(row.key, {ErrorCode::invalid, "No such record",
-                                "\"" + column.name + "\" names record " + std::to_string(key) +
-                                    ", which is not there.",
+          add_problem(row.key, {ErrorCode::invalid, "Record not found",
+                                "\"" + column.name + "\" refers to record " + std::to_string(key) +
+                                    ", which does not exist.",
                                 field_of(column)});
           break;
         }
@@ -249,7 +250,7 @@ class Writer {
     return {};
   }
 
-  // Cells list the table's own attachments, and pictures are pictures.
+  // Cells may list only attachments of the table, and picture columns only pictures.
   Result<void> check_attached(const Column& column, std::span<const Record> rows) {
     std::set<std::int64_t> listed;
     for (const Record& row : rows)
@@ -272,20 +273,21 @@ class Writer {
         const bool is_there = type != types.end();
         if (is_there && (column.kind == ColumnKind::document || is_raster_picture(type->second)))
           continue;
-        add_problem(row.key, {ErrorCode::invalid, is_there ? "No picture" : "No such attachment",
-                              "\"" + column.name + "\" lists attachment " + id +
-                                  (is_there ? ", which is " + type->second +
-                                                  ": attach it to a column of documents."
-                                            : ", which the table does not have."),
-                              field_of(column)});
+        add_problem(
+            row.key,
+            {ErrorCode::invalid, is_there ? "Not a picture" : "Attachment not found",
+             "\"" + column.name + "\" refers to attachment " + id +
+                 (is_there ? ", which is " + type->second + ". Attach it to a column of documents."
+                           : ", which the table does not have."),
+             field_of(column)});
         break;
       }
     }
     return {};
   }
 
-  // Lines and points that are written lie on models of the project. Those that are there may lie on
-  // one that is gone, and undo may bring such ones back.
+  // Written lines and points must lie on models of the project. Existing ones may lie on a deleted
+  // model, and undo may restore them.
   Result<void> check_marked(const Column& column, std::span<const Record> rows) {
     if (edit_.checks_values) return {};
     auto models = STRATA_TRY(connection_.query("SELECT id FROM models WHERE project_id = $1",
@@ -300,8 +302,8 @@ class Writer {
       for (const auto& feature : value->second) {
         const auto model = feature.at("model").get<ModelId>();
         if (known.contains(model)) continue;
-        add_problem(row.key, {ErrorCode::invalid, "No such model",
-                              "\"" + column.name + "\" lies on model " + to_string(model) +
+        add_problem(row.key, {ErrorCode::invalid, "Model not found",
+                              "\"" + column.name + "\" is on the model " + to_string(model) +
                                   ", which the project does not have.",
                               field_of(column)});
         break;
@@ -310,7 +312,7 @@ class Writer {
     return {};
   }
 
-  // Nothing names what is deleted.
+  // A deleted record must not be named by another one.
   Result<void> check_named() {
     if (change_.deleted.empty()) return {};
     auto rows = STRATA_TRY(connection_.query(
@@ -325,17 +327,17 @@ class Writer {
           STRATA_TRY(row_naming(connection_, rows.id<TableId>(i, 2), column, change_.deleted));
       if (!naming) continue;
       const auto [by, key] = *naming;
-      add_problem(
-          key, {ErrorCode::conflict,
-                "Record in use",
-                "Record " + std::to_string(by) + " of " + rows.text(i, 4) + " names record " +
-                    std::to_string(key) + " as \"" + rows.text(i, 3) + "\". Change that one first.",
-                {}});
+      add_problem(key, {ErrorCode::conflict,
+                        "Record in use",
+                        "Record " + std::to_string(by) + " of " + rows.text(i, 4) +
+                            " refers to record " + std::to_string(key) + " as \"" +
+                            rows.text(i, 3) + "\". Change that record first.",
+                        {}});
     }
     return {};
   }
 
-  // A column that came, or asks for more than it did, is kept by all records.
+  // All records must satisfy a new column, or one with stricter rules.
   Result<void> keep_columns() {
     for (const auto& [id, after] : edit_.columns) {
       const Column& column = *column_by_id(open_, id);
@@ -350,15 +352,15 @@ class Writer {
         const nlohmann::json held = value == row.values.end() ? nlohmann::json() : value->second;
         auto good = check_value(column, held, "column");
         if (!good)
-          return fail(ErrorCode::conflict, "Values do not fit",
+          return fail(ErrorCode::conflict, "Values do not match",
                       "Record " + std::to_string(row.key) + ": " + good.error().detail +
                           " Change the records first.",
                       "column");
         if (column.unique && held.is_string() &&
             held.get_ref<const std::string&>().size() > kMaxUniqueTextLength)
-          return fail(ErrorCode::conflict, "Values do not fit",
+          return fail(ErrorCode::conflict, "Values do not match",
                       "Record " + std::to_string(row.key) +
-                          ": texts of a unique column have at most " +
+                          ": texts of a unique column can have at most " +
                           std::to_string(kMaxUniqueTextLength) + " bytes.",
                       "unique");
       }
@@ -367,7 +369,7 @@ class Writer {
         if (!change_.problems.empty()) {
           Error problem = change_.problems.front().problem;
           return fail(
-              ErrorCode::conflict, "Values do not fit",
+              ErrorCode::conflict, "Values do not match",
               "Record " + std::to_string(change_.problems.front().key) + ": " + problem.detail,
               "column");
         }
@@ -375,7 +377,7 @@ class Writer {
       if (!column.unique) continue;
       auto same = STRATA_TRY(twins(connection_, open_.table.id, column));
       if (same)
-        return fail(ErrorCode::conflict, "Not unique",
+        return fail(ErrorCode::conflict, "Value is not unique",
                     "Records " + std::to_string(same->first) + " and " +
                         std::to_string(same->second) + " have the same value of \"" + column.name +
                         "\".",
@@ -410,7 +412,7 @@ class Writer {
             .integer(open_.table.version));
     if (!counted || !term_columns(open_.table))
       return counted ? Result<void>{} : tl::unexpected(counted.error());
-    // Layers that take their colours from the terms are others now (domain/tables/term_list,
+    // Layers that take their colors from the terms change, too (domain/tables/term_list,
     // takes_term_colors).
     auto colored = connection_.query(
         "UPDATE layers SET version = version + 1 WHERE table_id = $1 AND palette ->> 'mode' = 'categorical' AND "
@@ -516,7 +518,7 @@ Result<OpenTable> read_table(PgConnection& connection, TableId id, Role seen_by)
     column.target = cells.id<std::optional<TableId>>();
     set_properties(column, cells.json());
     column.hidden = cells.boolean();
-    // What cannot be told is not shown.
+    // An unknown visibility counts as the most restricted one.
     column.visibility = parse_visibility(cells.text()).value_or(Visibility::curators);
     open.all.push_back(std::move(column));
   }
@@ -542,7 +544,7 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
         STRATA_TRY(connection.query("SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2",
                                     Params().id(*column.target).id(open.table.project_id)));
     if (known.rows() == 0)
-      return fail(ErrorCode::invalid, "No such table",
+      return fail(ErrorCode::invalid, "Table not found",
                   "The project has no table " + to_string(*column.target) + ".", "target");
     std::set<std::int64_t> named;
     add_keys(column.default_value, named);
@@ -550,27 +552,28 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
         missing_rows(connection, *column.target, std::vector(named.begin(), named.end()));
     if (!missing) return tl::unexpected(missing.error());
     if (!missing->empty())
-      return fail(ErrorCode::invalid, "No such record",
+      return fail(ErrorCode::invalid, "Record not found",
                   "There is no record " + std::to_string(missing->front()) + ".", "default");
   }
-  const std::string wished = make_slug(column.slug.empty() ? column.name : column.slug);
-  // What a list of records calls its own.
+  const std::string requested = make_slug(column.slug.empty() ? column.name : column.slug);
+  // Reserved names in a list of records.
   std::set<std::string> used{"key", "version", "area-m2"};
   for (const Column& other : open.table.columns)
     if (other.id != column.id) used.insert(other.slug);
-  if (!column.slug.empty() && used.contains(wished))
-    return fail(ErrorCode::conflict, "Slug taken",
-                "The table has a column `" + wished + "` already.", "slug");
-  column.slug = wished;
-  for (int n = 2; used.contains(column.slug); ++n) column.slug = wished + "-" + std::to_string(n);
+  if (!column.slug.empty() && used.contains(requested))
+    return fail(ErrorCode::conflict, "Slug already used",
+                "The table has a column `" + requested + "` already.", "slug");
+  column.slug = requested;
+  for (int n = 2; used.contains(column.slug); ++n)
+    column.slug = requested + "-" + std::to_string(n);
   return {};
 }
 
 Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Column column) {
   if (open.all.size() >= static_cast<std::size_t>(kMaxColumns))
     return fail(ErrorCode::conflict, "Too many columns",
-                "A table has at most " + std::to_string(kMaxColumns) +
-                    " columns, those that were dropped among them.");
+                "A table can have at most " + std::to_string(kMaxColumns) +
+                    " columns, including deleted columns.");
   column.hidden = true;
   auto row = STRATA_TRY(connection.query(
       "INSERT INTO record_columns (table_id, kind, target, properties, hidden, visibility) VALUES ($1, $2, $3, $4, true, $5) "

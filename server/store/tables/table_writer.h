@@ -9,53 +9,53 @@
 #include "store/pg/pg.h"
 #include "store/tables/table_changes.h"
 
-// Tables within a transaction: what tables.cpp, records.cpp and layers.cpp have in common.
+// Tables within a transaction: shared by tables.cpp, records.cpp and layers.cpp.
 namespace strata::store {
 
-// A table with what is not told of it.
+// A table with data that callers of Store do not receive.
 struct OpenTable {
-  Table table;              // `columns`: those that are not hidden
-  std::vector<Column> all;  // hidden ones, too, by id
+  Table table;              // `columns`: only visible ones
+  std::vector<Column> all;  // also hidden ones, by id
   std::int64_t next_key = 1;
-  Role seen_by = Role::owner;  // `table.columns` are those that it sees
+  Role seen_by = Role::owner;  // `table.columns` are those that this role sees
 };
-// `not_found` where there is none. Locked: until the transaction ends nobody else changes any table
-// of the project, so that keys which other tables name stay.
+// `not_found` if there is no such table. lock_table: until the transaction ends, no other
+// transaction changes a table of the project, so that keys which other tables name stay.
 Result<OpenTable> read_table(PgConnection& connection, TableId id, Role seen_by = Role::owner);
 Result<OpenTable> lock_table(PgConnection& connection, TableId id);
 
-// The columns' cells: properties by name, and `hidden`.
+// Returns the column's cells: properties by name, and `hidden`.
 Cells cells_of(const Column& column);
 
-// Puts cells into columns, by id, and shows those that are not hidden then.
+// Puts cells into columns, by id, and shows the columns that are then not hidden.
 void put_cells(OpenTable& open, const std::map<ColumnId, Cells>& columns);
 
 // An entry for the journal: the cells that it writes, by key and by column id. A record has
-// `exists` and its columns' ids.
+// `exists` and the ids of its columns.
 struct TableEdit {
   std::string user, op;
   nlohmann::json record;
   std::map<std::int64_t, Cells> records;
   std::map<ColumnId, Cells> columns;
-  // undo and redo: values of the past must fit the columns as they are now
+  // undo and redo: past values must fit the present columns
   bool checks_values = false;
 };
-// Does it, and refuses (conflict, `invalid`) what would leave a required value empty, a unique one
-// twice, a key without its record, a value that its column does not take. Problems of single
-// records are told in the change, and then nothing may be committed.
+// Applies the edit. Refused (conflict, `invalid`): a change that leaves a required value empty, a
+// unique value twice, a key without its record, or a value that its column does not accept. The
+// result lists problems of single records; then the caller must not commit.
 Result<TableChange> apply_edit(PgConnection& connection, OpenTable& open, TableEdit edit);
 
 // Inserts the column, hidden until an edit shows it.
 Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Column column);
-// `column` with its table's other columns: free slug, known target. Gives it its place.
+// Checks `column` against the other columns of its table: free slug, known target. Sets its slug.
 Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column& column);
 
-// Makes the table with its columns, which are not in its journal: there is nothing before them. A
-// column whose target is kOwnTable names records of the table itself.
+// Makes the table with its columns, which are not in its journal, because they are its first state.
+// A column whose target is kOwnTable names records of the table itself.
 Result<Table> insert_table(PgConnection& connection, Table table);
 
-// The colours of the terms of a list; nothing where the table is none. not_found: there is no
-// table.
+// Returns the colors of the terms of a term list; nothing if the table is not a term list.
+// not_found: there is no such table.
 Result<std::optional<Palette>> term_palette_of(PgConnection& connection, TableId table_id);
 
 }  // namespace strata::store

@@ -32,8 +32,8 @@ Result<TableChange> refused_by_records(Result<TableChange> change) {
   return change;
 }
 
-// The values of a column in a new one that takes its place; those that it cannot hold are lost, and
-// named.
+// Moves the values of a column to a new one that replaces it; the entry lists the records whose
+// values are lost.
 Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Column& old,
                            Column column, const std::string& user) {
   auto made = STRATA_TRY(insert_column(connection, open, std::move(column)));
@@ -74,7 +74,8 @@ Result<std::vector<Table>> Tables::of_project(ProjectId project_id, Role seen_by
     std::vector<Table> tables;
     for (int i = 0; i < rows.rows(); ++i) {
       auto table = table_of(connection, rows.id<TableId>(i, 0), seen_by);
-      if (!table && table.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
+      // deleted since the list was read
+      if (!table && table.error().code == ErrorCode::not_found) continue;
       if (!table) return tl::unexpected(table.error());
       tables.push_back(std::move(*table));
     }
@@ -103,20 +104,22 @@ Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>
   STRATA_TRY(check_text(table.description, "description"));
   STRATA_TRY(check_labels(table.labels));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Table> {
-    // As for every other change: the analysts' view of the new name is made while nobody alters the
-    // rows that it reads.
+    // As for every other change: no other transaction may change the rows while the analysts' view
+    // of the new name is made.
     auto open = STRATA_TRY(lock_table(connection, table.id));
     if (table.title_column && table.title_column != open.table.title_column) {
       const auto title = std::ranges::find(open.table.columns, *table.title_column, &Column::id);
       if (title == open.table.columns.end())
-        return fail(ErrorCode::invalid, "No such column",
+        return fail(ErrorCode::invalid, "Column not found",
                     "The table has no column " + to_string(*table.title_column) + ".",
                     "title_column");
       if (!can_be_title(*title))
-        return fail(ErrorCode::invalid, "No title",
-                    "What '" + title->name +
-                        "' holds cannot name a record: it is yes or no, or several things.",
-                    "title_column");
+        return fail(
+            ErrorCode::invalid, "Invalid title column",
+            "The column '" + title->name +
+                "' cannot be the title of a record. Choose a column with a single text, number "
+                "or date.",
+            "title_column");
     }
     auto row = STRATA_TRY(connection.query(
         "UPDATE record_tables SET name = $3, labels = $4, description = $5, title_column = $6, version = version + 1 "
@@ -137,7 +140,8 @@ Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>
 Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
   auto gone = change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     STRATA_TRY(lock_table(connection, id));
-    // What is gone for ever keeps no table, though its content is not erased yet.
+    // Erase layers that were erased from the Trash but whose content still exists: they must not
+    // keep the table.
     auto layers = STRATA_TRY(connection.query(
         "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.table_id = $1 AND (l.erasing OR m.erasing)",
         Params().id(id)));
@@ -153,21 +157,22 @@ Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
         Params().id(id)));
     if (users.rows() > 0 && users.boolean(0, 1))
       return fail(ErrorCode::conflict, "Table in use",
-                  "The table is named by " + users.text(0, 0) +
+                  "A column refers to this table: " + users.text(0, 0) +
                       ", which is in the Trash. Erase that one there first.");
     if (users.rows() > 0)
-      return fail(ErrorCode::conflict, "Table in use",
-                  "The table is named by " + users.text(0, 0) + ". Delete that one first.");
+      return fail(
+          ErrorCode::conflict, "Table in use",
+          "A column refers to this table: " + users.text(0, 0) + ". Delete that one first.");
     STRATA_TRY(drop_rows_table(connection, id));
-    // Its own columns may point at it.
+    // Its own columns may have it as their target.
     auto columns =
         connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().id(id));
     if (!columns) return tl::unexpected(columns.error());
     auto table = connection.query("DELETE FROM record_tables WHERE id = $1", Params().id(id));
     return table ? Result<void>{} : tl::unexpected(table.error());
   });
-  // Afterwards, since those who attach hold a blob while they wait for the tables. What fails here
-  // is done at the next start.
+  // After the transaction, since a transaction that attaches files holds a blob while it waits for
+  // the tables. If this fails, the next start repeats it.
   if (gone) (void)Attachments(pool_).drop_orphans();
   return gone;
 }
@@ -182,7 +187,7 @@ Result<std::vector<Layer>> Layers::of_table(TableId table_id, Role seen_by) {
   for (int i = 0; i < refs.rows(); ++i) {
     auto found = find(refs.id<ModelId>(i, 0), std::to_string(refs.integer(i, 1)), seen_by);
     if (!found && found.error().code == ErrorCode::not_found)
-      continue;  // deleted meanwhile, or not seen
+      continue;  // deleted since the list was read, or not visible
     if (!found) return tl::unexpected(found.error());
     layers.push_back(std::move(*found));
   }
@@ -219,13 +224,13 @@ Result<TableChange> Tables::update_column(TableId table_id, const Column& column
     auto open = STRATA_TRY(lock_table(connection, table_id));
     auto found = STRATA_TRY(shown_column(open, column.id, version));
     const Column old = *found;
-    Column wished = column;
-    STRATA_TRY(fit_column(connection, open, wished));
-    if (wished.kind != old.kind || wished.target != old.target)
-      return retype(connection, open, old, std::move(wished), user);
+    Column requested = column;
+    STRATA_TRY(fit_column(connection, open, requested));
+    if (requested.kind != old.kind || requested.target != old.target)
+      return retype(connection, open, old, std::move(requested), user);
     TableEdit edit{user, "change-column", {{"column", old.id}}, {}, {}};
     const Cells now = cells_of(old);
-    for (auto& [name, value] : cells_of(wished))
+    for (auto& [name, value] : cells_of(requested))
       if (now.at(name) != value) edit.columns[old.id][name] = value;
     if (edit.columns.empty()) {
       TableChange nothing;
@@ -250,8 +255,9 @@ Result<Table> Tables::show_column(TableId table_id, ColumnId column_id, Visibili
                                    terms->uri,  terms->color, terms->pattern};
       for (const auto& [language, label] : terms->labels) used.insert(label);
       if (used.contains(found))
-        return fail(ErrorCode::invalid, "Column of a list of terms",
-                    "What terms are is seen by everybody who sees records that name them.",
+        return fail(ErrorCode::invalid, "Column of a term list",
+                    "Everybody who can see a record must see its terms, so the visibility of this "
+                    "column cannot change.",
                     "visibility");
     }
     STRATA_TRY(connection.query("UPDATE record_columns SET visibility = $2 WHERE id = $1",

@@ -19,7 +19,7 @@ namespace strata::store {
 
 class Pool;
 
-// Several tables and the terms of those that are lists, all or none: where one of the changes has
+// Several tables and the terms of term lists among them, all or none: if one of the changes has
 // problems, nothing was made. conflict: the project has a table of that name. Terms are the first
 // entry of their table's journal.
 struct NewTable {
@@ -34,58 +34,57 @@ struct TableHistory {
   std::int64_t total = 0;
 };
 
-// Tables of a project with their columns, by id or slug. Changes of columns and records are
-// entries of the table's journal, of one person each. With the columns that the role sees: to it
-// the others are not there, neither by name nor in the past. A TableChange has all. Part of Store:
-// its rules for threads and errors hold.
+// Tables of a project with their columns, by id or slug. Changes of columns and records are entries
+// of the table's journal, each by one user. Results contain the columns that the role sees; other
+// columns do not appear, neither by name nor in the past. A TableChange has all columns. Part of
+// Store: its rules for threads and errors hold.
 class Tables {
  public:
   explicit Tables(Pool& pool) : pool_(pool) {}
 
-  // table's journal, of one person each. With the columns that the role sees: to it the others are
-  // not there, neither by name nor in the past. A TableChange has all.
   Result<std::vector<Table>> of_project(ProjectId project_id, Role seen_by);  // by name
   Result<Table> find(const std::string& ref, Role seen_by);
   // with its columns
   Result<Table> create(const Table& table, const IdempotentResponse<Table>& answer = {});
   // name, labels, description
   Result<Table> update(const Table& table, const IdempotentResponse<Table>& answer = {});
-  // refused (conflict) while something names it
+  // refused (conflict) while another object names it
   Result<void> remove(TableId id, const IdempotentResponse<>& answer = {});
   Result<std::vector<TableChange>> create_several(
       const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
       const std::string& op, const IdempotentResponse<std::vector<TableChange>>& answer = {});
-  // Terms come into a list (conflict: the table is none) as one entry of its journal: those whose
-  // URI or code is there change that record, the others are new, and what the text does not have
-  // stays. All or none; problems name the term by its place.
+  // Imports terms into a term list (conflict: the table is not one) as one entry of its journal:
+  // terms whose URI or code exists change that record, the others are new, and properties that the
+  // text lacks stay. All or none; problems name the term by its place.
   Result<TableChange> import_terms(TableId table_id, const TermList& list, bool dry_run,
                                    const std::string& user,
                                    const IdempotentResponse<TableChange>& answer = {});
-  // Where the kind or target changes, the column makes way for a new one that takes over what it
-  // can hold: `record` of the change says how much that was (`converted`, `lost`, `lost_keys`).
+  // If the kind or target changes, a new column replaces the old one and takes the values that it
+  // can hold: `record` of the change contains the counts (`converted`, `lost`, `lost_keys`).
   Result<TableChange> create_column(TableId table_id, const Column& column, const std::string& user,
                                     const IdempotentResponse<TableChange>& answer = {});
   Result<TableChange> update_column(TableId table_id, const Column& column,
                                     std::optional<std::int64_t> version, const std::string& user,
                                     const IdempotentResponse<TableChange>& answer = {});
-  // Who sees the column, now and in the past: no entry of the journal, so that nothing is seen
-  // again by undo. Where version equals. Refused (invalid): a list of terms lives by the column, or
-  // who writes records would not see it and must fill it.
+  // Sets the visibility of the column, now and in the past: this is no entry of the journal, so
+  // that undo makes nothing visible again. If version equals. Refused (invalid): a column that a
+  // term list needs, or a required column that users who write records would not see.
   Result<Table> show_column(TableId table_id, ColumnId column_id, Visibility visibility,
                             std::int64_t version, const IdempotentResponse<Table>& answer = {});
   Result<TableChange> drop_column(TableId table_id, ColumnId column_id,
                                   std::optional<std::int64_t> version, const std::string& user,
                                   const IdempotentResponse<TableChange>& answer = {});
-  // Of the last change until a time, as `sequence_at`.
+  // Returns the sequence of the last change until a time, as `sequence_at`.
   Result<std::int64_t> sequence_at(TableId table_id, const std::string& utc);
   // The same until an edit of a model was made.
   Result<std::int64_t> sequence_when(TableId table_id, ModelId model_id, std::int64_t sequence);
-  // What was done to cells that the role does not see is left out, and what the entries say of
-  // themselves with it. The newest first; `before`: only those with lower sequences.
+  // Leaves out changes of cells that the role does not see, and their descriptions in the entries.
+  // Newest first; `before`: only those with lower sequences.
   Result<TableHistory> history(TableId table_id, Role seen_by, std::optional<std::int64_t> key,
                                int limit, int offset, std::optional<std::int64_t> before = {});
-  // The person's newest entry in force, or the one that was undone last; `conflict` where there is
-  // none. Done where the table is as it was when it was planned (stale).
+  // Plans to undo the user's newest entry in force, or to redo the one that was undone last;
+  // `conflict` if no such entry exists. Undo is refused (stale) if the table changed since the
+  // plan.
   Result<UndoPlan> plan_undo(TableId table_id, const std::string& user, bool redo);
   Result<TableChange> undo(TableId table_id, const std::string& user, bool redo,
                            std::int64_t planned_at,

@@ -15,7 +15,7 @@ nlohmann::json text_or_null(const std::string& text) {
   return text.empty() ? nlohmann::json() : nlohmann::json(text);
 }
 
-// Terms on their way into a list: finds what each of them is there, and makes cells of what is new.
+// Imports terms into a term list: finds the record of each term, and makes cells of the changes.
 class TermIntake {
  public:
   TermIntake(PgConnection& connection, OpenTable& open, const TermList& list)
@@ -44,10 +44,9 @@ class TermIntake {
   }
 
  private:
-  // What the text has and the list has no column for, with the terms as one entry.
+  // Adds columns that the text has and the list lacks, in the same entry as the terms.
   Result<void> add_columns() {
-    // What is written is found among all columns: those that come are hidden until the edit shows
-    // them.
+    // Written columns are found among all columns: new ones are hidden until the edit shows them.
     for (const Column& column : open_.table.columns) columns_[column.slug] = column;
     for (const std::string& slug : list_.columns) {
       if (columns_.contains(slug)) continue;
@@ -63,8 +62,7 @@ class TermIntake {
     return {};
   }
 
-  // The records that the terms are: those of their URI, otherwise of their code, otherwise new
-  // ones.
+  // Finds the record of each term: by URI, otherwise by code, otherwise a new record.
   Result<void> find_keys() {
     auto rows = STRATA_TRY(load_all_rows(connection_, open_.table.id, open_.all));
     for (Record& row : rows) {
@@ -86,22 +84,23 @@ class TermIntake {
       else if (by_code != key_of_code_.end())
         key = by_code->second;
       else if (next > kMaxRecordKey)
-        return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 were given.",
+        return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 are used.",
                     "key");
       else
         key = next++;
       if (const auto [first, is_new] = index_of_.emplace(key, i); !is_new)
-        add_problem(i, {ErrorCode::invalid, "Term twice",
-                        "\"" + term.code + "\" and \"" + list_.terms[first->second].code +
-                            "\" are the same term of the list, by URI and by code.",
-                        "uri"});
+        add_problem(i,
+                    {ErrorCode::invalid, "Duplicate term",
+                     "\"" + term.code + "\" and \"" + list_.terms[first->second].code +
+                         "\" are the same term of the list: one by its URI, the other by its code.",
+                     "uri"});
       keys_.push_back(key);
       if (!term.uri.empty() && !uris.insert(term.uri).second)
-        add_problem(i, {ErrorCode::invalid, "URI twice",
+        add_problem(i, {ErrorCode::invalid, "Duplicate URI",
                         "Two terms have this URI: " + term.uri.substr(0, 300) + ".", "uri"});
     }
-    // From here on codes and URIs mean what they will mean then: a code that a term gives up may be
-    // another one's.
+    // From here on, codes and URIs have their new meaning: a term may take a code that another one
+    // gives up.
     for (const auto& [key, index] : index_of_) {
       const auto held = now_.find(key);
       if (held == now_.end()) continue;
@@ -154,17 +153,17 @@ class TermIntake {
     if (!term.parent.empty()) {
       const auto parent = key_of_code_.find(term.parent);
       if (parent == key_of_code_.end())
-        return fail(ErrorCode::invalid, "No such parent",
-                    "Neither the list nor the text has a term \"" + term.parent + "\".", "parent");
+        return fail(ErrorCode::invalid, "Parent not found",
+                    "Neither the list nor the file has a term \"" + term.parent + "\".", "parent");
       return nlohmann::json(parent->second);
     }
-    // A vocabulary may be part of another one, whose terms are not here.
+    // A vocabulary may be part of another one, whose terms are not in the list.
     const auto parent =
         term.parent_uri.empty() ? key_of_uri_.end() : key_of_uri_.find(term.parent_uri);
     return parent == key_of_uri_.end() ? nlohmann::json() : nlohmann::json(parent->second);
   }
 
-  // A term below itself, with what the list has already.
+  // Refuses a term below itself, also through terms that are already in the list.
   void refuse_circles() {
     const ColumnId column = columns_.at("parent").id;
     Relation relation;
@@ -186,7 +185,7 @@ class TermIntake {
       const auto sent = std::find_if(circle.begin(), circle.end(),
                                      [&](auto key) { return index_of_.contains(key); });
       if (sent == circle.end()) continue;
-      add_problem(index_of_.at(*sent), {ErrorCode::invalid, "Terms in a circle",
+      add_problem(index_of_.at(*sent), {ErrorCode::invalid, "Terms form a circle",
                                         path + "\"" + code_of(circle.front()) + "\".", "parent"});
     }
   }
@@ -219,20 +218,20 @@ class TermIntake {
   std::map<std::int64_t, Record> now_;
   std::map<std::string, std::int64_t> key_of_code_, key_of_uri_;
   std::vector<std::int64_t> keys_;                // of the terms
-  std::map<std::int64_t, std::size_t> index_of_;  // of the term that a record is
+  std::map<std::int64_t, std::size_t> index_of_;  // index of the record's term
   std::vector<RowError> problems_;
 };
 
-// The table with its terms, or (`told`) why they cannot be in it.
+// Returns the table with its terms, or (`problems`) why they cannot be in it.
 Result<TableChange> insert_with_terms(PgConnection& connection, Table table, const TermList* terms,
                                       const std::string& user, const std::string& op) {
   auto taken = STRATA_TRY(connection.query(
       "SELECT slug::text FROM record_tables WHERE project_id = $1 AND lower(name) = lower($2)",
       Params().id(table.project_id).text(table.name)));
   if (taken.rows() > 0)
-    return fail(ErrorCode::conflict, "Name taken",
+    return fail(ErrorCode::conflict, "Name already used",
                 "The project has a table \"" + table.name + "\" already (`" + taken.text(0, 0) +
-                    "`). Rename or delete it first, or go on with that one.",
+                    "`). Rename or delete that table first, or use it.",
                 "name");
   auto made = STRATA_TRY(insert_table(connection, std::move(table)));
   TableChange change;
@@ -248,27 +247,27 @@ Result<std::vector<TableChange>> Tables::create_several(
     const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
     const std::string& op, const IdempotentResponse<std::vector<TableChange>>& answer) {
   STRATA_TRY(check_text(user, "user"));
-  std::optional<std::vector<TableChange>> told;
+  std::optional<std::vector<TableChange>> outcome;
   const auto work = [&](PgConnection& connection) -> Result<std::vector<TableChange>> {
     std::vector<TableChange> made;
     bool refused = false;
-    for (const NewTable& wished : tables) {
-      Table table = wished.table;
+    for (const NewTable& new_table : tables) {
+      Table table = new_table.table;
       STRATA_TRY(check_text(table.name, "name"));
-      // The tables before it, by their places; then they have ids.
-      for (const auto& [column, place] : wished.targets)
+      // The earlier tables, by their places; they have ids now.
+      for (const auto& [column, place] : new_table.targets)
         table.columns.at(column).target = made.at(place).table.id;
       auto change = STRATA_TRY(insert_with_terms(
-          connection, std::move(table), wished.terms ? &*wished.terms : nullptr, user, op));
+          connection, std::move(table), new_table.terms ? &*new_table.terms : nullptr, user, op));
       refused = refused || !change.problems.empty();
       made.push_back(std::move(change));
     }
     if (!refused && !dry_run) return made;
-    told = std::move(made);
-    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
+    outcome = std::move(made);
+    return fail(ErrorCode::conflict, "Not saved", "Nothing was written.");
   };
   auto done = change(pool_, answer, work, kBulkLimits);
-  if (told) return std::move(*told);
+  if (outcome) return std::move(*outcome);
   return done;
 }
 
@@ -276,27 +275,26 @@ Result<TableChange> Tables::import_terms(TableId table_id, const TermList& list,
                                          const std::string& user,
                                          const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
-  std::optional<TableChange> told;
+  std::optional<TableChange> outcome;
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     if (!term_columns(open.table))
-      return fail(
-          ErrorCode::conflict, "No list of terms",
-          open.table.name +
-              " is no list of terms: that has `code`, a text that is required and unique, `label`, a text, and `parent`, a "
-              "term of the table itself.");
+      return fail(ErrorCode::conflict, "Not a term list",
+                  open.table.name +
+                      " is not a term list. A term list has `code`, a text that is required and "
+                      "unique, `label`, a text, and `parent`, a term of the same table.");
     auto change = TermIntake(connection, open, list).take(user, "import");
     if (!change || (change->problems.empty() && !dry_run)) return change;
-    told = std::move(*change);
-    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
+    outcome = std::move(*change);
+    return fail(ErrorCode::conflict, "Not saved", "Nothing was written.");
   };
   auto done = change(pool_, answer, work, kBulkLimits);
-  if (told) return std::move(*told);
+  if (outcome) return std::move(*outcome);
   return done;
 }
 
 Result<std::optional<Palette>> term_palette_of(PgConnection& connection, TableId table_id) {
-  // Everybody who sees the layer sees its palette.
+  // All users who see the layer see its palette.
   auto open = STRATA_TRY(read_table(connection, table_id, least_role(Visibility::everyone)));
   const auto columns = term_columns(open.table);
   if (!columns) return std::optional<Palette>();

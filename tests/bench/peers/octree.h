@@ -9,18 +9,18 @@
 
 namespace strata::bench {
 
-// OCT-TR (Torres et al. 2010, as the paper describes its rival): the cube around a model is divided
-// by eight down to a depth, and the leaves are the cells that the surface crosses. A layer is one
-// value a leaf, in the order of the leaves. Kept small and quick to walk: 8 bytes an inner node,
-// leaves in Morton order without any node of their own, no lists of triangles.
+// OCT-TR (Torres et al. 2010, as the paper describes its rival): a cube around the model is divided
+// by eight down to a depth; its leaves are the cells that the surface crosses. A layer has one
+// value for each leaf, in the order of the leaves. Small and quick to traverse: 8 bytes for an
+// inner node, leaves in Morton order without nodes, no lists of triangles.
 class Octree {
  public:
   struct Node {
-    std::uint32_t first;  // child: of the next level, or a leaf
-    std::uint32_t mask;   // bit x | y << 1 | z << 2: that child is there
+    std::uint32_t first;  // first child: a node of the next level, or a leaf
+    std::uint32_t mask;   // bit x | y << 1 | z << 2: this child exists
   };
 
-  // Depth 1 to 15. An Error where main memory would not do: its detail says how much is needed.
+  // Depth 1 to 15. Returns an Error if main memory is too small: its detail has the needed amount.
   static Result<Octree> build(const mesh::Geometry& geometry, int depth, int threads);
 
   int depth() const { return static_cast<int>(levels_.size()); }
@@ -29,17 +29,17 @@ class Octree {
   }
   std::size_t leaf_count() const { return leaf_count_; }
   std::size_t bytes() const;
-  // Model space.
+  // In model space.
   glm::vec3 low() const { return low_; }
   float side() const { return side_; }
   float cell_side() const { return side_ / static_cast<float>(1u << depth()); }
-  std::vector<glm::uvec3> leaf_cells() const;  // by walking: for tests
+  std::vector<glm::uvec3> leaf_cells() const;  // by traversal, for tests
 
  private:
   glm::vec3 low_{0};
   float side_ = 1;
   std::size_t leaf_count_ = 0;
-  std::vector<std::vector<Node>> levels_;  // the root alone first
+  std::vector<std::vector<Node>> levels_;  // the first has only the root
 };
 
 }  // namespace strata::bench

@@ -8,12 +8,11 @@
 
 namespace strata::bench {
 
-// A layer of an octree in main memory: values, and the colours that are sent to the GPU to be
-// shown.
+// A layer of an octree in main memory: values, and their colors for the GPU.
 struct OctreeLayer {
   std::vector<std::uint8_t> values;
   std::vector<std::uint32_t> colors;
-  std::vector<std::uint8_t> dirty;  // of each kLeavesPerRange leaves
+  std::vector<std::uint8_t> dirty;  // for each kLeavesPerRange leaves
   static constexpr std::size_t kLeavesPerRange = 4096;
 
   explicit OctreeLayer(const Octree& tree)
@@ -25,7 +24,7 @@ struct OctreeLayer {
   }
 };
 
-// A dab of a disc; `center` in window pixels, origin top left.
+// A dab with a disc; `center` in window pixels, origin top left.
 struct OctreeDab {
   Camera camera;
   glm::dvec3 origin{0};  // of the model
@@ -35,19 +34,19 @@ struct OctreeDab {
   std::uint32_t color = 0;
 };
 
-// As published: one ray through each pixel's centre under the tool, one thread; the first leaf on
-// its way is painted. The way through the tree is that of Revelles et al. 2000. Answers how many
-// rays met a leaf.
+// As published: casts one ray through the center of each pixel under the tool, on one thread, and
+// paints the first leaf of each. The traversal is that of Revelles et al. 2000. Returns the number
+// of rays that met a leaf.
 std::size_t paint_by_rays(const Octree& tree, const OctreeDab& dab, OctreeLayer& layer);
 
-// The fair variant: every leaf is painted whose centre lies under the tool and not behind the depth
-// buffer by more than two cells, so that no leaf is missed where cells are smaller than pixels.
-// Goes down the tree by planes around the tool, leaves out what the coarse depth hides, and works
-// on `threads` threads. Answers how many leaves were painted.
+// The fair variant: paints every leaf whose center is under the tool and at most two cells behind
+// the depth buffer, so that no leaf is missed if cells are smaller than pixels. Descends the tree
+// with planes around the tool, skips nodes that the coarse depth hides, and uses `threads` threads.
+// Returns the number of painted leaves.
 std::size_t paint_by_descent(const Octree& tree, const OctreeDab& dab,
                              const render::DepthCopy& depth, int threads, OctreeLayer& layer);
 
-// How far behind the depth buffer a leaf may lie, in window depth · w²: two cells.
+// Returns how far behind the depth buffer a leaf may be, in window depth · w²: two cells.
 double octree_depth_tolerance(const Octree& tree, const Camera& camera);
 
 }  // namespace strata::bench

@@ -10,21 +10,21 @@
 
 namespace strata::bench {
 
-// The paper's "small bias", in window depth; it gives no number. For cameras whose near and far
-// planes lie as close around the model as those of `look_at`, this is 1.6 % of the model's radius.
-// A bias of 2e-4 would reject parts of every surface that is tilted by more than 13 degrees,
-// because depth varies by more than that within a pixel: a speckled edit, whose many thresholds
-// make rounding decide 3 to 11 texels of 100 000.
+// The paper's "small bias", in window depth; the paper has no number. For cameras whose near and
+// far planes are as close around the model as those of `look_at`, this is 1.6 % of the model's
+// radius. A bias of 2e-4 would reject parts of every surface that is tilted by more than 13
+// degrees, because depth varies by more than that within a pixel: the edit is speckled, and at its
+// many thresholds rounding decides 3 to 11 texels of 100 000.
 constexpr double kPaperDepthBias = 5e-3;
 
 // The paper's editing, literally: the Texture Editing Algorithm draws the whole mesh at its texture
-// coordinates into data, mask and edited-area textures, discarding what fails the window, depth
-// (fixed bias) and tool tests; the Texture Padding Algorithm then filters the whole texture,
-// setting outline texels (1 wide) beside the edited area. The outline mask is made by its two
-// passes when the model is loaded. The tool is a disc by formula; the window → tool map is derived
-// anew, because the printed translation factor has the wrong sign and lacks ½. GPU thread only; one
-// dab an edit, values of 8 bits. The padding is published as a raster pass; the same as a compute
-// pass spares the few multiprocessors that rasterise on H100-class GPUs.
+// coordinates into data, mask and edited-area textures, and discards fragments that fail the
+// window, depth (fixed bias) and tool tests. Then the Texture Padding Algorithm filters the whole
+// texture and sets outline texels (1 wide) next to the edited area. Its two passes make the outline
+// mask when the model is loaded. The tool is a disc by formula. The window → tool map is derived
+// here, because the printed translation factor has the wrong sign and lacks ½. GPU thread only; one
+// dab for each edit, values of 8 bits. The published padding is a raster pass; a compute pass
+// avoids the few multiprocessors that rasterize on H100-class GPUs.
 class PaperEditor {
  public:
   enum class Padding { raster, compute };
@@ -39,10 +39,10 @@ class PaperEditor {
   int resolution() const { return resolution_; }
   std::vector<std::uint8_t> data() const { return read(data_); }
   std::vector<std::uint8_t> mask() const { return read(mask_); }
-  // 1 where the parametrisation lies
+  // 1 where the parametrization has texels
   std::vector<std::uint8_t> coverage() const { return read(coverage_); }
   std::uint64_t layer_bytes() const { return data_.bytes() + mask_.bytes(); }
-  // of a resolution
+  // for one resolution
   std::uint64_t structure_bytes() const { return edited_.bytes() + outline_.bytes(); }
 
  private:

@@ -1,10 +1,12 @@
 #!/usr/bin/env pvpython
-"""paraview_frames.py MESH.ply [--size 1280x720] [--quality 80] [--seconds 10] [--screen-pid PID]: pictures of a turning camera by
-ParaView's web engine, vtkPVWebApplication.StillRenderToBuffer, as its server (pvpython -m paraview.apps.…) answers a page: a JPEG
-for each camera. Prints one line, "figures: " and JSON.
+"""paraview_frames.py MESH.ply [--size 1280x720] [--quality 80] [--seconds 10] [--screen-pid PID]:
+makes pictures of a turning camera with ParaView's web engine,
+vtkPVWebApplication.StillRenderToBuffer, as its server (pvpython -m paraview.apps.…) does for a
+page: a JPEG for each camera. Prints one line, "figures: " and JSON.
 
-A picture is done when its own JPEG is there: the engine encodes beside drawing, and hands out the picture before as long as
-`GetHasImagesBeingProcessed`. No socket is in it. Needs a display (Xvfb) and Debian's paraview python3-paraview."""
+A picture is complete when its own JPEG is: the engine encodes while it draws, and returns the
+previous picture during `GetHasImagesBeingProcessed`. No socket is included. Needs a display (Xvfb)
+and Debian's paraview python3-paraview."""
 import argparse
 import json
 import math
@@ -15,13 +17,13 @@ import time
 from paraview import simple
 from paraview.modules.vtkPVClientWeb import vtkPVWebApplication
 
-TURN_RAD = 0.008  # a picture, as Strata's viewers turn
+TURN_RAD = 0.008  # for each picture, as Strata's viewers turn
 WARM_S = 1.0
 TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def seconds_of(pid):
-    """Of processors: user and system."""
+    """Returns the seconds of processors: user and system."""
     with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
         fields = file.read().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / TICKS
@@ -33,7 +35,7 @@ def show(path, width, height):
     shown = simple.Show(mesh, view)
     if mesh.PointData.GetArray("RGB"):
         simple.ColorBy(shown, ("POINTS", "RGB"))
-        shown.MapScalars = 0  # they are colours
+        shown.MapScalars = 0  # the values are colors
     simple.Render(view)
     low_x, high_x, low_y, high_y, low_z, high_z = mesh.GetDataInformation().GetBounds()
     low, high = (low_x, low_y, low_z), (high_x, high_y, high_z)
@@ -42,7 +44,8 @@ def show(path, width, height):
 
 
 def look(view, center, radius, angle):
-    """As `look_at` of the bench: 45°, so far away that the mesh fills the window."""
+    """Returns the same camera as `look_at` of the bench: 45°, at the distance where the mesh fills
+    the window."""
     direction = (math.cos(angle), math.sin(angle), 0.4)
     length = math.hypot(*direction)
     view.CameraViewAngle = 45
@@ -52,7 +55,7 @@ def look(view, center, radius, angle):
 
 
 def picture(app, view, quality):
-    """Bytes of the JPEG of the camera that is set."""
+    """Returns the bytes of the JPEG of the current camera."""
     app.InvalidateCache(view.SMProxy)
     image = app.StillRenderToBuffer(view.SMProxy, 0, quality)
     while image is None or app.GetHasImagesBeingProcessed(view.SMProxy):

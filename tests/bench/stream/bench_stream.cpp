@@ -1,6 +1,6 @@
-// A real server and many viewers over real WebSockets: pictures of turning cameras, strokes until
-// they are seen, viewers at rest, slow links, one who stalls; and one viewer beside ParaView's web
-// engine on the same mesh.
+// Measures a real server with many viewers over real WebSockets: pictures of turning cameras,
+// strokes until they are seen, viewers at rest, slow links, a stalled viewer; and one viewer
+// compared with ParaView's web engine on the same mesh.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -32,9 +32,9 @@ struct Options {
   bool has(const std::string& part) const { return std::ranges::find(parts, part) != parts.end(); }
 };
 
-// One line of the results, and how one run of it is made.
+// One line of the results, with the function that makes one run of it.
 struct Row {
-  nlohmann::json json;  // its runs are added
+  nlohmann::json json;  // collects its runs
   std::function<nlohmann::json()> run;
 };
 
@@ -44,8 +44,9 @@ std::vector<Hands> hands_of(int active, bool can_paint) {
   return {Hands::turn, Hands::paint, Hands::turn_and_paint};
 }
 
-// Active viewers on each link, with the first number of idle ones; more idle ones, and the one who
-// stalls, on the first link. The whole product of the lists would take a day and say little more.
+// Returns active viewers on each link, with the first number of idle ones; more idle viewers, and
+// the stalled viewer, on the first link. All combinations of the lists would take a day and add
+// little.
 std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& options, bool can_paint) {
   std::vector<LinkQuality> links;
   for (const auto& link : options.links) links.push_back(*parse_link(link));
@@ -70,7 +71,7 @@ std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& option
       if (!stalls) continue;
       CrowdCase stalled = common;
       stalled.has_stalled = true;
-      add("stalled", stalled, link, active, all_hands.back());  // beside the same without
+      add("stalled", stalled, link, active, all_hands.back());  // the same case without it, too
     }
   }
   for (const int idle : options.idle) {
@@ -78,7 +79,7 @@ std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& option
     CrowdCase resting = common;
     resting.idle = idle;
     add("idle", resting, links.front(), 0, Hands::rest);
-    if (idle == options.idle.front()) continue;  // the active ones beside them are measured above
+    if (idle == options.idle.front()) continue;  // measured above
     for (const int active : options.active)
       add("idle", resting, links.front(), active, hands_of(active, can_paint).back());
   }
@@ -129,7 +130,7 @@ void print(const nlohmann::json& row, const nlohmann::json& run) {
   std::fflush(stdout);
 }
 
-// A viewer takes a descriptor here, and three where a link lies between.
+// A viewer uses one descriptor in this process, and three with a link.
 void raise_descriptor_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -166,20 +167,20 @@ void add_peer_rows(std::vector<Row>& rows, const StreamSite& site, const ParaVie
 
 int run(Options options) {
   raise_descriptor_limit();
-  StreamSite::Wish wish;
-  wish.server = options.server;
-  wish.model = options.model;
-  wish.cache = options.cache;
-  wish.layers = options.layers;
-  wish.radius_px = options.radius;
-  std::sscanf(options.window.c_str(), "%dx%d", &wish.width, &wish.height);
+  StreamSite::Settings settings;
+  settings.server = options.server;
+  settings.model = options.model;
+  settings.cache = options.cache;
+  settings.layers = options.layers;
+  settings.radius_px = options.radius;
+  std::sscanf(options.window.c_str(), "%dx%d", &settings.width, &settings.height);
   std::optional<ParaViewPeer> peer;
   std::string why_no_peer;
   if (options.has("peer") && !(peer = ParaViewPeer::find(why_no_peer)))
     std::fprintf(stderr, "strata-bench: ParaView is NOT measured: %s\n", why_no_peer.c_str());
-  wish.has_plain = peer.has_value();
+  settings.has_plain = peer.has_value();
 
-  const StreamSite site(wish);
+  const StreamSite site(settings);
   std::printf("%s, %lld triangles, %d layers of 4096², %s, %.0f s each, %s\n",
               options.model.c_str(), static_cast<long long>(site.triangles()), options.layers,
               options.window.c_str(), options.seconds, site.server().renderer().c_str());
@@ -193,7 +194,7 @@ int run(Options options) {
   }
   if (peer) add_peer_rows(rows, site, *peer, options.seconds);
 
-  // A B B A: what drifts in the machine falls on all.
+  // A B B A: a drift of the machine affects all cases.
   for (int round = 0; round < options.rounds; ++round) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       Row& row = rows[round % 2 == 0 ? i : rows.size() - 1 - i];
@@ -219,7 +220,7 @@ int run(Options options) {
   return 0;
 }
 
-// What `--quick` sets; what is given beside it stays.
+// Sets the options of `--quick`, except options that the user gave.
 void make_quick(Options& options, const CLI::App& command) {
   const auto set = [&](const char* option, auto& value, auto quick) {
     if (command.count(option) == 0) value = quick;

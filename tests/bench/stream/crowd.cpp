@@ -17,13 +17,13 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr std::size_t kOpenAtOnce = 16;  // beyond 256 requests at a time a server says 503
+constexpr std::size_t kOpenAtOnce = 16;  // the server answers 503 beyond 256 concurrent requests
 constexpr double kMaxOpening_s = 600;
 constexpr double kQuiet_s = 0.5, kQuietAtRest_s = 2, kMaxSettling_s = 180;
 constexpr double kWarming_s = 1;
 constexpr double kMaxFinishing_s = 60;
 
-// All within 60°: what is painted in the middle of one picture is in the others', too.
+// All within 60°: the middle of one picture is also in the other pictures.
 constexpr double kMiddle_rad = 0.7;
 double direction(int number, int of) {
   return kMiddle_rad + (of < 2 ? 0 : (double(number) / (of - 1) - 0.5) * std::numbers::pi / 3);
@@ -31,23 +31,23 @@ double direction(int number, int of) {
 
 }  // namespace
 
-Crowd::Crowd(const CrowdCase& asked, const Stage& stage, const ServerProcess& server)
-    : case_(asked), stage_(stage), server_(server) {
-  if (!asked.link.is_loopback())
-    link_.emplace(context_, asked.link,
+Crowd::Crowd(const CrowdCase& crowd, const Stage& stage, const ServerProcess& server)
+    : case_(crowd), stage_(stage), server_(server) {
+  if (!crowd.link.is_loopback())
+    link_.emplace(context_, crowd.link,
                   asio::ip::tcp::endpoint(asio::ip::address_v4::loopback(), server.port()));
   std::vector<std::pair<LiveClient*, Camera>> all;
-  for (int i = 0; i < asked.active; ++i)
-    all.emplace_back(&add(active_), stage.from(direction(i, asked.active)));
-  for (int i = 0; i < asked.idle; ++i) {
+  for (int i = 0; i < crowd.active; ++i)
+    all.emplace_back(&add(active_), stage.from(direction(i, crowd.active)));
+  for (int i = 0; i < crowd.idle; ++i) {
     const double elevation = 0.3 + 0.2 * std::fmod(i * std::numbers::phi, 1.0);
-    all.emplace_back(&add(idle_), asked.is_same_view
+    all.emplace_back(&add(idle_), crowd.is_same_view
                                       ? stage.from(kMiddle_rad)
-                                      : stage.from(direction(i, asked.idle), elevation));
+                                      : stage.from(direction(i, crowd.idle), elevation));
   }
-  if (asked.has_stalled) all.emplace_back(&add(stalled_), stage.from(kMiddle_rad));
+  if (crowd.has_stalled) all.emplace_back(&add(stalled_), stage.from(kMiddle_rad));
   open(std::move(all));
-  settle(asked.hands == Hands::rest ? kQuietAtRest_s : kQuiet_s);
+  settle(crowd.hands == Hands::rest ? kQuietAtRest_s : kQuiet_s);
   for (const auto& client : stalled_) client->stop_reading();
 }
 
@@ -57,7 +57,7 @@ Crowd::~Crowd() {
     for (const auto& client : *clients) client->leave();
   link_.reset();
   context_.restart();
-  context_.run();  // until the last coroutine has ended, which holds on to a client
+  context_.run();  // until the last coroutine, which holds a client, has ended
 }
 
 LiveClient& Crowd::add(Viewers& to) {
@@ -85,8 +85,8 @@ void Crowd::open(std::vector<std::pair<LiveClient*, Camera>> clients) {
   std::exit(1);
 }
 
-// Until no message has come for so long; among hundreds of connections somebody is always asked
-// whether they are still there.
+// Runs until no message has come for `quiet_s`. Bytes of pings do not count: with hundreds of
+// connections there is always one.
 void Crowd::settle(double quiet_s) {
   const double limit_ms = now_ms() + 1e3 * kMaxSettling_s;
   std::uint64_t before;
@@ -144,7 +144,7 @@ nlohmann::json Crowd::measure(double seconds) {
   return json;
 }
 
-// The first stroke of a model that was just opened waits for what later ones find made.
+// The first stroke of a model that was just opened waits for data that later strokes reuse.
 bool Crowd::all_see_what_they_do() const {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const LiveClient& client = *active_[i];
@@ -159,8 +159,8 @@ bool Crowd::all_see_what_they_do() const {
   return true;
 }
 
-// Whoever paints. On a very busy machine the first batches may wait for longer than a short stretch
-// lasts.
+// Whether each painting viewer has sent a batch. On a very busy machine the first batches may wait
+// for longer than a short run.
 bool Crowd::has_painted_since(double begin_ms) const {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const auto& batches = active_[i]->batches();
@@ -170,7 +170,7 @@ bool Crowd::has_painted_since(double begin_ms) const {
   return true;
 }
 
-// The pixels of what was painted last may still be on their way.
+// Pixels of the last strokes may still be on their way.
 void Crowd::finish_strokes() {
   run_until(
       [&] {

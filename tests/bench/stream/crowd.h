@@ -12,17 +12,17 @@
 
 namespace strata::bench {
 
-// The viewers of one case, on this thread, which also carries their links. Active ones look from
-// directions of their own, near enough to each other that all see what one paints.
+// The viewers of one case, on this thread, which also runs their links. Active viewers have
+// different directions, close enough that each sees the strokes of all others.
 class Crowd {
  public:
-  // Returns once everybody has a picture and nothing more comes. Ends the bench where somebody is
-  // turned away.
-  Crowd(const CrowdCase& asked, const Stage& stage, const ServerProcess& server);
+  // Returns when each viewer has a picture and no more messages come. Ends the bench if a viewer is
+  // refused.
+  Crowd(const CrowdCase& crowd, const Stage& stage, const ServerProcess& server);
   ~Crowd();
 
-  // Lets the hands work until each sees what it does and for a second more, then for so long; the
-  // figures of the latter (README.md says what they mean).
+  // Runs the viewers' actions until each sees its own, for one second more, and then for `seconds`;
+  // returns the figures of the latter (results/streaming-method.md explains them).
   nlohmann::json measure(double seconds);
 
  private:

@@ -6,7 +6,7 @@
 
 namespace strata::bench {
 
-// What the active viewers of a case do; `turn_and_paint`: every other one paints.
+// Actions of the active viewers of a case; `turn_and_paint`: every other one paints.
 enum class Hands { rest, turn, turn_step_by_step, paint, turn_and_paint };
 const char* name(Hands hands);
 
@@ -14,12 +14,12 @@ struct CrowdCase {
   LinkQuality link;  // of each viewer
   int active = 1, idle = 0;
   Hands hands = Hands::turn;
-  bool is_same_view = false;  // the idle ones' camera; otherwise each has its own
-  // one more, who turns the camera and reads nothing after its first picture
+  bool is_same_view = false;  // of idle viewers; otherwise each has a different camera
+  // one more viewer, which turns the camera and reads nothing after its first picture
   bool has_stalled = false;
 
   nlohmann::json json() const;
-  bool paints(int number) const;  // of the active ones
+  bool paints(int number) const;  // `number`: of an active viewer
 };
 
 }  // namespace strata::bench

@@ -17,8 +17,8 @@ std::uint64_t sum_of(const std::vector<LiveClient::Counts>& all,
       [&](std::uint64_t sum, const auto& counts) { return sum + counts.*member; });
 }
 
-// From a camera to the last byte of the first picture that shows it; others of the same camera show
-// something else that is new.
+// From a camera to the last byte of the first picture that shows it; later pictures of the same
+// camera show other changes.
 void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, Samples& times) {
   std::uint64_t shown = 0;
   for (const auto& frame : client.frames()) {
@@ -28,8 +28,7 @@ void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, 
   }
 }
 
-// From the last camera of somebody who then holds still to the last byte of its picture of full
-// quality.
+// From the last camera of a viewer that then stops to the last byte of its picture of full quality.
 void add_refined_times(const LiveClient& client, Samples& times) {
   const auto refined = std::ranges::find_if(client.frames(), [&](const auto& frame) {
     return frame.still && frame.camera_seq == client.newest_camera();
@@ -38,8 +37,8 @@ void add_refined_times(const LiveClient& client, Samples& times) {
     times.add(refined->at_ms - client.camera_sent_ms(client.newest_camera()));
 }
 
-// From a batch to the last byte of the first picture of `viewer` that shows it; edits of a picture
-// only ever come to more.
+// From a batch to the last byte of the first picture of `viewer` that shows it; the sequence of the
+// shown edits only grows.
 void add_batch_times(const LiveClient& painter, const LiveClient& viewer, double begin_ms,
                      double end_ms, Samples& times) {
   for (const auto& batch : painter.batches()) {
@@ -70,7 +69,7 @@ std::uint64_t CrowdMoment::bytes() const {
   return sum_of(active, &LiveClient::Counts::bytes) + sum_of(idle, &LiveClient::Counts::bytes);
 }
 
-nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, const Viewers& idle,
+nlohmann::json crowd_figures(const CrowdCase& crowd, const Viewers& active, const Viewers& idle,
                              const CrowdMoment& begin, const CrowdMoment& end) {
   const double seconds = (end.at_ms - begin.at_ms) / 1e3;
   std::vector<double> turning_rates, painting_rates, active_bytes, idle_rates;
@@ -78,13 +77,13 @@ nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, cons
   std::uint64_t batches = 0, unchanged = 0, refused = 0, unanswered = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
     const LiveClient& client = *active[i];
-    const bool paints = asked.paints(int(i));
+    const bool paints = crowd.paints(int(i));
     (paints ? painting_rates : turning_rates)
         .push_back(double(end.active[i].frames - begin.active[i].frames) / seconds);
     active_bytes.push_back(double(end.active[i].bytes - begin.active[i].bytes) / seconds);
     if (!paints) {
       add_camera_times(client, begin.at_ms, end.at_ms, camera);
-      if (asked.hands != Hands::rest) add_refined_times(client, refined);
+      if (crowd.hands != Hands::rest) add_refined_times(client, refined);
       continue;
     }
     refused += std::uint64_t(client.refused());
@@ -97,7 +96,7 @@ nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, cons
     for (std::size_t other = 0; other < active.size(); ++other)
       add_batch_times(client, *active[other], begin.at_ms, end.at_ms,
                       other == i                 ? own
-                      : asked.paints(int(other)) ? still
+                      : crowd.paints(int(other)) ? still
                                                  : turning);
     for (const auto& viewer : idle)
       add_batch_times(client, *viewer, begin.at_ms, end.at_ms, at_rest);

@@ -12,7 +12,7 @@ namespace strata::bench {
 
 using Viewers = std::vector<std::unique_ptr<LiveClient>>;
 
-// What was counted until a moment.
+// The counts at one moment.
 struct CrowdMoment {
   double at_ms = 0;
   ServerProcess::Used server;
@@ -21,9 +21,9 @@ struct CrowdMoment {
   std::uint64_t bytes() const;  // of all messages
 };
 
-// The figures of a stretch of time, as README.md describes them: rates of what came within, times
-// of what was sent within, whenever it came.
-nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, const Viewers& idle,
+// Returns the figures of a period, as results/streaming-method.md describes them: rates of frames
+// that came in it, times of messages that were sent in it, even if the answer came later.
+nlohmann::json crowd_figures(const CrowdCase& crowd, const Viewers& active, const Viewers& idle,
                              const CrowdMoment& begin, const CrowdMoment& end);
 
 }  // namespace strata::bench

@@ -15,8 +15,8 @@
 
 namespace strata::bench {
 
-// Stands where the socket is: notes when a frame leaves, and acknowledges it as a client that draws
-// at once.
+// Replaces the socket: records the time at which a frame leaves, and acknowledges it as a client
+// that draws immediately.
 class FrameClient {
  public:
   struct Arrival {
@@ -38,8 +38,8 @@ class FrameClient {
     }
     changed_.notify_all();
   }
-  template <class Wanted>
-  Arrival wait_for(room::Participant& member, Wanted wanted) {
+  template <class Predicate>
+  Arrival wait_for(room::Participant& member, Predicate predicate) {
     std::unique_lock lock(mutex_);
     while (true) {
       if (!changed_.wait_for(lock, std::chrono::seconds(30), [&] { return !arrivals_.empty(); })) {
@@ -50,7 +50,7 @@ class FrameClient {
       arrivals_.pop_front();
       lock.unlock();
       if (arrival.header.last) member.ack(arrival.header.view_id, arrival.header.frame);
-      if (wanted(arrival)) return arrival;
+      if (predicate(arrival)) return arrival;
       lock.lock();
     }
   }

@@ -21,7 +21,7 @@ constexpr auto kCameraEvery = 16ms;
 constexpr auto kBatchEvery = 30ms;
 constexpr int kBatchesOfStroke = 20;
 
-// Rings at even times; what was missed is not made up for.
+// Fires at regular times; does not repeat missed ones.
 class Beat {
  public:
   Beat(asio::any_io_executor executor, Clock::duration every)

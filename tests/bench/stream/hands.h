@@ -9,9 +9,9 @@
 
 namespace strata::bench {
 
-// What viewers of a case look at.
+// The scene of a case's viewers.
 struct Stage {
-  std::string model, layer;  // slugs; `layer` is painted, the topmost; empty: there is none
+  std::string model, layer;  // slugs; `layer` is the topmost, painted one; empty without layers
   int layers = 0;
   glm::dvec3 low{0}, high{0};  // world
   int width = 1280, height = 720;
@@ -20,17 +20,17 @@ struct Stage {
   Camera from(double angle, double elevation = 0.4) const;
 };
 
-// What a person's hand does, until `stop`. As the page sends it: a camera with each picture of the
-// screen (16 ms), whatever has arrived; a batch of a stroke each 30 ms.
+// Actions of a viewer, until `stop`. As the page does, sends a camera for each refresh of the
+// screen (16 ms), without waiting for frames, and a batch of a stroke every 30 ms.
 boost::asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle,
                                   const bool& stop);
-// Each camera when the picture of the one before is there: what one takes without waiting for its
-// turn.
+// Sends each camera after the picture of the previous one: measures a picture without its wait for
+// a turn.
 boost::asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle,
                                                const bool& stop);
-// With a still camera, strokes of 20 batches, each of another value. Whoever has kMaxUnanswered
-// batches that are not applied waits: more would only make the queue longer, and every time with
-// it.
+// Paints strokes of 20 batches with a camera at rest, each with another value. Waits while
+// kMaxUnanswered batches are not applied: more would only make the queue, and with it every time,
+// longer.
 constexpr int kMaxUnanswered = 16;
 boost::asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle,
                                    unsigned seed, const bool& stop);

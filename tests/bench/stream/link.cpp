@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 
-// So that the kernel does not queue megabytes where the line's own queue is meant to be full.
+// So that the kernel does not queue megabytes in addition to the line's own full queue.
 void keep_short(tcp::socket& socket) {
   error_code ignored;
   socket.set_option(asio::socket_base::receive_buffer_size(int(Link::kQueueBytes)), ignored);
@@ -35,7 +35,7 @@ Clock::duration time_of(std::size_t bytes, double bits_per_second) {
       std::chrono::duration<double>(8.0 * double(bytes) / bits_per_second));
 }
 
-// Bytes that are on their way at the full rate.
+// Bytes on their way at the full rate.
 std::size_t bytes_under_way(const LinkQuality& quality) {
   return std::size_t(quality.bits_per_second / 8 *
                      std::chrono::duration<double>(quality.round_trip).count() / 2);
@@ -55,8 +55,8 @@ std::optional<LinkQuality> parse_link(const std::string& text) {
 }
 
 struct Link::State {
-  State(asio::io_context& context, LinkQuality asked, tcp::endpoint to)
-      : quality(std::move(asked)),
+  State(asio::io_context& context, LinkQuality link_quality, tcp::endpoint to)
+      : quality(std::move(link_quality)),
         server(to),
         acceptor(context, {asio::ip::address_v4::loopback(), 0}) {}
   const LinkQuality quality;
@@ -67,7 +67,7 @@ struct Link::State {
   int full_ways = 0;
 };
 
-// One connection: two ways, each from one socket to the other.
+// One connection: two directions, each from one socket to the other.
 class Link::Line : public std::enable_shared_from_this<Link::Line> {
  public:
   Line(std::shared_ptr<State> state, tcp::socket viewer)
@@ -82,7 +82,7 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
   asio::awaitable<void> run() {
     auto self = shared_from_this();
     server_.open(tcp::v4());
-    keep_short(server_);  // before the window is agreed on
+    keep_short(server_);  // must precede the negotiation of the window
     auto [error] = co_await server_.async_connect(state_->server, kUseResult);
     if (error) co_return close();
     error_code ignored;
@@ -106,7 +106,7 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
   }
 
  private:
-  // A piece without bytes is the end of what the sender sends.
+  // A piece without bytes is the end of the sender's data.
   struct Piece {
     std::vector<char> bytes;
     Clock::time_point arrives;
@@ -125,7 +125,7 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
 
   static asio::awaitable<void> take(std::shared_ptr<Line> line, Way& way) {
     const LinkQuality& quality = line->state_->quality;
-    // when the last bit is on the wire that was taken before
+    // when the last bit of the previous piece is on the wire
     Clock::time_point sent_at = Clock::now();
     for (bool over = false; !over;) {
       Piece piece{std::vector<char>(kPieceBytes), {}};

@@ -19,7 +19,7 @@
 
 namespace strata::bench {
 
-// Counts what is read from a socket, WebSocket's own bytes with it.
+// Counts the bytes read from a socket, including WebSocket's own.
 class WireCounter {
  public:
   std::uint64_t bytes_read() const { return bytes_read_; }
@@ -35,13 +35,13 @@ class WireCounter {
   std::uint64_t bytes_read_ = 0;
 };
 
-// A viewer as the page is one, over a real WebSocket: the newest camera wins while one is being
-// sent, a frame is acknowledged when its last rectangle is there. Pictures are not decoded, so a
-// decoder takes neither time nor this machine's processors. Notes when what came; draws no
-// conclusions. Everything runs on the context's thread.
+// A viewer that acts like the page, over a real WebSocket: the newest camera replaces a waiting
+// one, and a frame is acknowledged after its last rectangle. Pictures are not decoded, so that no
+// decoder takes time or processors of this machine. Records the times of events without evaluating
+// them. Everything runs on the context's thread.
 class LiveClient {
  public:
-  struct Frame {  // whole
+  struct Frame {  // complete
     double at_ms;
     std::uint64_t camera_seq, scene_sequence;
     bool still;  // of full quality
@@ -51,7 +51,7 @@ class LiveClient {
     int number;
     double sent_ms;
     std::optional<std::uint64_t> sequence = {};  // once it is applied
-    bool has_changed = false;                    // any texel
+    bool has_changed = false;                    // at least one texel
   };
   struct Counts {
     std::uint64_t frames = 0, bytes = 0, wire_bytes = 0;  // bytes: of messages
@@ -61,19 +61,19 @@ class LiveClient {
   LiveClient(boost::asio::io_context& context, boost::asio::ip::tcp::endpoint at,
              std::uint16_t server_port);
 
-  // Connects, says hello and looks; returns once the first picture of full quality is there, or the
-  // connection is lost.
+  // Connects, says hello and sends a camera; returns when the first picture of full quality has
+  // come, or the connection is lost.
   boost::asio::awaitable<void> open(const std::string& model, const std::string& token,
                                     const Camera& camera);
   void image(const Camera& camera, bool moving);
-  // Returns when a frame with the newest camera is there, or the connection is lost.
+  // Returns when a frame with the newest camera has come, or the connection is lost.
   boost::asio::awaitable<void> newest_camera_shown();
   void begin_stroke(const std::string& layer, const Camera& camera, double value, double radius_px);
   void extend_stroke(const std::vector<glm::dvec2>& path);
   void end_stroke();
-  void stop_reading() { is_reading_ = false; }  // what comes stays in the kernel
+  void stop_reading() { is_reading_ = false; }  // later data stay in the kernel
 
-  void leave();  // as a page that is closed
+  void leave();  // as a closed page does
 
   bool has_picture() const { return has_picture_; }
   bool is_lost() const { return is_lost_; }
@@ -85,7 +85,7 @@ class LiveClient {
   const std::vector<Frame>& frames() const { return frames_; }
   const std::vector<Batch>& batches() const { return batches_; }
   std::uint64_t newest_camera() const { return camera_sent_ms_.size(); }
-  // When the camera of this number was given to `look`.
+  // Returns the time at which `image` received the camera of this number.
   double camera_sent_ms(std::uint64_t camera_seq) const {
     return camera_sent_ms_.at(camera_seq - 1);
   }
@@ -108,7 +108,7 @@ class LiveClient {
   const boost::asio::ip::tcp::endpoint at_;
   const std::uint16_t server_port_;
   boost::beast::flat_buffer buffer_;
-  boost::asio::steady_timer has_news_;  // rings at every frame and at the end
+  boost::asio::steady_timer has_news_;  // fires at every frame and at the end
   std::deque<std::string> texts_;       // to send, in order
   std::optional<std::string> camera_;   // to send before them: the newest
   bool is_writing_ = false, is_reading_ = true, is_lost_ = false, has_picture_ = false;
@@ -118,7 +118,7 @@ class LiveClient {
   std::vector<double> camera_sent_ms_;
   std::vector<Batch> batches_;
   std::vector<std::size_t> unanswered_;  // of `batches_`; a few
-  Uuid stroke_{};                        // that is being drawn
+  Uuid stroke_{};                        // the current one
   int next_number_ = 0, refused_ = 0;
   std::uint64_t bytes_ = 0;
 };

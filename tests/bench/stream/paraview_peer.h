@@ -10,15 +10,15 @@
 
 namespace strata::bench {
 
-// ParaView's web engine (peers/paraview_frames.py) on a screen of its own that nobody sees, as its
-// server runs where there is none.
+// ParaView's web engine (peers/paraview_frames.py) on a separate, invisible screen, as its server
+// runs on a machine without one.
 class ParaViewPeer {
  public:
-  // Nothing where a program is missing: `why` says which, and how to install it.
+  // Returns nothing if a program is missing: `why` names it and the command that installs it.
   static std::optional<ParaViewPeer> find(std::string& why);
 
-  // Turns the camera around the mesh of a PLY file for so long, each picture asked for when the one
-  // before is there. Ends the bench where the peer fails. `folder`: for its logs.
+  // Turns the camera around the mesh of a PLY file for `seconds`, and requests each picture after
+  // the previous one has come. Ends the bench if the peer fails. `folder`: for its logs.
   nlohmann::json measure(const std::filesystem::path& ply, int width, int height, double seconds,
                          const std::filesystem::path& folder) const;
 

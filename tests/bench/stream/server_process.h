@@ -9,12 +9,11 @@
 
 namespace strata::bench {
 
-// `strata serve` as a site runs it: a process of its own with a private PostgreSQL, a new data
+// Runs `strata serve` as a site does: a separate process with a private PostgreSQL, a new data
 // folder and a free port of this machine.
 class ServerProcess {
  public:
-  // `binary`: of the server. Ends the bench, with the server's last words, where it does not come
-  // up.
+  // `binary`: of the server. Ends the bench with the end of the server's log if it does not start.
   explicit ServerProcess(const std::filesystem::path& binary);
   ~ServerProcess();
 
@@ -24,7 +23,7 @@ class ServerProcess {
   const std::filesystem::path& folder() const { return folder_; }
   pid_t pid() const { return process_->pid(); }
 
-  // Seconds of processors so far.
+  // Seconds of processors since the start.
   struct Used {
     double server = 0, postgresql = 0;
   };

@@ -26,7 +26,8 @@ using nlohmann::json;
 
 fs::path server_beside_us() { return fs::read_symlink("/proc/self/exe").parent_path() / "strata"; }
 
-// A file that ParaView reads, too. What is generated in this process is written to `folder`.
+// Returns a file that ParaView can also read. Writes a mesh that is generated in this process to
+// `folder`.
 fs::path ply_of(const std::string& model, const fs::path& cache, const fs::path& folder) {
   if (!is_generated(model)) {
     const auto files = must(mesh_files(model, cache));
@@ -54,13 +55,13 @@ glm::dvec3 point(const json& numbers) { return {numbers.at(0), numbers.at(1), nu
 
 }  // namespace
 
-StreamSite::StreamSite(const Wish& wish)
-    : server_(wish.server.empty() ? server_beside_us() : wish.server),
-      mesh_file_(ply_of(wish.model, wish.cache, server_.folder())),
-      painted_(import(wish, "painted", wish.layers)),
-      plain_(wish.has_plain && wish.layers > 0 ? import(wish, "plain", 0) : painted_) {}
+StreamSite::StreamSite(const Settings& settings)
+    : server_(settings.server.empty() ? server_beside_us() : settings.server),
+      mesh_file_(ply_of(settings.model, settings.cache, server_.folder())),
+      painted_(import(settings, "painted", settings.layers)),
+      plain_(settings.has_plain && settings.layers > 0 ? import(settings, "plain", 0) : painted_) {}
 
-Stage StreamSite::import(const Wish& wish, const std::string& name, int layers) {
+Stage StreamSite::import(const Settings& settings, const std::string& name, int layers) {
   HttpClient http(server_.port(), server_.token());
   json job =
       json::parse(http.post("/models?filename=mesh.ply&unit=mm&up=z&name=" + name,
@@ -81,16 +82,16 @@ Stage StreamSite::import(const Wish& wish, const std::string& name, int layers) 
   stage.layers = layers;
   stage.low = point(model.at("bounds").at("min"));
   stage.high = point(model.at("bounds").at("max"));
-  stage.width = wish.width;
-  stage.height = wish.height;
-  stage.radius_px = wish.radius_px;
+  stage.width = settings.width;
+  stage.height = settings.height;
+  stage.radius_px = settings.radius_px;
   for (int i = 0; i < layers; ++i) {
-    const json wanted{{"name", "Layer " + std::to_string(i)},
-                      {"type", "u8"},
-                      {"resolution", kResolution},
-                      {"opacity", 0.6},
-                      {"order", i}};
-    stage.layer = json::parse(http.post(model_path + "/layers", wanted.dump()).body).at("slug");
+    const json layer{{"name", "Layer " + std::to_string(i)},
+                     {"type", "u8"},
+                     {"resolution", kResolution},
+                     {"opacity", 0.6},
+                     {"order", i}};
+    stage.layer = json::parse(http.post(model_path + "/layers", layer.dump()).body).at("slug");
     const json fill{
         {"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 10 + 20 * (i % 12)}};
     http.post(model_path + "/layers/" + stage.layer + "/edits", fill.dump());

@@ -9,30 +9,30 @@
 
 namespace strata::bench {
 
-// A running server with the model that all look at, made over HTTP as anybody makes one.
+// A running server with the model of all viewers, made over HTTP as by any client.
 class StreamSite {
  public:
   static constexpr int kResolution = 4096;  // of its layers
 
-  struct Wish {
-    std::filesystem::path server;  // empty: `strata` beside this program
-    std::string model;             // as BenchMesh takes it, of one file
+  struct Settings {
+    std::filesystem::path server;  // empty: `strata` in this program's folder
+    std::string model;             // as for BenchMesh; one file
     std::filesystem::path cache;
     int layers = 0, width = 0, height = 0;
     double radius_px = 0;
-    bool has_plain = false;  // the same model without layers, too
+    bool has_plain = false;  // in addition the same model without layers
   };
-  explicit StreamSite(const Wish& wish);
+  explicit StreamSite(const Settings& settings);
 
   const ServerProcess& server() const { return server_; }
   const Stage& painted() const { return painted_; }  // with all layers
-  // with none; where that is not wished for, as `painted`
+  // without layers; the same as `painted` unless requested
   const Stage& plain() const { return plain_; }
   const std::filesystem::path& mesh_file() const { return mesh_file_; }  // PLY
   std::int64_t triangles() const { return triangles_; }
 
  private:
-  Stage import(const Wish& wish, const std::string& name, int layers);
+  Stage import(const Settings& settings, const std::string& name, int layers);
 
   ServerProcess server_;
   std::filesystem::path mesh_file_;

@@ -6,7 +6,7 @@
 
 namespace strata::bench {
 
-// A hand that paints without an end: 12 pixels a step (400 a second where a step is 30 ms), in the
+// A pointer that paints without end: 12 pixels a step (400 a second with steps of 30 ms), in the
 // middle of a window, where models are.
 class Wander {
  public:

@@ -1,4 +1,4 @@
-// Use cases that run without HTTP: layers that are computed again, the trash, measured figures.
+// Use cases that run without HTTP: recomputed layers, the trash, measured figures.
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::RoomTest;
 
-// Until the condition holds; false after a minute.
+// Waits until the condition is true; returns false after a minute.
 template <class Condition>
 bool wait_until(const Condition& holds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
@@ -44,7 +44,7 @@ class UseCases : public RoomTest {
   Services services() { return {*store_, *rooms_, counters_, nobody_}; }
   double highest(const std::string& layer) { return room()->queries().statistics(layer)->max; }
 
-  // A layer of double what is painted on the source.
+  // Creates a layer with twice the values of the source.
   Layer make_double(const Layer& source) {
     Layer layer;
     layer.model_id = model_.id;
@@ -148,7 +148,7 @@ TEST_F(UseCases, a_figure_is_drawn_to_a_file_that_goes_with_its_last_owner) {
   EXPECT_EQ(beginning, "%PDF-");
   file = fail(ErrorCode::gone, {}, {});
   EXPECT_TRUE(fs::is_empty(folder));
-  request.section = {{0, 0, 1, -1e9}};  // cuts everything away
+  request.section = {{0, 0, 1, -1e9}};  // cuts the whole model away
   const auto refused = make_figure(*store_, budget, request, folder, progress);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "camera.section");

@@ -11,6 +11,7 @@
 #include "jobs/import_job.h"
 #include "media/picture.h"
 #include "mesh/io/load.h"
+#include "mesh/surface/geometry.h"
 #include "mesh/texels/surface_map.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
@@ -57,7 +58,7 @@ class Import : public ::testing::Test {
   Progress progress_;
 };
 
-// Two squares beside each other, with the given texture coordinates for the second.
+// Two adjacent squares, with the given texture coordinates for the second.
 std::string obj_with_uvs(const std::string& second_square) {
   return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
          "vt 0.05 0.05\nvt 0.45 0.05\nvt 0.45 0.45\nvt 0.05 0.45\n" +
@@ -119,7 +120,7 @@ TEST_F(Import, texture_coordinates_that_can_carry_layers_are_kept) {
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_EQ(model->atlas.source, "file");
   EXPECT_TRUE(model->repairs.empty());
-  // Two squares side by side have one rim: 2 × 1.
+  // Two adjacent squares have one rim: 2 × 1.
   ASSERT_TRUE(model->open_edges);
   EXPECT_EQ(model->open_edges->loops, 1u);
   EXPECT_DOUBLE_EQ(model->open_edges->length, 6);
@@ -140,18 +141,18 @@ TEST_F(Import, texture_coordinates_that_overlap_are_replaced_and_the_report_says
 }
 
 TEST_F(Import, a_textured_scan_keeps_its_files_and_its_picture_becomes_the_first_look) {
-  auto asked = request("pot.obj", "mtllib pot.mtl\nusemtl skin\n" + obj_with_uvs(kApart));
+  auto import_request = request("pot.obj", "mtllib pot.mtl\nusemtl skin\n" + obj_with_uvs(kApart));
   const std::vector<std::uint8_t> rgba(64 * 64 * 4, 200);
   const auto png = encode_png(rgba, 64, 64);
   const auto add = [&](const std::string& name, const std::string& content) {
     const auto path = folder_.path() / std::filesystem::path(name).filename();
     std::ofstream(path, std::ios::binary) << content;
-    asked.files.push_back({name, path});
+    import_request.files.push_back({name, path});
   };
   add("pot.mtl", "newmtl skin\nmap_Kd a\\skin.png\n");
   add("a/skin.png", {png.begin(), png.end()});
-  asked.strict = true;
-  const auto model = import_model(*store_, asked, progress_);
+  import_request.strict = true;
+  const auto model = import_model(*store_, import_request, progress_);
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_EQ(model->name, "pot");
   ASSERT_EQ(model->source_files.size(), 3u);
@@ -180,15 +181,15 @@ TEST_F(Import, a_zip_is_kept_as_it_is_and_what_is_in_it_is_imported) {
 }
 
 TEST_F(Import, vertices_within_the_weld_distance_are_joined) {
-  auto asked = request(
+  auto import_request = request(
       "gap.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.01 0 0\nv 1 1 0\nv 0 1.01 0\nf 1 2 3\nf 4 5 6\n");
-  asked.weld_distance = 0.05;
-  asked.strict = true;  // to weld is no fault
-  const auto model = import_model(*store_, asked, progress_);
+  import_request.weld_distance = 0.05;
+  import_request.strict = true;  // welding is not a fault
+  const auto model = import_model(*store_, import_request, progress_);
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_EQ(model->vertices, 4u);
-  asked.weld_distance = -1;
-  EXPECT_EQ(import_model(*store_, asked, progress_).error().field, "weld");
+  import_request.weld_distance = -1;
+  EXPECT_EQ(import_model(*store_, import_request, progress_).error().field, "weld");
 }
 
 TEST_F(Import, a_bad_file_is_refused_and_leaves_nothing_behind) {
@@ -217,15 +218,16 @@ TEST_F(Import, a_file_that_is_not_there_is_refused) {
 }
 
 TEST_F(Import, strict_refuses_a_file_that_needs_repair_and_says_which) {
-  auto asked = request("twice.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\nf 1 2 2\n");
-  asked.strict = true;
-  const auto refused = import_model(*store_, asked, progress_);
+  auto import_request =
+      request("twice.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\nf 1 2 2\n");
+  import_request.strict = true;
+  const auto refused = import_model(*store_, import_request, progress_);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::invalid);
   EXPECT_THAT(refused.error().detail, ::testing::HasSubstr("degenerate"));
   expect_nothing_left();
-  asked.strict = false;
-  const auto model = import_model(*store_, asked, progress_);
+  import_request.strict = false;
+  const auto model = import_model(*store_, import_request, progress_);
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_FALSE(model->repairs.empty());
 }
@@ -266,7 +268,7 @@ TEST_F(Import, a_cancel_at_any_time_leaves_nothing_behind) {
     const auto model = import_model(*store_, scan, progress);
     over = true;
     canceller.join();
-    // Very late it may be too late, and then the model is whole.
+    // A late cancel may have no effect; then the model is complete.
     if (model) {
       EXPECT_GE(from, 0.8);
       EXPECT_TRUE(store_->models().remove(model->id));

@@ -28,7 +28,7 @@ class RoomAreas : public RoomTest {
     features_ = make_layer(ValueType::u16, 2048, "marks");
   }
 
-  // What the fixture's strokes are seen through.
+  // The camera of the fixture's strokes.
   Camera view() const { return camera({0.3, -1, 0.4}); }
 
   static Expression layer_value(const std::string& slug) {
@@ -60,8 +60,8 @@ class RoomAreas : public RoomTest {
     return snapshot ? snapshot->tiles : TileMap{};
   }
 
-  // Undo brings back what was there, redo what the edit made, and all of it can be read as of its
-  // sequence and after a restart.
+  // Undo restores the content before the edit, redo the content after it. Both can be read as of
+  // their sequences and after a restart.
   void expect_durable_and_undoable(const Layer& layer, room::EditRequest edit) {
     const TileMap before = tiles(layer.slug);
     const auto answer = send(edit);
@@ -105,7 +105,7 @@ std::uint64_t valid_texels(const TileMap& tiles) {
   return count;
 }
 
-// Texels that are valid in just one of them, or hold different values.
+// Counts texels that are valid in only one of them, or have different values.
 std::uint64_t differing_texels(const TileMap& a, const TileMap& b) {
   std::set<TileAddress> addresses;
   for (const TileMap* tiles : {&a, &b})

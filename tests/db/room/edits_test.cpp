@@ -60,7 +60,7 @@ TEST_F(RoomTest, annas_undo_leaves_what_ben_painted_over_it) {
   auto left = room()->queries().statistics("layer");
   EXPECT_FALSE(left->keys.contains(1));
   EXPECT_EQ(left->keys.at(2).texels, both->keys.at(2).texels);
-  // Ben undoes too: nothing is left. Both redo: all is as it was.
+  // Ben also undoes: the layer is empty. Both redo: the layer is as before.
   ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "ben")));
   EXPECT_EQ(room()->queries().statistics("layer")->texels, 0u);
   ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "anna")));
@@ -161,7 +161,7 @@ TEST_F(RoomTest, a_lost_context_comes_back_with_every_layer) {
                           room()->queries().tiles("layer", answer->sequence)->tiles));
 }
 
-// What the people in a room hear of failed saves.
+// Records the notifications of failed saves.
 struct UnsavedEars : room::Listener {
   std::mutex mutex;
   std::vector<Uuid> unsaved;
@@ -193,7 +193,7 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
   auto member = room()->participants().join({"anna", Role::owner}, {}, &ears,
                                             [](const stream::FrameMessages&) {});
 
-  // PointMeasurement goes on, writing does not.
+  // Reading continues to work, writing does not.
   execute(dsn_, "alter table edits add constraint no_more check (sequence < 2) not valid");
   std::vector<std::future<Result<room::EditAnswer>>> answers;
   std::vector<room::EditRequest> lost;
@@ -227,7 +227,7 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   const auto picture = test::whole_picture(room()->pictures(), {}, camera());
   auto& cluster = test::shared_cluster();
-  // with its sessions, which may write for a moment after the postmaster is gone
+  // also its sessions, which may write for a moment after the postmaster ended
   test::Hang(cluster).kill();
   auto edit = stroke(layer, 6, {{340, 240}}, 20);
   EXPECT_FALSE(send(edit));
@@ -263,15 +263,15 @@ TEST_F(RoomTest, every_type_is_painted_and_read_back) {
 }
 
 TEST_F(RoomTest, the_painted_area_is_that_of_a_disc_on_a_flat_spot) {
-  // An orthographic look along the normal of what is under the cursor: there the brush is a disc of
-  // known size.
+  // An orthographic view along the normal of the surface under the cursor: there the brush is a
+  // disc of known size.
   const Layer layer = make_layer(ValueType::u8, 4096);
   auto edit = stroke(layer, 1, {{320, 240}}, 0);
   auto& batch = std::get<room::StrokeEdit>(edit.edit).batch;
   auto spot = room()->queries().pick(batch.camera, 320.5, 240.5, {});
   ASSERT_TRUE(spot && spot->hit);
   batch.camera = camera(glm::dvec3(spot->normal), true);
-  // Where the spot is in the new window.
+  // The place of the spot in the new window.
   const glm::dvec4 clip =
       batch.camera.projection * batch.camera.view * glm::dvec4(spot->position, 1);
   batch.path = {{(clip.x * 0.5 + 0.5) * 640, (0.5 - clip.y * 0.5) * 480}};

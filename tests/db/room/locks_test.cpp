@@ -1,4 +1,4 @@
-// Locked layers, whatever way an edit comes.
+// Locked layers, for each way in which an edit arrives.
 #include <future>
 #include <vector>
 
@@ -31,8 +31,7 @@ class LockedLayers : public RoomTest {
   }
 };
 
-// One of each kind; all of them change something on a layer that holds a stroke of Anna's and an
-// undone one.
+// One edit of each kind; each changes a layer that has a stroke of Anna's and an undone one.
 std::vector<std::pair<std::string, decltype(room::EditRequest::edit)>> edits_of(
     const Camera& camera, const TileMap& other) {
   room::StrokeEdit stroke;
@@ -69,7 +68,7 @@ TEST_F(LockedLayers, no_edit_below_curator_touches_a_locked_layer) {
     const auto refused = send(request(layer, edit));
     ASSERT_FALSE(refused) << what;
     EXPECT_EQ(refused.error().code, ErrorCode::forbidden) << what;
-    EXPECT_EQ(refused.error().detail, "The layer Layer is locked: a curator can unlock it.")
+    EXPECT_EQ(refused.error().detail, "The layer Layer is locked. Ask a curator to unlock it.")
         << what;
     EXPECT_EQ(refused.error().field, "layer") << what;
   }
@@ -109,10 +108,10 @@ TEST_F(LockedLayers, what_was_saved_before_the_lock_keeps_its_answer) {
   }
 }
 
-// Each of these strokes paints texels of its own, so any that came later would be seen.
+// Each of these strokes paints different texels, so a late one would be visible.
 TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
   const Layer layer = make_layer(ValueType::u8);
-  // the surface map is there: what follows does not wait for it
+  // makes the surface map, so that later edits do not wait for it
   ASSERT_TRUE(send(stroke(layer, 1, {{320, 240}}, 20)));
   std::vector<std::future<Result<room::EditAnswer>>> answers;
   for (int i = 0; i < 60; ++i)
@@ -122,11 +121,11 @@ TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
   const auto sequence = room()->edits().sequence();
   EXPECT_EQ(room()->edits().durable_sequence(), sequence);
   for (auto& answer : answers) {
-    const auto told = answer.get();
-    if (told)
-      EXPECT_LE(told->sequence, sequence);
+    const auto reply = answer.get();
+    if (reply)
+      EXPECT_LE(reply->sequence, sequence);
     else
-      EXPECT_EQ(told.error().code, ErrorCode::forbidden) << told.error().detail;
+      EXPECT_EQ(reply.error().code, ErrorCode::forbidden) << reply.error().detail;
   }
   EXPECT_TRUE(test::equal(tiles(layer), then));
   EXPECT_EQ(room()->edits().sequence(), sequence);
@@ -136,15 +135,15 @@ TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
 TEST_F(LockedLayers, a_locked_computed_layer_is_computed_by_the_server_itself_only) {
   const Layer source = make_layer(ValueType::u8, 2048, "source");
   ASSERT_TRUE(send(stroke(source, 9, {{320, 240}}, 20)));
-  Layer wish;
-  wish.name = wish.slug = "twice";
-  wish.type = ValueType::f32;
-  wish.palette = default_palette(ValueType::f32, false);
-  wish.formula.emplace();
-  wish.formula->expression = "source * 2";
-  wish.formula->inputs = {{"source", source.id, {}}};
-  wish.locked = true;
-  const auto made = room()->layers().create(wish);
+  Layer requested;
+  requested.name = requested.slug = "twice";
+  requested.type = ValueType::f32;
+  requested.palette = default_palette(ValueType::f32, false);
+  requested.formula.emplace();
+  requested.formula->expression = "source * 2";
+  requested.formula->inputs = {{"source", source.id, {}}};
+  requested.locked = true;
+  const auto made = room()->layers().create(requested);
   ASSERT_TRUE(made) << made.error().detail;
   EXPECT_TRUE(made->locked);
   room::ComputeEdit compute;

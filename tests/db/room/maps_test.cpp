@@ -1,4 +1,4 @@
-// Maps and measurements, painted over a layer as one edit. With a real database and renderer.
+// Painting maps and measurements over a layer as one edit. With a real database and renderer.
 #include <cmath>
 
 #include "room/edit.h"
@@ -74,8 +74,8 @@ TEST_F(RoomMaps, a_map_is_painted_on_what_is_seen_first_along_its_direction) {
   auto tiles = room()->surface().project(layer_, {0, 1, 0}, east);  // seen from -y
   ASSERT_TRUE(tiles) << tiles.error().detail;
   ASSERT_TRUE(paint(*tiles));
-  // Rays along the direction tell what is seen first, and its values; others of its kind from
-  // behind see none.
+  // Rays along the direction meet the first visible surface, which has the map's values; rays from
+  // the opposite side meet no values.
   const double size = glm::length(model_.bounds_max - model_.bounds_min);
   int right = 0, wrong = 0, behind = 0;
   for (int i = 0; i < 400; ++i) {
@@ -88,7 +88,7 @@ TEST_F(RoomMaps, a_map_is_painted_on_what_is_seen_first_along_its_direction) {
     if (!seen->hit || std::abs(seen->position.x - middle.x) < 0.3 ||
         std::abs(seen->position.z - middle.z) < 0.3)
       continue;
-    if (std::abs(seen->normal.y) < 0.4) continue;  // grazed
+    if (std::abs(seen->normal.y) < 0.4) continue;  // seen at a small angle
     const auto expected = east(seen->position);
     const auto& value = seen->values.at(0);
     ++(value.valid == expected.has_value() && (!expected || value.value == *expected) ? right

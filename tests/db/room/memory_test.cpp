@@ -21,7 +21,7 @@ class RoomMemory : public RoomTest {
     options_.memory_bytes = bytes;
     restart();
   }
-  // What the open model holds with the surface map of one layer.
+  // Returns the memory of the open model with the surface map of one layer.
   std::uint64_t bytes_with_map(const Layer& layer) {
     EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
     return rooms_->memory_bytes_used();
@@ -40,7 +40,7 @@ TEST_F(RoomMemory, counts_what_a_model_holds_and_gives_it_back) {
   ASSERT_TRUE(send(request(layer, room::FillEdit{true, 0})));
   EXPECT_LT(rooms_->memory_bytes_used(), painted) << "erased tiles take none";
   rooms_->forget(model_.id);
-  // The threads that saved the last edit may still be letting go of the room.
+  // The threads that saved the last edit may still hold the room.
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   while (rooms_->memory_bytes_used() > 0 && std::chrono::steady_clock::now() < limit)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -63,7 +63,7 @@ TEST_F(RoomMemory, is_made_for_a_surface_map_by_one_that_is_not_used) {
     bytes_with_map(small);
     return bytes_with_map(large);
   }();
-  restart_with(both - kMiB);  // not both
+  restart_with(both - kMiB);  // too little for both
   ASSERT_TRUE(send_until_taken(stroke(large, 1, {{320, 240}}, 20)));
   for (const auto& layer : {small, large, small})
     ASSERT_TRUE(send_until_taken(stroke(layer, 7, {{330, 240}}, 15))) << layer.slug;
@@ -77,7 +77,7 @@ TEST_F(RoomMemory, that_is_used_up_refuses_edits_until_something_is_given_back) 
   const auto second = make_layer(ValueType::u32, 2048, "second");
   restart_with(bytes_with_map(first) + 4 * kMiB);
   ASSERT_TRUE(
-      // what an edit brought is kept, budget or not
+      // the content of an edit is kept even above the budget
       send_until_taken(request(first, room::FillEdit{false, 9})));
   const auto refused = send(request(second, room::FillEdit{false, 9}));
   ASSERT_FALSE(refused);

@@ -1,4 +1,4 @@
-// Questions to an open model: what layers held then, where a condition holds, around a place,
+// Queries of an open model: values of layers at a time, the area of a condition, around a place,
 // inside an outline.
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "expression/expression_parser.h"
+#include "query/statistics/cross_table.h"
+#include "query/statistics/key_areas.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -103,7 +105,7 @@ TEST_F(RoomQueries, a_selection_adds_up_to_what_the_layers_hold_there) {
   EXPECT_EQ(unknown.error().field, "where");
 }
 
-// A small disc of a smooth surface is flat enough.
+// A small disc of a smooth surface is sufficiently flat.
 TEST_F(RoomQueries, around_a_place_lies_the_area_of_a_disc) {
   const glm::dvec3 place = seen_at(320, 240);
   for (const double radius : {4.0, 8.0}) {
@@ -141,23 +143,24 @@ TEST_F(RoomQueries, inside_an_outline_lies_what_a_polygon_paints) {
 }
 
 TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
-  Layer wished;
-  wished.name = "Pieces";
-  wished.kind = LayerKind::database;
-  wished.type = ValueType::u16;
-  wished.resolution = 2048;
-  wished.palette = default_palette(wished.type, true);
+  Layer pieces_layer;
+  pieces_layer.name = "Pieces";
+  pieces_layer.kind = LayerKind::database;
+  pieces_layer.type = ValueType::u16;
+  pieces_layer.resolution = 2048;
+  pieces_layer.palette = default_palette(pieces_layer.type, true);
   std::vector<Column> columns(2);
   columns[0].name = "Thickness";
   columns[0].kind = ColumnKind::numeric;
   columns[1].name = "State";
-  const auto pieces = room()->layers().create(wished, {}, columns);
+  const auto pieces = room()->layers().create(pieces_layer, {}, columns);
   ASSERT_TRUE(pieces) << pieces.error().detail;
   const Table table = *store_->tables().find(to_string(*pieces->table), Role::owner);
   const auto write = [&](std::int64_t key, double thickness, const char* state) {
-    store::WriteRecords asked;
-    asked.records = {{key, {{table.columns[0].id, thickness}, {table.columns[1].id, state}}}};
-    ASSERT_TRUE(store_->records().write(table.id, asked, "anna"));
+    store::WriteRecords write_request;
+    write_request.records = {
+        {key, {{table.columns[0].id, thickness}, {table.columns[1].id, state}}}};
+    ASSERT_TRUE(store_->records().write(table.id, write_request, "anna"));
   };
   write(1, 4, "loose");
   write(2, 8, "firm");
@@ -182,7 +185,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   EXPECT_EQ(area("pieces.thickness > depth and valid(depth)"), area("pieces = 2 and valid(depth)"));
   EXPECT_GT(area("pieces.thickness > depth"), 0);
 
-  // As the records are when they are asked, and as they were.
+  // With the records at the time of the query, and with earlier ones.
   write(1, 9, "firm");
   EXPECT_EQ(area("pieces.thickness < 5"), 0);
   EXPECT_NEAR(area("pieces.thickness < 5", then), first, 1e-9 * first);
@@ -195,12 +198,11 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   ASSERT_TRUE(filled) << filled.error().detail;
   EXPECT_NEAR(filled->area_m2, second, 1e-9 * second);
 
-  for (
-      const auto& [text, says] : std::map<std::string, std::string>{
-          {"pieces.thick > 1", "has no column 'thick'"},
-          {"depth > 1 and marks.thickness > 1",
-           "'marks' holds numbers: only database layers have records with columns (at character 15)"},
-          {"peaces.thickness > 1", "no layer 'peaces'"}}) {
+  for (const auto& [text, says] : std::map<std::string, std::string>{
+           {"pieces.thick > 1", "has no column 'thick'"},
+           {"depth > 1 and marks.thickness > 1",
+            "'marks' stores numbers: only layers of records have columns (at character 15)"},
+           {"peaces.thickness > 1", "no layer 'peaces'"}}) {
     const auto refused = room()->queries().select(where(text), {});
     ASSERT_FALSE(refused) << text;
     EXPECT_EQ(refused.error().code, ErrorCode::invalid);
@@ -230,12 +232,12 @@ TEST_F(RoomQueries, statistics_after_a_stroke_are_those_of_a_fresh_count) {
   ASSERT_TRUE(send(stroke(features_, 3, {{300, 240}}, 50)));
   ASSERT_TRUE(room()->queries().statistics("marks"));
   ASSERT_TRUE(send(stroke(features_, 5, {{320, 250}}, 30)));
-  const auto kept = room()->queries().statistics("marks");
+  const auto updated = room()->queries().statistics("marks");
   restart();
   const auto fresh = room()->queries().statistics("marks");
-  EXPECT_EQ(kept->texels, fresh->texels);
-  EXPECT_EQ(kept->area_m2, fresh->area_m2);
-  EXPECT_EQ(kept->keys.at(5).centroid, fresh->keys.at(5).centroid);
+  EXPECT_EQ(updated->texels, fresh->texels);
+  EXPECT_EQ(updated->area_m2, fresh->area_m2);
+  EXPECT_EQ(updated->keys.at(5).centroid, fresh->keys.at(5).centroid);
 }
 
 }  // namespace

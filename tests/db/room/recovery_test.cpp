@@ -1,6 +1,6 @@
-// Faults: the GPU's memory is used up or its context goes, the database is away or holds more than
-// the room knows, the room closes. Whatever happens, what was answered as saved is in the journal,
-// and the room and the GPU hold what the journal holds.
+// Faults: the GPU's memory is full or its context is lost, the database is unreachable or has more
+// edits than the room, the room closes. After each fault, every edit that was answered as saved is
+// in the journal, and the room and the GPU have the journal's content.
 #include <gmock/gmock.h>
 #include <libpq-fe.h>
 
@@ -30,7 +30,7 @@ using Answer = Result<room::EditAnswer>;
 
 constexpr auto kLong = std::chrono::minutes(5);
 
-// What a person in the room hears.
+// Counts the notifications of a participant.
 class Ears : public room::Listener {
  public:
   void edit_applied(const Edit&) override { count(applied_); }
@@ -42,8 +42,8 @@ class Ears : public room::Listener {
   void presence_changed() override { count(presence_); }
   void view_refused(std::uint32_t, const Error&) override {}
 
-  void wait_for_applied(int wanted) { wait(applied_, wanted); }
-  void wait_for_presence(int wanted) { wait(presence_, wanted); }
+  void wait_for_applied(int expected) { wait(applied_, expected); }
+  void wait_for_presence(int expected) { wait(presence_, expected); }
   int deleted() {
     std::lock_guard lock(mutex_);
     return deleted_;
@@ -55,9 +55,9 @@ class Ears : public room::Listener {
     ++what;
     changed_.notify_all();
   }
-  void wait(const int& what, int wanted) {
+  void wait(const int& what, int expected) {
     std::unique_lock lock(mutex_);
-    ASSERT_TRUE(changed_.wait_for(lock, kLong, [&] { return what >= wanted; }));
+    ASSERT_TRUE(changed_.wait_for(lock, kLong, [&] { return what >= expected; }));
   }
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -80,9 +80,9 @@ class RoomRecovery : public RoomTest {
  protected:
   void execute(const char* sql) { Connection(dsn_).execute(sql); }
 
-  // Starts again with a GPU that has room for one slice of pages of four bytes, 20 MiB: for a layer
-  // of 2048² that is painted all over, not for one of 4096². What is shown and painted is not more
-  // than that now.
+  // Restarts with a GPU that has room for one slice of pages of four bytes, 20 MiB: enough for a
+  // layer of 2048² that is painted all over, too little for one of 4096². The shown and painted
+  // content needs no more than that at this time.
   void restart_with_little_gpu_memory(std::initializer_list<Layer> layers) {
     for (const Layer& layer : layers) {
       EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
@@ -91,7 +91,7 @@ class RoomRecovery : public RoomTest {
     restart(renderer_->gpu_bytes_used() + (9u << 20));
   }
 
-  // Commits an edit behind the room's back, as a commit does whose answer was lost.
+  // Commits an edit without the room, like a commit whose answer was lost.
   void commit_behind(const room::EditRequest& edit, const Layer& layer, std::int64_t sequence,
                      bool damaged) {
     store::JournalEntry entry;
@@ -187,7 +187,7 @@ TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_p
                                             [](const stream::FrameMessages&) {});
 
   Connection blocker(dsn_);
-  blocker.execute("begin; lock table edits in exclusive mode");  // reading goes on, commits wait
+  blocker.execute("begin; lock table edits in exclusive mode");  // reads work, commits wait
   auto erased = start(request(a, room::FillEdit{true, 0}));
   auto filled = start(request(b, room::FillEdit{false, 4}));
   ears.wait_for_applied(2);
@@ -215,8 +215,8 @@ TEST_F(RoomRecovery, contexts_lost_in_the_middle_of_edits_lose_none_that_was_sav
     answers.push_back(start(request(layer, room::FillEdit{false, std::uint32_t(round + 2)})));
     for (int i = 0; i < 4; ++i)
       answers.push_back(start(stroke(layer, 20 + i, {{310.0 + 10 * i, 240.0 - round}}, 12)));
-    // At another moment each time: before, among and after the strokes and in the middle of the
-    // fill.
+    // Loses the context at a different time in each round: before, among and after the strokes, and
+    // in the middle of the fill.
     for (int i = 0; i < round; ++i) answers[i].wait();
     renderer_->lose_context_for_test();
     for (auto& future : answers) {
@@ -232,7 +232,7 @@ TEST_F(RoomRecovery, contexts_lost_in_the_middle_of_edits_lose_none_that_was_sav
     ASSERT_TRUE(next) << next.error().detail;
     sequences.push_back(next->sequence);
   }
-  // Each sequence was given once, and without a gap.
+  // Each sequence was given once, without a gap.
   for (std::size_t i = 0; i < sequences.size(); ++i) EXPECT_EQ(sequences[i], std::int64_t(i + 1));
   expect_room_equals_journal(layer);
   expect_picture_of_journal();
@@ -278,7 +278,7 @@ TEST_F(RoomRecovery, a_context_lost_after_the_rooms_are_gone_harms_nobody) {
   std::promise<Result<render::ModelHandle>> answered;
   renderer_->add_model(
       {}, [&](Result<render::ModelHandle> model) { answered.set_value(std::move(model)); });
-  EXPECT_FALSE(answered.get_future().get());  // refused by a thread that is still there
+  EXPECT_FALSE(answered.get_future().get());  // refused by a thread that still runs
 }
 
 // --- the database
@@ -307,8 +307,8 @@ TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_pai
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   commit_behind(stroke(layer, 6, {{340, 240}}, 20), layer, 2, false);
-  // The room takes sequence 2 for its own edit; the journal refuses it, and the room reads what is
-  // there.
+  // The room uses sequence 2 for its own edit; the journal refuses it, and the room reads the
+  // stored edit.
   const auto edit = stroke(layer, 7, {{320, 240}}, 20);
   EXPECT_FALSE(send(edit));
   const auto resent = send_until_taken(edit);
@@ -328,7 +328,7 @@ TEST_F(RoomRecovery, a_room_that_cannot_be_read_again_refuses_edits_until_it_can
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::unavailable);
   EXPECT_EQ(test::whole_picture(room()->pictures(), {}, camera())->rgba,
-            picture->rgba);  // viewing goes on
+            picture->rgba);  // viewing still works
 
   execute(
       "update tile_revisions set difference = (select difference from tile_revisions where sequence = 1 limit 1) where sequence = 2");

@@ -1,4 +1,4 @@
-// Edits that wait for review: what they are, how they are seen, and what a curator makes of them.
+// Edits that wait for review: their state, their look, and the decisions of curators.
 #include <gmock/gmock.h>
 #include <libpq-fe.h>
 
@@ -83,7 +83,7 @@ TEST_F(Reviews, what_an_annotator_paints_is_in_force_and_marked_until_it_is_acce
   EXPECT_EQ(row(1).review, Review::pending);
   EXPECT_TRUE(row(1).in_force);
   EXPECT_GT(texels_waiting(), 0u);
-  expect_picture_of_journal();  // which finds the marks by itself
+  expect_picture_of_journal();  // which computes the marks from the journal
   const TileMap then = tiles();
   const auto marked = picture();
 
@@ -133,7 +133,7 @@ TEST_F(Reviews, rejecting_takes_the_paint_out_below_what_others_painted) {
   EXPECT_TRUE(test::equal(tiles(), before));
   EXPECT_EQ(texels_waiting(), 0u);
 
-  // A decision is taken back, and the edits wait again.
+  // After the reopening of a decision the edits wait again.
   ASSERT_TRUE(send(review(Decision::reopen, {{2}, {}})));
   ASSERT_TRUE(send(review(Decision::reopen, {{3}, {}})));
   EXPECT_TRUE(test::equal(tiles(), both));
@@ -167,7 +167,7 @@ TEST_F(Reviews, annotators_undo_only_what_waits_and_redo_nothing_that_was_reject
   EXPECT_EQ(send(request(layer_, room::RedoEdit{})).error().code, ErrorCode::conflict);
   EXPECT_EQ(send(as_curator(request(layer_, room::RedoEdit{}))).error().code, ErrorCode::conflict)
       << "anna as a curator, too";
-  // Without review, and as a curator, what was accepted is one's own as ever.
+  // Curators, and layers without review, undo accepted edits as usual.
   EXPECT_TRUE(send(as_curator(request(layer_, room::UndoEdit{}))));
   expect_picture_of_journal();
 }
@@ -199,8 +199,8 @@ TEST_F(Reviews, a_batch_stands_for_its_stroke_and_what_does_not_wait_is_refused)
   EXPECT_TRUE(again->repeated);
 
   const TileMap then = tiles();
-  const auto is_refused = [&](const room::EditRequest& asked) {
-    const auto answer = send(asked);
+  const auto is_refused = [&](const room::EditRequest& request) {
+    const auto answer = send(request);
     return !answer && answer.error().code == ErrorCode::conflict;
   };
   EXPECT_TRUE(is_refused(review(Decision::accept, {{1}, {}})));
@@ -271,21 +271,21 @@ TEST_F(Reviews, marks_are_taken_back_with_edits_that_cannot_be_saved_and_come_ba
 
 TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_is) {
   const auto picture_at = [&](const room::DurableState& state, bool hatched = true) {
-    room::PictureRequest asked;
-    asked.at = state.sequence;
-    if (hatched) asked.provisional = state.provisional;
-    return test::whole_picture(room()->pictures(), asked, camera({0.3, -1, 0.4}))->rgba;
+    room::PictureRequest picture_request;
+    picture_request.at = state.sequence;
+    if (hatched) picture_request.provisional = state.provisional;
+    return test::whole_picture(room()->pictures(), picture_request, camera({0.3, -1, 0.4}))->rgba;
   };
   std::unique_ptr<PGconn, decltype(&PQfinish)> other(PQconnectdb(dsn_.c_str()), &PQfinish);
   const auto execute = [&](const char* sql) {
     std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(other.get(), sql), &PQclear);
     ASSERT_EQ(PQresultStatus(result.get()), PGRES_COMMAND_OK) << PQerrorMessage(other.get());
   };
-  // Sends edits whose last is seen before any is durable, and looks at the newest durable state
-  // then.
+  // Sends edits, of which the last is visible before any is durable, and then reads the newest
+  // durable state.
   const auto while_unsaved = [&](std::vector<room::EditRequest> edits, const auto& image) {
     execute("begin");
-    execute("lock table edits in share row exclusive mode");  // may be read, and not written
+    execute("lock table edits in share row exclusive mode");  // allows reading but not writing
     const auto seen = std::make_shared<std::promise<void>>();
     std::vector<std::future<Result<room::EditAnswer>>> answers;
     for (std::size_t i = 0; i + 1 < edits.size(); ++i) answers.push_back(start(edits[i]));
@@ -338,8 +338,8 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
   EXPECT_THAT(seen_by_viewers(), IsEmpty());
 }
 
-// What the layer shows and what of it waits, by the journal's own words: the newest edit in force
-// decides. The edits' state is kept by a model of its own.
+// Compares the layer and its pending edits with the journal's rule: the newest edit in force
+// decides. A separate model records the state of the edits.
 TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
   struct Stroke {
     std::string user;
@@ -424,7 +424,7 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         << "seed " << seed;
     EXPECT_TRUE(test::equal(room()->edits().durable_state().provisional[layer_.id], features))
         << "seed " << seed;
-    // the marks that the room kept up to date are those of the journal
+    // compares the room's own marks with those of the journal
     expect_picture_of_journal();
     expect_room_equals_journal(layer_);
   }

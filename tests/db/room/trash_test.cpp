@@ -1,4 +1,5 @@
-// Layers of an open room that go into the Trash and come back.
+// Moving layers of an open room to the trash, and restoring them.
+#include "store/content/trash.h"
 #include "room/edit.h"
 #include "room/layers.h"
 #include "room/queries.h"

@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 using test::Painter;
 
 // "user kind op name ×count", newest first.
-std::vector<std::string> told(const ActivityPage& page) {
+std::vector<std::string> lines_of(const ActivityPage& page) {
   std::vector<std::string> lines;
   for (const Activity& line : page.lines)
     lines.push_back((line.user.empty() ? "-" : line.user) + " " + line.kind + " " + line.op + " " +
@@ -45,7 +45,7 @@ class ActivityOfAProject : public ::testing::Test {
   void forget_made_layers() {
     ASSERT_TRUE(connection_->query("DELETE FROM activities WHERE kind = 'layer'"));
   }
-  // An edit that is saved, `after` the first one.
+  // Makes an edit that is saved `after` the first one.
   void edit(const Layer& layer, std::chrono::seconds after, const std::string& user,
             const std::string& op = "stroke", std::optional<Uuid> stroke = {}) {
     JournalEntry entry = Painter(layer, 1).entry(++sequence_, op, user);
@@ -68,10 +68,10 @@ class ActivityOfAProject : public ::testing::Test {
     return store_->tables().create(table, by<Table>("ada")).value();
   }
   void write_records(TableId table, std::size_t count, bool dry_run = false) {
-    WriteRecords asked;
-    asked.records.resize(count);
-    asked.dry_run = dry_run;
-    ASSERT_TRUE(store_->records().write(table, asked, "ada"));
+    WriteRecords request;
+    request.records.resize(count);
+    request.dry_run = dry_run;
+    ASSERT_TRUE(store_->records().write(table, request, "ada"));
   }
   void save() {
     JournalWriter writer(*store_, {});
@@ -101,7 +101,7 @@ TEST_F(ActivityOfAProject, strokes_of_one_person_on_one_layer_within_ten_minutes
   for (int batch = 0; batch < 5; ++batch) edit(layer_, 1s * batch, "ada", "stroke", stroke);
   edit(other_, 6s, "ada");
   edit(layer_, 7s, "bob");
-  save();  // the same stroke and person go on in another commit
+  save();  // the same person continues the same stroke in another commit
   edit(layer_, 8s, "ada", "stroke", stroke);
   edit(layer_, 500s, "ada");
   save();
@@ -111,7 +111,7 @@ TEST_F(ActivityOfAProject, strokes_of_one_person_on_one_layer_within_ten_minutes
   edit(layer_, 1601s, "ada");
   save();
   const ActivityPage found = page();
-  EXPECT_THAT(told(found),
+  EXPECT_THAT(lines_of(found),
               ::testing::ElementsAre("ada edit stroke layer ×1", "ada edit fill layer ×1",
                                      "ada edit stroke layer ×3", "bob edit stroke layer ×1",
                                      "ada edit stroke other ×1"));
@@ -157,21 +157,21 @@ TEST_F(ActivityOfAProject, things_that_people_make_change_and_delete_are_told) {
   layer.opacity = 0.5;
   layer.locked = true;
   layer = store_->layers().update(layer, by<Layer>("ada")).value();
-  EXPECT_THAT(told(page()),
+  EXPECT_THAT(lines_of(page()),
               ::testing::ElementsAre("ada layer changed Cracks ×2", "ada layer created Cracks ×1",
                                      "- model created vase ×1"));
   EXPECT_THAT(page().lines[0].changed, ::testing::ElementsAre("locked", "name", "opacity"));
   layer.visible = !layer.visible;
   layer = store_->layers().update(layer).value();
   EXPECT_EQ(page().lines[0].count, 2) << "nobody asked for it";
-  EXPECT_THAT(told(page({.model = model_.id})), ::testing::IsEmpty());
+  EXPECT_THAT(lines_of(page({.model = model_.id})), ::testing::IsEmpty());
   ASSERT_TRUE(store_->layers().remove(layer.id, by<>("bob")));
   const Activity gone = page().lines[0];
-  EXPECT_EQ(told(page())[0], "bob layer deleted Cracks ×1");
+  EXPECT_EQ(lines_of(page())[0], "bob layer deleted Cracks ×1");
   EXPECT_FALSE(gone.layer);
   EXPECT_EQ(gone.model, second.id);
   ASSERT_TRUE(store_->models().remove(second.id, by<>("bob")));
-  EXPECT_EQ(told(page())[0], "bob model deleted vase ×1");
+  EXPECT_EQ(lines_of(page())[0], "bob model deleted vase ×1");
   EXPECT_FALSE(page().lines[0].model);
 }
 
@@ -186,18 +186,18 @@ TEST_F(ActivityOfAProject, views_and_tours_that_people_make_change_and_delete_ar
     part.text = "From the west";
     part.content = {{"light", "flat"}};
     part = parts.update(part, by<NamedPart>("bob")).value();
-    part = parts.update(part, by<NamedPart>("bob")).value();  // nothing is another
+    part = parts.update(part, by<NamedPart>("bob")).value();  // nothing differs
     EXPECT_THAT(page().lines[0].changed, ::testing::ElementsAre("content", "text"));
     ASSERT_TRUE(parts.remove(part, by<>("bob")));
   };
   tell(store_->views(), "West wall");
   EXPECT_THAT(
-      told(page({.model = model_.id})),
+      lines_of(page({.model = model_.id})),
       ::testing::ElementsAre("bob view deleted West wall ×1", "bob view changed West wall ×1",
                              "ada view created West wall ×1"));
   forget();
   tell(store_->tours(), "The pot");
-  EXPECT_THAT(told(page()),
+  EXPECT_THAT(lines_of(page()),
               ::testing::ElementsAre("bob tour deleted The pot ×1", "bob tour changed The pot ×1",
                                      "ada tour created The pot ×1"));
   EXPECT_EQ(page().lines[0].model, model_.id);
@@ -211,7 +211,7 @@ TEST_F(ActivityOfAProject, a_layer_or_table_that_work_takes_back_never_was) {
   ASSERT_TRUE(store_->layers().remove(layer.id));
   const Table table = new_table();
   ASSERT_TRUE(store_->tables().remove(table.id));
-  EXPECT_THAT(told(page()), ::testing::IsEmpty());
+  EXPECT_THAT(lines_of(page()), ::testing::IsEmpty());
 }
 
 TEST_F(ActivityOfAProject, records_and_columns_are_told_and_their_record_where_it_is_one) {
@@ -220,9 +220,9 @@ TEST_F(ActivityOfAProject, records_and_columns_are_told_and_their_record_where_i
   weight.name = "weight";
   ASSERT_TRUE(store_->tables().create_column(table.id, weight, "ada"));
   write_records(table.id, 1);
-  EXPECT_THAT(told(page()), ::testing::ElementsAre("ada records records Finds ×1",
-                                                   "ada columns create-column Finds ×1",
-                                                   "ada table created Finds ×1"));
+  EXPECT_THAT(lines_of(page()), ::testing::ElementsAre("ada records records Finds ×1",
+                                                       "ada columns create-column Finds ×1",
+                                                       "ada table created Finds ×1"));
   EXPECT_EQ(page().lines[0].record, 1);
   write_records(table.id, 2);
   EXPECT_EQ(page().lines[0].count, 3);
@@ -239,7 +239,8 @@ TEST_F(ActivityOfAProject, a_model_has_the_lines_of_the_tables_whose_records_lie
   write_records(unused.id, 1);
   edit(layer_, 0s, "ada");
   save();
-  EXPECT_THAT(told(page({.model = model_.id})), ::testing::ElementsAre("ada edit stroke layer ×1"));
+  EXPECT_THAT(lines_of(page({.model = model_.id})),
+              ::testing::ElementsAre("ada edit stroke layer ×1"));
   for (const char* name : {"units", "more units"}) {
     Layer layer;
     layer.model_id = model_.id;
@@ -250,26 +251,26 @@ TEST_F(ActivityOfAProject, a_model_has_the_lines_of_the_tables_whose_records_lie
     ASSERT_TRUE(store_->layers().create(layer));
   }
   forget_made_layers();
-  EXPECT_THAT(told(page({.model = model_.id})),
+  EXPECT_THAT(lines_of(page({.model = model_.id})),
               ::testing::ElementsAre("ada records records Finds ×1", "ada table created Finds ×1",
                                      "ada edit stroke layer ×1"));
   std::vector<std::string> read;
   for (ActivityQuery query{.model = model_.id, .limit = 1};;) {
     const ActivityPage part = page(query);
-    for (const std::string& line : told(part)) read.push_back(line);
+    for (const std::string& line : lines_of(part)) read.push_back(line);
     query.before = part.next;
     if (!query.before) break;
   }
-  EXPECT_EQ(read, told(page({.model = model_.id})));
+  EXPECT_EQ(read, lines_of(page({.model = model_.id})));
 }
 
 TEST_F(ActivityOfAProject, comments_are_told_while_they_stand) {
-  Comment asked;
-  asked.model_id = model_.id;
-  asked.place = {{1, 2, 3}, {0, 0, 1}};
-  asked.text = "Is this a crack? " + std::string(300, 'x');
-  asked.user = "ada";
-  Comment first = store_->comments().create(asked).value();
+  Comment comment;
+  comment.model_id = model_.id;
+  comment.place = {{1, 2, 3}, {0, 0, 1}};
+  comment.text = "Is this a crack? " + std::string(300, 'x');
+  comment.user = "ada";
+  Comment first = store_->comments().create(comment).value();
   Comment reply;
   reply.thread = first.id;
   reply.text = "Yes";
@@ -279,7 +280,7 @@ TEST_F(ActivityOfAProject, comments_are_told_while_they_stand) {
   first = store_->comments().update(first).value();
   first.resolved.reset();
   first = store_->comments().update(first, by<Comment>("cyd")).value();
-  EXPECT_THAT(told(page()),
+  EXPECT_THAT(lines_of(page()),
               ::testing::ElementsAre("cyd comment reopened  ×1", "bob comment resolved  ×1",
                                      "bob comment replied  ×1", "ada comment written  ×1"));
   EXPECT_EQ(page().lines[2].text, "Yes");
@@ -292,14 +293,14 @@ TEST_F(ActivityOfAProject, comments_are_told_while_they_stand) {
 TEST_F(ActivityOfAProject, members_are_told_to_those_who_may_know_them) {
   ASSERT_TRUE(store_->accounts().create("Gus", "", Role::guest));
   ASSERT_TRUE(store_->members().put(1, "Gus", Role::viewer, "ada"));
-  ASSERT_TRUE(store_->members().put(1, "Gus", Role::viewer, "ada"));  // as it is
+  ASSERT_TRUE(store_->members().put(1, "Gus", Role::viewer, "ada"));  // no change
   ASSERT_TRUE(store_->members().put(1, "Gus", Role::curator, "ada"));
   ASSERT_TRUE(store_->members().remove(1, "Gus", "ada"));
-  EXPECT_THAT(told(page()), ::testing::IsEmpty());
+  EXPECT_THAT(lines_of(page()), ::testing::IsEmpty());
   const ActivityPage known = page({.with_members = true});
-  EXPECT_THAT(told(known), ::testing::ElementsAre("ada member removed Default ×1",
-                                                  "ada member changed Default ×1",
-                                                  "ada member added Default ×1"));
+  EXPECT_THAT(lines_of(known), ::testing::ElementsAre("ada member removed Default ×1",
+                                                      "ada member changed Default ×1",
+                                                      "ada member added Default ×1"));
   EXPECT_EQ(known.lines[1].person, "Gus");
   EXPECT_EQ(known.lines[1].role, "curator");
   EXPECT_EQ(known.lines[0].role, "");
@@ -314,22 +315,21 @@ TEST_F(ActivityOfAProject, lines_of_a_model_go_where_it_goes) {
   Model model = store_->models().find(to_string(model_.id)).value();
   model.project_id = villa.id;
   ASSERT_TRUE(store_->models().update(model, by<Model>("ada")));
-  EXPECT_THAT(told(page()), ::testing::IsEmpty());
+  EXPECT_THAT(lines_of(page()), ::testing::IsEmpty());
   EXPECT_THAT(
-      told(store_->projects().activity(villa.id, Role::curator, {}).value()),
+      lines_of(store_->projects().activity(villa.id, Role::curator, {}).value()),
       ::testing::UnorderedElementsAre("ada model changed pot ×1", "ada project created Villa ×1",
                                       "ada edit stroke layer ×1"));
 }
 
-// Pages are read by an index, in order and no further than the page goes, however long the history
-// is.
+// An index reads pages in order and only as far as the page reaches, even in a long history.
 TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells) {
   ASSERT_TRUE(connection_->query(
       "INSERT INTO activities (project_id, model_id, subject, user_name, kind, op, begun, time) "
       "SELECT 1, 1 + n % 3, 'x', 'ada', 'edit', 'stroke', t, t FROM (SELECT n, timestamptz '2020-01-01' + n * interval "
       "'1 second' AS t FROM generate_series(1, 100000) n) r"));
   ASSERT_TRUE(connection_->query_once("VACUUM ANALYZE activities"));
-  // What a session counted is told when it ends, at the latest.
+  // A session reports its counts at its end at the latest.
   const auto rows_read = [&](std::int64_t at_least) {
     store_.reset();
     std::int64_t rows = 0;
@@ -350,7 +350,7 @@ TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells)
   ASSERT_EQ(first.lines.size(), 50u);
   ActivityPlace deep = first.next.value();
   deep.time_us -= 60'000 * std::int64_t{1'000'000};
-  for (int i = 0; i < 10; ++i) {  // a plan for whatever place comes after some times, too
+  for (int i = 0; i < 10; ++i) {  // after some runs PostgreSQL plans for any place
     ASSERT_EQ(page({.before = deep, .limit = 50}).lines.size(), 50u);
     ASSERT_EQ(page({.model = model_.id, .before = deep, .limit = 50}).lines.size(), 50u);
   }

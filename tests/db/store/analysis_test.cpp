@@ -1,4 +1,4 @@
-// What analysts read of places and names: well-known text that programs for maps draw.
+// What analysts can read of places and names: well-known text that GIS programs draw.
 #include <gtest/gtest.h>
 
 #include "db/journal_painter.h"
@@ -12,7 +12,7 @@ namespace {
 
 class Analysis : public ::testing::Test {
  protected:
-  // One value as text; nothing: NULL.
+  // Returns one value as text; nothing for NULL.
   std::optional<std::string> ask(const std::string& sql) {
     const auto rows = connection_->query_once("SELECT (" + sql + ")::text");
     EXPECT_TRUE(rows) << sql << ": " << (rows ? "" : rows.error().detail);
@@ -81,9 +81,9 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   input.values[table.columns[0].id] = json("[[0, 0.5, 1], [2, 3, 4]]");
   input.values[table.columns[0].id].push_back(json("[[5, 5, 5], [6, 6, 6]]")[0]);
   input.values[table.columns[1].id] = json("[[4500000.25, 7, -1]]");
-  WriteRecords asked;
-  asked.records = {input, {2, {}, {}}};
-  const auto written = store_->records().write(table.id, asked, "ana");
+  WriteRecords request;
+  request.records = {input, {2, {}, {}}};
+  const auto written = store_->records().write(table.id, request, "ana");
   ASSERT_TRUE(written && written->problems.empty());
   const std::string crack = "\"Crack (c" + to_string(table.columns[0].id) + ", wkt)\"";
   EXPECT_EQ(ask("SELECT " + crack + " FROM analysis.\"Damage\" WHERE key = 1"),

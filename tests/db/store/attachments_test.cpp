@@ -39,9 +39,9 @@ class Attachments : public ::testing::Test {
     table.columns = {column("Code", ColumnKind::text), column("Photos", ColumnKind::picture),
                      column("Papers", ColumnKind::document)};
     Table made = store_->tables().create(table).value();
-    WriteRecords asked;
-    asked.records = {{1, {}}, {2, {}}};
-    EXPECT_TRUE(store_->records().write(made.id, asked, "ana"));
+    WriteRecords request;
+    request.records = {{1, {}}, {2, {}}};
+    EXPECT_TRUE(store_->records().write(made.id, request, "ana"));
     return made;
   }
   ColumnId column_id(const std::string& slug) const {
@@ -64,9 +64,9 @@ class Attachments : public ::testing::Test {
     return to_json(page.records.at(0), page.table.columns).at("values").at(slug);
   }
   Result<TableChange> patch(std::int64_t key, const std::string& slug, json value) {
-    WriteRecords asked;
-    asked.records = {{key, {{column_id(slug), std::move(value)}}}};
-    auto change = store_->records().write(table_.id, asked, "ana");
+    WriteRecords request;
+    request.records = {{key, {{column_id(slug), std::move(value)}}}};
+    auto change = store_->records().write(table_.id, request, "ana");
     if (change && !change->problems.empty())
       return tl::unexpected(change->problems.front().problem);
     return change;

@@ -47,14 +47,14 @@ class Filter : public ::testing::Test {
     return made.value_or(Table{});
   }
   void write(const Table& table, const std::map<std::int64_t, std::map<std::string, json>>& rows) {
-    WriteRecords asked;
+    WriteRecords request;
     for (const auto& [key, values] : rows) {
       RecordInput input{key, {}};
       for (const auto& [slug, value] : values)
         input.values[find_column(table.columns, slug)->id] = value;
-      asked.records.push_back(std::move(input));
+      request.records.push_back(std::move(input));
     }
-    auto change = store_->records().write(table.id, asked, "ana");
+    auto change = store_->records().write(table.id, request, "ana");
     ASSERT_TRUE(change) << change.error().detail;
     ASSERT_TRUE(change->problems.empty()) << change->problems.front().problem.detail;
   }
@@ -78,7 +78,7 @@ class Filter : public ::testing::Test {
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
 };
 
-// A row of the table below as plain C++ sees it.
+// A row of the table below, for plain C++.
 struct Row {
   std::optional<std::string> name, state, day, moment, period;
   std::optional<double> depth, count;
@@ -119,7 +119,7 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     return all[random() % all.size()];
   };
   std::map<std::int64_t, Row> rows;
-  std::map<std::int64_t, std::map<std::string, json>> asked;
+  std::map<std::int64_t, std::map<std::string, json>> values_by_key;
   for (std::int64_t key = 10; key < 310; ++key) {
     Row row;
     const auto maybe = [&](auto& member, auto value) {
@@ -140,7 +140,7 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     maybe(row.material, static_cast<std::int64_t>(1 + random() % 3));
     maybe(row.above,
           one_of(std::vector<std::vector<std::int64_t>>{{1}, {1, 2}, {2, 3}, {1, 2, 3}}));
-    auto& values = asked[key];
+    auto& values = values_by_key[key];
     if (row.name) values["name"] = *row.name;
     if (row.state) values["state"] = *row.state;
     if (row.day) values["day"] = *row.day;
@@ -153,7 +153,7 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     if (row.above) values["above"] = *row.above;
     rows[key] = std::move(row);
   }
-  write(table, asked);
+  write(table, values_by_key);
 
   using Case = std::pair<const char*, std::function<Truth(const Row&)>>;
   const auto code = [](const Row& r) -> std::optional<std::string> {
@@ -298,21 +298,22 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
       SCOPED_TRACE(filter);
       const auto found = keys(table, filter);
       ASSERT_TRUE(found) << found.error().detail;
-      std::vector<std::int64_t> wanted;
+      std::vector<std::int64_t> expected_keys;
       for (const auto& [key, row] : rows) {
         if (std::string_view(text).starts_with("key <") && key >= 100) {
-          if (negated) wanted.push_back(key);
+          if (negated) expected_keys.push_back(key);
           continue;
         }
-        if (const Truth truth = expected(row); truth && *truth != negated) wanted.push_back(key);
+        if (const Truth truth = expected(row); truth && *truth != negated)
+          expected_keys.push_back(key);
       }
-      EXPECT_EQ(*found, wanted);
+      EXPECT_EQ(*found, expected_keys);
       if (!negated) {
-        EXPECT_FALSE(wanted.empty());
+        EXPECT_FALSE(expected_keys.empty());
       }
     }
 
-  // Of another time: the same, by the rows as they were.
+  // As of an earlier time: the result of the rows at that time.
   const auto then = store_->tables().find(to_string(table.id), Role::owner)->sequence;
   const auto before = keys(table, "depth > 1 and t_during(period, '15XX')");
   WriteRecords clear;
@@ -323,7 +324,7 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
   EXPECT_EQ(*keys(table, "depth > 1 and t_during(period, '15XX')", then), *before);
 }
 
-// Random formulas over numbers: what PostgreSQL says of a record is what the texels say that hold
+// Random formulas over numbers: PostgreSQL's result for a record equals the result for texels with
 // the same numbers.
 class RandomFormula {
  public:
@@ -422,7 +423,7 @@ TEST_F(Filter, the_database_and_the_texels_reckon_alike) {
     EXPECT_EQ(records, texels->front());
     held += std::popcount(records);
   };
-  // Each row of the table of operators, so that none is added for one of the two alone.
+  // Every row of the table of operators, so that each operator works in both.
   for (const Operator& row : operators()) {
     const std::string name(row.name);
     std::string value;
@@ -458,16 +459,16 @@ TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
                      column("Day", ColumnKind::date), column("Term", ColumnKind::term, other.id),
                      column("Above", ColumnKind::relation, other.id)});
   const std::vector<Bad> cases{
-      {"dept > 1", "no column 'dept'; it has key, name, depth", 0},
+      {"dept > 1", "no column 'dept'. It has key, name, depth", 0},
       {"wet and dept > 1", "no column 'dept'", 8},
       {"depth = 'x'", "'depth' holds numbers, not texts", 0},
       {"name = 1", "numbers, not texts", 7},
       {"name > 'a' and name + 1 > 2", "'name' holds texts, not numbers", 15},
-      {"state = 'god'", "no choice of state; there are good, poor", 8},
-      {"day > 'yesterday'", "is no date", 6},
+      {"state = 'god'", "not a choice of state. Its choices are good, poor", 8},
+      {"day > 'yesterday'", "is not a date", 6},
       {"depth and wet", "'depth' holds numbers, not true or false", 0},
       {"wet > 1", "'wet' holds true or false", 0},
-      {"name.code = 'x'", "holds no key", 0},
+      {"name.code = 'x'", "does not contain a key", 0},
       {"term.kode = 'x'", "no column 'kode'", 0},
       {"term = 'x'", "as in term.code", 0},
       {"above = 3", "ask a_contains", 0},
@@ -490,7 +491,7 @@ TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
     EXPECT_THAT(found.error().detail, testing::HasSubstr(bad.says));
     EXPECT_EQ(found.error().offset, bad.offset) << found.error().detail;
   }
-  EXPECT_TRUE(keys(table, "depth = 1")->size() == 1);  // the connection lives on
+  EXPECT_TRUE(keys(table, "depth = 1")->size() == 1);  // the connection still works
 }
 
 TEST_F(Filter, what_looks_like_sql_is_a_text_like_any_other) {

@@ -109,7 +109,7 @@ TEST(Groups, the_highest_of_ones_own_role_and_those_of_ones_groups_counts) {
   EXPECT_EQ(roles_of(*store, gus).in(forum), Role::annotator) << "nor does a lower one of a group";
   EXPECT_EQ(groups.roles_of("Gus")->size(), 2u) << "what is less than their own is given by nobody";
   EXPECT_EQ(groups.people_with_role(villa)->size(), 1u);
-  // Each way in which it ends.
+  // Each way in which the role ends.
   ASSERT_TRUE(groups.put(villa, diggers, Role::annotator, {}));
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::annotator);
   ASSERT_TRUE(groups.take(villa, diggers, {}));
@@ -169,7 +169,7 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   EXPECT_EQ(names_of(changed.now.members), (Names{"Ada", "Cyd"}));
   EXPECT_TRUE(changed.people.empty()) << "in no project does anybody do anything else than before";
   EXPECT_EQ(groups.all()->front().people, 2);
-  // Who is deleted leaves; who is invited may come with groups.
+  // Deleted people leave groups; invitations may contain groups.
   ASSERT_TRUE(store->accounts().remove("Ada"));
   EXPECT_EQ(names_of(groups.group(id)->members), Names{"Cyd"});
   EXPECT_EQ(store->accounts().create("Dan", "", Role::guest, {id, id}).value().groups,
@@ -184,8 +184,8 @@ TEST(Groups, it_is_told_who_could_do_less_without_one) {
   auto store = test::fresh_store();
   Groups& groups = store->groups();
   const auto villa = project(*store, "Villa"), forum = project(*store, "Forum");
-  // Of these only who has nothing else loses: not those who may look everywhere, or are in another
-  // group, or have a role of their own.
+  // Of these, only people without another role lose one: not those with a role on the whole server,
+  // in another group or of their own.
   session_of(*store, "Only", Role::guest);
   session_of(*store, "Viewer", Role::viewer);
   session_of(*store, "Other", Role::guest);
@@ -225,7 +225,7 @@ TEST(Groups, there_are_not_too_many_and_none_is_too_large) {
   ASSERT_TRUE(groups.change(students, {.add = {"p1001"}, .remove = {"p1"}}, {}))
       << "who leaves makes room";
   EXPECT_EQ(groups.group(students)->members.size(), 1000u);
-  // Of many who make the last one at once, one does.
+  // Only one of several concurrent requests can create the last group.
   std::atomic<int> made = 0;
   {
     std::vector<std::jthread> administrators;
@@ -251,7 +251,7 @@ TEST(Groups, who_asked_for_what_is_told_in_each_project) {
   ASSERT_TRUE(groups.change(students, {.remove = {"Gus"}}, "Anne"));
   ASSERT_TRUE(groups.put(forum, students, Role::viewer, {})) << "the command line asks as nobody";
   ASSERT_TRUE(groups.remove(students, "Anne"));
-  const auto told = [&](ProjectId of_project) {
+  const auto lines_of = [&](ProjectId of_project) {
     ActivityQuery query;
     query.with_members = true;
     Names lines;
@@ -263,10 +263,10 @@ TEST(Groups, who_asked_for_what_is_told_in_each_project) {
     std::ranges::sort(lines);
     return lines;
   };
-  EXPECT_EQ(told(villa), (Names{"Anne added Pupils Gus curator", "Anne added Students  viewer",
-                                "Anne changed Students  curator", "Anne removed Pupils  ",
-                                "Anne removed Pupils Gus "}));
-  EXPECT_EQ(told(forum), Names{"Anne removed Pupils  "});
+  EXPECT_EQ(lines_of(villa), (Names{"Anne added Pupils Gus curator", "Anne added Students  viewer",
+                                    "Anne changed Students  curator", "Anne removed Pupils  ",
+                                    "Anne removed Pupils Gus "}));
+  EXPECT_EQ(lines_of(forum), Names{"Anne removed Pupils  "});
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ class History : public ::testing::Test {
   JournalWriter writer_{*store_, {}};
   std::int64_t sequence_ = 0;
 
-  // Batches of one stroke; returns its sequences.
+  // Saves batches of one stroke; returns its sequences.
   std::vector<std::int64_t> stroke(const std::string& user, int batches = 1,
                                    const std::string& op = "stroke") {
     const Uuid id = random_uuid();
@@ -180,8 +180,8 @@ TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
   EXPECT_EQ(page.total, 5);
   ASSERT_EQ(page.rows.size(), 2u);
   EXPECT_EQ(page.rows[0].sequence, 4);
-  const std::vector<Uuid> asked{random_uuid(), entries[2].id};
-  const auto state = store_->journal().state(model_.id, asked).value();
+  const std::vector<Uuid> ids{random_uuid(), entries[2].id};
+  const auto state = store_->journal().state(model_.id, ids).value();
   EXPECT_EQ(state.last_sequence, 5);
   ASSERT_EQ(state.known.size(), 1u);
   const auto* found = &state.known[0];
@@ -195,7 +195,7 @@ TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
   EXPECT_TRUE(found->in_force);
   EXPECT_LT(std::chrono::abs(found->time - entries[2].time), std::chrono::microseconds(1));
   EXPECT_EQ(store_->journal().state(model_.id, {})->last_sequence, 5);
-  EXPECT_EQ(store_->journal().state(ModelId(model_.id.number() + 1), asked).error().code,
+  EXPECT_EQ(store_->journal().state(ModelId(model_.id.number() + 1), ids).error().code,
             ErrorCode::not_found);
   EXPECT_EQ(store_->journal().history(999, 10, 0).error().code, ErrorCode::not_found);
   EXPECT_TRUE(store_->journal().history(layer_.id, 10, 100)->rows.empty());

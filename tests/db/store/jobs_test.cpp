@@ -1,5 +1,5 @@
-// What is kept of long work over a restart: every end that it can come to, and that success is
-// written with its effect or not at all.
+// The stored state of long work after a restart: every possible end; a success is stored together
+// with its effect or not at all.
 #include "store/content/jobs.h"
 
 #include <gtest/gtest.h>
@@ -43,12 +43,12 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
                     {"field", "file"}};
   ASSERT_TRUE(store->jobs().end(failed));
 
-  for (int restart = 0; restart < 2; ++restart) {  // twice is harmless
-    const auto kept = store->jobs().take_over(1000);
-    ASSERT_TRUE(kept);
-    ASSERT_EQ(kept->size(), 4u);
-    EXPECT_EQ(kept->front().id, JobId(14));  // newest first
-    auto jobs = by_id(*kept);
+  for (int restart = 0; restart < 2; ++restart) {  // a second time is harmless
+    const auto stored = store->jobs().take_over(1000);
+    ASSERT_TRUE(stored);
+    ASSERT_EQ(stored->size(), 4u);
+    EXPECT_EQ(stored->front().id, JobId(14));  // newest first
+    auto jobs = by_id(*stored);
     EXPECT_EQ(jobs.at(11).state, "lost");
     EXPECT_EQ(jobs.at(12).state, "done");
     EXPECT_EQ(jobs.at(12).result, done.result);
@@ -94,7 +94,7 @@ TEST(Jobs, success_is_written_with_what_it_made) {
   };
   const auto made = store->projects().create(fresh, answer(21));
   ASSERT_TRUE(made);
-  fresh.name = "";  // refused: nothing is made, and the job is not done
+  fresh.name = "";  // refused: nothing is created, and the job is not done
   EXPECT_FALSE(store->projects().create(fresh, answer(22)));
   auto jobs = by_id(*store->jobs().take_over(10));
   EXPECT_EQ(jobs.at(21).state, "done");

@@ -43,7 +43,7 @@ TEST_P(JournalOfType, a_layer_reads_as_it_was_after_every_edit) {
     writer.drain();
     EXPECT_EQ(saved, 220);
   }
-  // 440 revisions of 4 tiles: every tile passes a key tile at least once
+  // 440 revisions of 4 tiles: every tile has at least one key tile
   EXPECT_GE(PgConnection::connect(dsn_)
                 ->query("SELECT count(*) FROM tile_revisions WHERE key_tile IS NOT NULL")
                 ->integer(0, 0),
@@ -92,7 +92,7 @@ TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
   Painter painter(test::make_layer(*store_, model_.id), 3, 8);
   JournalWriter writer(*store_, {});
   for (int i = 1; i <= 100; ++i) ASSERT_TRUE(save(writer, painter.paint(i, 1, 2)));
-  // What is older would not decode, but at= needs it.
+  // Older revisions cannot be decoded; only at= needs them.
   ASSERT_TRUE(PgConnection::connect(dsn_)->script(
       "UPDATE tile_revisions r SET difference = '\\x00' WHERE sequence < (SELECT max(sequence) FROM tile_revisions k "
       "WHERE k.tile_x = r.tile_x AND k.tile_y = r.tile_y AND k.key_tile IS NOT NULL)"));
@@ -102,28 +102,29 @@ TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
 }
 
 TEST_F(Journal, deleting_the_layer_of_the_newest_edit_leaves_a_gap_and_the_journal_goes_on) {
-  Painter kept(test::make_layer(*store_, model_.id, ValueType::u8, "kept"), 1);
+  Painter remaining(test::make_layer(*store_, model_.id, ValueType::u8, "kept"), 1);
   Painter gone(test::make_layer(*store_, model_.id, ValueType::u8, "gone"), 2);
   {
     JournalWriter writer(*store_, {});
-    ASSERT_TRUE(save(writer, kept.paint(1, 2, 4)));
+    ASSERT_TRUE(save(writer, remaining.paint(1, 2, 4)));
     ASSERT_TRUE(save(writer, gone.paint(2, 2, 4)));
     ASSERT_TRUE(store_->layers().remove(gone.layer().id));
     EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2) << "a sequence is given once";
-    EXPECT_FALSE(save(writer, kept.entry(2)));
-    ASSERT_TRUE(save(writer, kept.paint(3, 2, 4)));
+    EXPECT_FALSE(save(writer, remaining.entry(2)));
+    ASSERT_TRUE(save(writer, remaining.paint(3, 2, 4)));
   }
   // The same after a restart.
   store_ = test::open_store(dsn_);
   JournalWriter writer(*store_, {});
-  ASSERT_TRUE(save(writer, kept.paint(4, 2, 4)));
+  ASSERT_TRUE(save(writer, remaining.paint(4, 2, 4)));
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 4);
   std::vector<std::int64_t> sequences;
-  const auto history = store_->journal().history(kept.layer().id, 10, 0).value();
+  const auto history = store_->journal().history(remaining.layer().id, 10, 0).value();
   for (const auto& row : history.rows) sequences.push_back(row.sequence);
   EXPECT_EQ(sequences, (std::vector<std::int64_t>{4, 3, 1}));
-  EXPECT_TRUE(content_of(store_->journal().load_tiles(kept.layer()).value()) == kept.content());
-  EXPECT_EQ(store_->journal().load_tiles(kept.layer(), 2)->sequence, 1);
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(remaining.layer()).value()) ==
+              remaining.content());
+  EXPECT_EQ(store_->journal().load_tiles(remaining.layer(), 2)->sequence, 1);
 }
 
 TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_half) {
@@ -148,7 +149,7 @@ TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_h
       }
     ASSERT_TRUE(save(writer, std::move(fill)));
     for (int i = 0; i < 8; ++i) {
-      // strokes over everything, as differences to nothing: content does not matter here
+      // strokes over everything, as differences from empty tiles: the content is irrelevant here
       auto stroke = painter.entry(++sequence);
       const TileData before(layers.back().type);
       TileData after(layers.back().type);

@@ -108,14 +108,15 @@ TEST_F(KiosksOfATour, a_link_leads_to_its_kiosk_and_only_its_hash_is_kept) {
 }
 
 TEST_F(KiosksOfATour, a_revoked_or_expired_link_leads_nowhere_and_is_listed_for_a_while) {
-  const auto kept = made("Kept"), revoked = made("Revoked"), short_lived = made("Short", hours(24));
+  const auto valid = made("Kept"), revoked = made("Revoked"),
+             short_lived = made("Short", hours(24));
   EXPECT_TRUE(short_lived.kiosk.expires);
   ASSERT_TRUE(kiosks_.revoke(revoked.kiosk.id));
   ASSERT_TRUE(kiosks_.revoke(revoked.kiosk.id)) << "again is the same";
   EXPECT_EQ(kiosks_.revoke(999).error().code, ErrorCode::not_found);
   EXPECT_TRUE(kiosks_.find(short_lived.secret).value());
   run("UPDATE kiosks SET expires = now() - interval '1 second' WHERE expires IS NOT NULL");
-  EXPECT_TRUE(kiosks_.find(kept.secret).value());
+  EXPECT_TRUE(kiosks_.find(valid.secret).value());
   EXPECT_FALSE(kiosks_.find(revoked.secret).value());
   EXPECT_FALSE(kiosks_.find(short_lived.secret).value());
   EXPECT_EQ(kiosks_.ask_reload(revoked.kiosk.id).error().code, ErrorCode::conflict);

@@ -32,7 +32,7 @@ std::string read(const fs::path& file) {
   return text.str();
 }
 
-// A copy of the real migrations that a test may add to.
+// A copy of the real migrations; a test may add to it.
 void copy_migrations(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(STRATA_MIGRATIONS_DIR))
     fs::copy_file(entry.path(), folder / entry.path().filename());
@@ -70,7 +70,7 @@ TEST(Migrations, a_newer_schema_is_refused) {
   ASSERT_TRUE(connect(dsn).script("INSERT INTO schema_migrations VALUES ('999999')"));
   auto store = Store::open({dsn, 1}, STRATA_MIGRATIONS_DIR);
   ASSERT_FALSE(store);
-  EXPECT_EQ(store.error().title, "Schema too new");
+  EXPECT_EQ(store.error().title, "Database is newer");
   EXPECT_NE(store.error().detail.find("999999"), std::string::npos);
 }
 
@@ -131,7 +131,8 @@ TEST(Migrations, a_folder_without_or_with_bad_files_is_refused) {
   write(folder.path() / "000001_a.sql", "-- migrate:up\n");
   EXPECT_TRUE(read_migrations(folder.path()));
   write(folder.path() / "0001_b.sql", "-- migrate:up\n");
-  EXPECT_NE(read_migrations(folder.path()).error().detail.find("one version"), std::string::npos);
+  EXPECT_NE(read_migrations(folder.path()).error().detail.find("the same version"),
+            std::string::npos);
   fs::remove(folder.path() / "0001_b.sql");
   write(folder.path() / "x_b.sql", "-- migrate:up\n");
   EXPECT_FALSE(read_migrations(folder.path()));

@@ -86,7 +86,7 @@ TEST(Tokens, an_owner_link_opens_sessions_until_it_is_revoked) {
   EXPECT_EQ(store->tokens().find(*first).value()->kind, TokenKind::session);
   EXPECT_EQ(store->tokens().find(*first).value()->roles.everywhere, Role::owner);
   EXPECT_FALSE(
-      store->tokens().redeem_owner_link(*first, seconds(60)).value());  // a session is no link
+      store->tokens().redeem_owner_link(*first, seconds(60)).value());  // a session is not a link
   EXPECT_FALSE(store->tokens().redeem_owner_link("guess", seconds(60)).value());
   ASSERT_TRUE(store->tokens().revoke(link));
   EXPECT_FALSE(store->tokens().redeem_owner_link(link, seconds(60)).value());
@@ -177,7 +177,7 @@ TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
             ErrorCode::not_found);
   for (const auto& secret : {session, weak, strong})
     EXPECT_FALSE(store->tokens().find(secret).value());
-  // What somebody says of themselves at the same time takes nothing of it back.
+  // A person's change of their own account at the same time reverts nothing of it.
   EXPECT_TRUE(store->accounts().update(ada.id, {"Ada L.", {}, {}}).value().disabled);
   ASSERT_TRUE(store->accounts().update(ada.id, {{}, {}, false}));
   for (const auto& ended : {session, invitation}) EXPECT_FALSE(store->tokens().find(ended).value());
@@ -241,7 +241,7 @@ TEST(People, in_a_project_somebody_may_do_more) {
   ASSERT_TRUE(store->members().remove(project, "GUS"));
   EXPECT_EQ(store->members().remove(project, "Gus").error().code, ErrorCode::not_found);
   EXPECT_EQ(roles_of(session), Roles{});
-  // With the project, and with the person, it is gone.
+  // Deleting the project, or the person, removes the role.
   ASSERT_TRUE(store->members().put(project, "Gus", Role::viewer));
   ASSERT_TRUE(store->projects().remove(project));
   EXPECT_EQ(roles_of(session), Roles{});
@@ -306,9 +306,9 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   finds.columns.resize(1);
   finds.columns[0].name = "Code";
   finds = store->tables().create(finds).value();
-  WriteRecords asked;
-  asked.records = {{{}, {{finds.columns[0].id, "F 1"}}, {}}};
-  ASSERT_TRUE(store->records().write(finds.id, asked, "Ada.Lovelace"));
+  WriteRecords request;
+  request.records = {{{}, {{finds.columns[0].id, "F 1"}}, {}}};
+  ASSERT_TRUE(store->records().write(finds.id, request, "Ada.Lovelace"));
   const auto answer = [](const Project&) {
     return nlohmann::json{{"status", 201}, {"body", R"({"user":"Ada.Lovelace"})"}};
   };
@@ -339,7 +339,7 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   decision.record["reason"] = edits[1].reviewer->reason;
   EXPECT_EQ(edits[0].record, decision.record) << "the rest of it is as it was";
   auto connection = PgConnection::connect(dsn);
-  // Whatever tables there are, and whatever columns come to them.
+  // Covers every table and column, including future ones.
   auto tables = connection->query(
       "SELECT format('%I.%I', schemaname, tablename) FROM pg_tables WHERE schemaname = 'public'");
   ASSERT_TRUE(tables);

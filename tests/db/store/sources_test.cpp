@@ -143,9 +143,9 @@ TEST_F(Sources, imports_and_deletions_of_one_file_at_once_lose_nothing) {
 
 TEST_F(Sources, a_cancelled_or_unreadable_import_leaves_nothing_behind) {
   write(folder_.path() / "scan", noise(8'000'000, 1));
-  int asked = 0;
+  int calls = 0;
   const auto cancelled =
-      store_->models().create(model_of(folder_.path() / "scan", {1}), [&] { return ++asked > 12; });
+      store_->models().create(model_of(folder_.path() / "scan", {1}), [&] { return ++calls > 12; });
   ASSERT_FALSE(cancelled);
   EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
   EXPECT_EQ(store_->models().create(model_of(folder_.path() / "missing", {1}), {}).error().title,

@@ -1,5 +1,5 @@
-// Random work of three people on two tables, with undo and redo, against a model in plain C++: a
-// cell shows what the newest edit in force that wrote it left there.
+// Random edits of three people on two tables, with undo and redo, compared with a model in plain
+// C++: a cell has the value of the newest edit in force that wrote it.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,12 +16,12 @@ namespace {
 using nlohmann::json;
 
 struct Cell {
-  std::int64_t key = 0;  // 0: of the column
-  ColumnId column;       // 0: whether the record is there
+  std::int64_t key = 0;  // 0: the cell belongs to the column
+  ColumnId column;       // 0: whether the record exists
   auto operator<=>(const Cell&) const = default;
 };
 
-// The model: every edit with the cells that it wrote.
+// The model: every edit with its written cells.
 class Oracle {
  public:
   struct Edit {
@@ -64,7 +64,7 @@ class Oracle {
           return found->second;
     return nullptr;
   }
-  // {key: {column: value}} of records that are there and columns that are shown.
+  // {key: {column: value}} of existing records and shown columns.
   json content(const std::vector<ColumnId>& columns, std::int64_t greatest_key) const {
     json all = json::object();
     for (std::int64_t key = 1; key <= greatest_key; ++key) {
@@ -174,7 +174,7 @@ class RandomWork {
   }
 
   void write(const std::string& user) {
-    WriteRecords asked;
+    WriteRecords request;
     std::map<Cell, json> cells;
     const auto there = records();
     std::set<std::int64_t> named;
@@ -196,9 +196,9 @@ class RandomWork {
       if (is_new)
         for (const auto column : shown())
           if (!input.values.contains(column)) cells[{key, column}] = defaults_[column];
-      asked.records.push_back(std::move(input));
+      request.records.push_back(std::move(input));
     }
-    const auto change = store_->records().write(table_, asked, user);
+    const auto change = store_->records().write(table_, request, user);
     ASSERT_TRUE(change && change->problems.empty());
     ASSERT_EQ(change->sequence > 0, !cells.empty());
     if (!cells.empty()) oracle_.write(user, std::move(cells));

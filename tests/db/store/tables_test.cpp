@@ -36,7 +36,7 @@ class Tables : public ::testing::Test {
     EXPECT_TRUE(made) << made.error().detail;
     return made.value_or(Table{});
   }
-  // One record; with a key it may be there or not.
+  // Writes one record; a record with the key may exist.
   Result<TableChange> put(const Table& table, std::optional<std::int64_t> key,
                           const std::map<std::string, json>& values,
                           const std::string& user = "ana",
@@ -45,9 +45,9 @@ class Tables : public ::testing::Test {
     const Table now = store_->tables().find(to_string(table.id), Role::owner).value();
     for (const auto& [slug, value] : values)
       input.values[find_column(now.columns, slug)->id] = value;
-    WriteRecords asked;
-    asked.records = {input};
-    auto change = store_->records().write(table.id, asked, user);
+    WriteRecords request;
+    request.records = {input};
+    auto change = store_->records().write(table.id, request, user);
     if (change && !change->problems.empty())
       return tl::unexpected(change->problems.front().problem);
     return change;
@@ -57,7 +57,7 @@ class Tables : public ::testing::Test {
     if (!plan) return tl::unexpected(plan.error());
     return store_->tables().undo(table.id, user, redo, plan->table_sequence);
   }
-  // {key: {slug: value}} without what is null.
+  // {key: {slug: value}} without null values.
   json content(const Table& table, std::optional<std::int64_t> at = {}) {
     auto page = store_->records().page(table.id, Role::owner, {{}, {}, at, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
@@ -65,8 +65,8 @@ class Tables : public ::testing::Test {
     if (page)
       for (const Record& record : page->records) {
         json& values = all[std::to_string(record.key)] = json::object();
-        const json told = to_json(record, page->table.columns);
-        for (const auto& [slug, value] : told.at("values").items())
+        const json body = to_json(record, page->table.columns);
+        for (const auto& [slug, value] : body.at("values").items())
           if (!value.is_null()) values[slug] = value;
       }
     return all;
@@ -124,12 +124,12 @@ TEST_F(Tables, values_of_every_kind_come_back_as_they_were) {
 TEST_F(Tables, a_catalogue_keeps_names_in_any_language) {
   Column name = column("Naam; DROP SCHEMA records");
   name.labels = {{"es", "Nombre"}, {"el", "Όνομα"}};
-  Table wished;
-  wished.project_id = 1;
-  wished.name = "Ενότητες";
-  wished.labels = {{"en", "Units"}};
-  wished.columns = {name, column("Όνομα"), column("Όνομα")};
-  auto made = store_->tables().create(wished);
+  Table requested;
+  requested.project_id = 1;
+  requested.name = "Ενότητες";
+  requested.labels = {{"en", "Units"}};
+  requested.columns = {name, column("Όνομα"), column("Όνομα")};
+  auto made = store_->tables().create(requested);
   ASSERT_TRUE(made) << made.error().detail;
   EXPECT_EQ(made->columns[0].labels, name.labels);
   EXPECT_EQ(made->columns[1].slug, "n");
@@ -151,7 +151,7 @@ TEST_F(Tables, keys_are_never_given_again) {
   EXPECT_EQ(put(table, 7, {{"name", "b"}})->created, std::vector<std::int64_t>{7});
   EXPECT_EQ(put(table, {}, {{"name", "c"}})->created, std::vector<std::int64_t>{8});
   ASSERT_TRUE(store_->records().remove(table.id, 8, {}, "ana"));
-  EXPECT_EQ(put(table, 8, {{"name", "d"}}).error().title, "Key used before");
+  EXPECT_EQ(put(table, 8, {{"name", "d"}}).error().title, "Key already used");
   EXPECT_EQ(put(table, {}, {{"name", "d"}})->created, std::vector<std::int64_t>{9});
   EXPECT_EQ(put(table, 4294967295, {})->created, std::vector<std::int64_t>{4294967295});
   EXPECT_EQ(put(table, {}, {}).error().title, "No keys left");
@@ -186,7 +186,7 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   EXPECT_EQ(put(table, 1, {{"code", nullptr}}).error().code, ErrorCode::invalid);
   EXPECT_EQ(put(table, 2, {{"code", std::string(kMaxUniqueTextLength + 1, 'x')}}).error().field,
             "values.code");
-  // Two in one call, and a swap, which is only right as a whole.
+  // Two records in one call, and a swap, which is valid only as a whole.
   ASSERT_TRUE(put(table, 2, {{"code", "B"}}));
   const auto code_id = table.columns[0].id;
   WriteRecords both;
@@ -195,12 +195,13 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   EXPECT_EQ(content(table), (json{{"1", {{"code", "B"}}}, {"2", {{"code", "A"}}}}));
   both.records = {{3, {{code_id, "C"}}}, {4, {{code_id, "C"}}}};
   EXPECT_EQ(store_->records().write(table.id, both, "ana")->problems.size(), 1u);
-  // A column that becomes unique looks at what is there.
+  // A change to a unique column checks the existing values.
   ASSERT_TRUE(put(table, 1, {{"name", "same"}}));
   ASSERT_TRUE(put(table, 2, {{"name", "same"}}));
   Column name = now(table).columns[1];
   name.unique = true;
-  EXPECT_EQ(store_->tables().update_column(table.id, name, {}, "ana").error().title, "Not unique");
+  EXPECT_EQ(store_->tables().update_column(table.id, name, {}, "ana").error().title,
+            "Value is not unique");
   name.unique = false;
   name.required = true;
   ASSERT_TRUE(store_->tables().update_column(table.id, name, {}, "ana"));
@@ -218,14 +219,14 @@ TEST_F(Tables, terms_and_relations_name_records_that_are_there) {
   EXPECT_EQ(put(units, 1, {{"damage", 2}}).error().field, "values.damage");
   ASSERT_TRUE(put(units, 1, {{"damage", 1}}));
   EXPECT_EQ(put(units, 2, {{"above", {1, 3}}}).error().field, "values.above");
-  ASSERT_TRUE(put(units, 2, {{"above", {1, 2}}}));  // itself, which comes with it
+  ASSERT_TRUE(put(units, 2, {{"above", {1, 2}}}));  // itself, which the same call creates
   EXPECT_EQ(store_->records().remove(terms.id, 1, {}, "ana").error().title, "Record in use");
   EXPECT_EQ(store_->records().remove(units.id, 1, {}, "ana").error().title, "Record in use");
   EXPECT_EQ(undo(terms).error().code, ErrorCode::conflict);
   ASSERT_TRUE(store_->records().remove(units.id, 2, {}, "ana"));
   ASSERT_TRUE(store_->records().remove(units.id, 1, {}, "ana"));
   ASSERT_TRUE(store_->records().remove(terms.id, 1, {}, "ana"));
-  EXPECT_EQ(undo(units).error().title, "Cannot be undone");  // its term is gone
+  EXPECT_EQ(undo(units).error().title, "Cannot undo");  // its term no longer exists
   EXPECT_EQ(store_->tables().remove(terms.id).error().title, "Table in use");
   ASSERT_TRUE(store_->tables().remove(units.id));
   ASSERT_TRUE(store_->tables().remove(terms.id));
@@ -249,11 +250,11 @@ TEST_F(Tables, undo_takes_back_what_one_person_did_and_leaves_what_others_did) {
   EXPECT_EQ(content(table), json::object());
   EXPECT_EQ(undo(table, "ana").error().code, ErrorCode::conflict);
   ASSERT_TRUE(undo(table, "ana", true));
-  EXPECT_EQ(content(table)["1"], (json{{"name", "b"}, {"depth", 1.5}}));  // with what Ben wrote
+  EXPECT_EQ(content(table)["1"], (json{{"name", "b"}, {"depth", 1.5}}));  // includes Ben's value
   ASSERT_TRUE(undo(table, "ana", true));
   EXPECT_EQ(content(table)["1"]["depth"], 2.5);
   EXPECT_EQ(undo(table, "ana", true).error().title, "Nothing to redo");
-  // A plan is of its moment.
+  // A plan is valid only until the next edit.
   const auto old = store_->tables().plan_undo(table.id, "ana", false).value();
   ASSERT_TRUE(put(table, 2, {}, "ben"));
   EXPECT_EQ(store_->tables().undo(table.id, "ana", false, old.table_sequence).error().code,
@@ -300,13 +301,13 @@ TEST_F(Tables, a_dropped_column_comes_back_with_its_values) {
   EXPECT_EQ(store_->tables().drop_column(table.id, table.columns[0].id, {}, "ana").error().code,
             ErrorCode::not_found);
   ASSERT_TRUE(put(table, 2, {}, "ben"));
-  // Its slug is free for another one, and taken again when it comes back.
+  // Another column can use its slug, which is then taken when the first one is restored.
   ASSERT_TRUE(store_->tables().create_column(table.id, column("Code"), "ben"));
-  EXPECT_EQ(undo(table).error().title, "Slug taken");
+  EXPECT_EQ(undo(table).error().title, "Slug already used");
   ASSERT_TRUE(undo(table, "ben"));
   ASSERT_TRUE(undo(table));
   EXPECT_EQ(content(table), (json{{"1", {{"code", "A"}}}, {"2", json::object()}}));
-  EXPECT_EQ(put(table, 2, {{"code", "A"}}).error().title, "Not unique");
+  EXPECT_EQ(put(table, 2, {{"code", "A"}}).error().title, "Value is not unique");
 }
 
 TEST_F(Tables, retyping_keeps_what_can_be_kept_and_tells_what_cannot) {
@@ -350,7 +351,7 @@ TEST_F(Tables, column_properties_are_undone_one_by_one) {
   depth = now(table).columns[0];
   depth.maximum = 4;
   EXPECT_EQ(store_->tables().update_column(table.id, depth, {}, "ana").error().title,
-            "Values do not fit");
+            "Values do not match");
   depth.maximum = 6;
   ASSERT_TRUE(store_->tables().update_column(table.id, depth, {}, "ana"));
   EXPECT_EQ(put(table, 1, {{"depth", 7}}).error().field, "values.depth");
@@ -363,7 +364,7 @@ TEST_F(Tables, what_was_right_once_is_not_undone_into_what_is_wrong_now) {
   Column depth = table.columns[0];
   depth.maximum = 10;
   ASSERT_TRUE(store_->tables().update_column(table.id, depth, {}, "ben"));
-  EXPECT_EQ(undo(table).error().title, "Cannot be undone");
+  EXPECT_EQ(undo(table).error().title, "Cannot undo");
   EXPECT_EQ(content(table)["1"]["depth"], 5.0);
   ASSERT_TRUE(undo(table, "ben"));
   ASSERT_TRUE(undo(table));
@@ -396,7 +397,7 @@ TEST_F(Tables, many_records_go_in_together_or_not_at_all) {
   EXPECT_EQ(now(table).records, 0);
   many.records = {{1, {}}, {1, {}}};
   EXPECT_EQ(store_->records().write(table.id, many, "ana")->problems.at(0).problem.title,
-            "Key used before");
+            "Key already used");
 }
 
 TEST_F(Tables, records_are_sorted_by_what_they_mean) {
@@ -405,7 +406,7 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
   ASSERT_TRUE(put(table, 1, {{"name", "beta"}, {"period", "1560"}, {"depth", 10}}));
   ASSERT_TRUE(put(table, 2, {{"name", "Alpha"}, {"period", "-0043"}, {"depth", 9}}));
   ASSERT_TRUE(put(table, 3, {{"name", "alpha"}, {"period", "Y-17000~"}}));
-  // As dictionaries do (CLDR): letters first, then small before capital ones.
+  // As in dictionaries (CLDR): by letters first, then small before capital letters.
   EXPECT_EQ(keys(table, {{"name", false}, {"key", true}}), (std::vector<std::int64_t>{3, 2, 1}));
   EXPECT_EQ(keys(table, {{"period", false}}), (std::vector<std::int64_t>{3, 2, 1}));
   EXPECT_EQ(keys(table, {{"depth", false}}), (std::vector<std::int64_t>{2, 1, 3}));
@@ -420,7 +421,7 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
       store_->records().page(table.id, Role::owner, {{{"depth", false}}, {}, {}, 1, 1}).value();
   EXPECT_EQ(page.total, 3);
   EXPECT_EQ(page.records.at(0).key, 1);
-  // The past is sorted the same way.
+  // Earlier content is sorted the same way.
   ASSERT_TRUE(store_->records().remove(table.id, 1, {}, "ana"));
   const auto past =
       store_->records().page(table.id, Role::owner, {{{"name", false}}, {}, 3, 2, 1}).value();
@@ -468,7 +469,7 @@ TEST_F(Tables, layers_of_several_models_share_a_table) {
   project.name = project.slug = "elsewhere";
   auto moved = model;
   moved.project_id = store_->projects().create(project)->id;
-  EXPECT_EQ(store_->models().update(moved).error().title, "Tables stay");
+  EXPECT_EQ(store_->models().update(moved).error().title, "Tables belong to project");
   layer.table = TableId(99);
   EXPECT_EQ(store_->layers().create(layer).error().field, "table");
   ASSERT_TRUE(store_->models().remove(model.id));

@@ -29,12 +29,12 @@ class Terms : public ::testing::Test {
     std::vector<std::string> languages;
     for (const std::string& slug : list.columns)
       if (const auto language = label_language(slug)) languages.push_back(*language);
-    NewTable wished;
-    wished.table.project_id = 1;
-    wished.table.name = name;
-    wished.table.columns = new_term_columns(languages);
-    wished.terms = list;
-    auto made = store_->tables().create_several({wished}, false, "ana", "import");
+    NewTable new_table;
+    new_table.table.project_id = 1;
+    new_table.table.name = name;
+    new_table.table.columns = new_term_columns(languages);
+    new_table.terms = list;
+    auto made = store_->tables().create_several({new_table}, false, "ana", "import");
     if (!made) return tl::unexpected(made.error());
     return made->front();
   }
@@ -123,8 +123,8 @@ TEST_F(Terms, circles_and_unknown_parents_are_told_and_nothing_is_written) {
   ASSERT_TRUE(stranger);
   ASSERT_EQ(stranger->problems.size(), 2u);
   EXPECT_EQ(stranger->problems[0].index, 1u);
-  EXPECT_EQ(stranger->problems[0].problem.title, "No such parent");
-  EXPECT_EQ(stranger->problems[1].problem.title, "Terms in a circle");
+  EXPECT_EQ(stranger->problems[0].problem.title, "Parent not found");
+  EXPECT_EQ(stranger->problems[1].problem.title, "Terms form a circle");
   EXPECT_EQ(content(table).size(), 3u);
   EXPECT_EQ(store_->tables().find(table.slug, Role::owner)->sequence, 1);
 }
@@ -134,10 +134,10 @@ TEST_F(Terms, one_term_named_by_its_uri_and_by_its_code_is_refused) {
   auto change = import(table, "code,uri\na,\nb,https://t.example/1\n");
   ASSERT_TRUE(change);
   ASSERT_FALSE(change->problems.empty());
-  EXPECT_EQ(change->problems[0].problem.title, "Term twice");
+  EXPECT_EQ(change->problems[0].problem.title, "Duplicate term");
   auto twice = import(table, "code,uri\nx,https://t.example/2\ny,https://t.example/2\n");
   ASSERT_TRUE(twice);
-  EXPECT_EQ(twice->problems.at(0).problem.title, "URI twice");
+  EXPECT_EQ(twice->problems.at(0).problem.title, "Duplicate URI");
 }
 
 TEST_F(Terms, values_that_no_column_takes_are_told_with_their_term) {
@@ -166,7 +166,7 @@ TEST_F(Terms, only_a_list_takes_terms_and_names_are_not_given_twice) {
   plain.name = "Units";
   auto made = store_->tables().create(plain);
   ASSERT_TRUE(made);
-  EXPECT_EQ(import(*made, "code\na\n").error().title, "No list of terms");
+  EXPECT_EQ(import(*made, "code\na\n").error().title, "Not a term list");
   EXPECT_EQ(create(*read_terms_csv("code\na\n"), "UNITS").error().code, ErrorCode::conflict);
   EXPECT_EQ(store_->tables().of_project(1, Role::owner)->size(), 1u);
 }
@@ -181,7 +181,7 @@ TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
   Column kind, above;
   kind.name = "Kind";
   kind.kind = ColumnKind::term;
-  kind.target = TableId(1);  // in place of which the table before it comes
+  kind.target = TableId(1);  // replaced by the table before it
   above.name = "Above";
   above.kind = ColumnKind::relation;
   above.target = kOwnTable;

@@ -48,7 +48,7 @@ class TrashOfAProject : public ::testing::Test {
     return connection_->query_once("SELECT count(*) FROM " + what)->integer(0, 0);
   }
   void run(const std::string& sql) { ASSERT_TRUE(connection_->script(sql)) << sql; }
-  // All that is to be erased, and in how many steps.
+  // Erases all content that is due; returns the number of steps.
   int erase_all() {
     int steps = 0;
     while (trash_.erase_some().value()) ++steps;
@@ -118,7 +118,7 @@ TEST_F(TrashOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as
   EXPECT_THAT(listed(), ::testing::IsEmpty());
   EXPECT_EQ(trash_.restore(in_trash, by<TrashRestored>("carl")).error().code, ErrorCode::not_found)
       << "it was restored already";
-  paint(now, 1);  // the journal goes on where it was
+  paint(now, 1);  // the journal continues at its last sequence
 }
 
 TEST_F(TrashOfAProject, a_model_takes_all_along_and_brings_it_back) {
@@ -202,7 +202,7 @@ TEST_F(TrashOfAProject, who_does_not_see_a_layer_sees_it_in_neither_bin_nor_acti
 }
 
 TEST_F(TrashOfAProject, activity_tells_who_deleted_and_restored_and_no_more_when_it_is_erased) {
-  const auto told = [&] {
+  const auto lines_of_project = [&] {
     std::vector<std::string> lines;
     const auto page = store_->projects().activity(1, Role::curator, {});
     for (const Activity& line : page->lines)
@@ -213,21 +213,23 @@ TEST_F(TrashOfAProject, activity_tells_who_deleted_and_restored_and_no_more_when
   run("DELETE FROM activities");
   ASSERT_TRUE(trash_.put_layer(layer.id, by<>("ada")));
   restore(Kind::layer, layer.id);
-  EXPECT_THAT(told(),
+  EXPECT_THAT(lines_of_project(),
               ::testing::ElementsAre("carl layer restored Cracks", "ada layer deleted Cracks"));
   ASSERT_TRUE(trash_.put_layer(layer.id, by<>("ada")));
   ASSERT_TRUE(trash_.put_model(model_.id, by<>("ada")));
   restore(Kind::model, model_.id);
   run("DELETE FROM activities WHERE kind = 'layer'");
-  EXPECT_THAT(told(), ::testing::ElementsAre("carl model restored pot", "ada model deleted pot"));
+  EXPECT_THAT(lines_of_project(),
+              ::testing::ElementsAre("carl model restored pot", "ada model deleted pot"));
   ASSERT_TRUE(trash_.erase(entry(Kind::layer, layer.id), by<>("carl")));
   EXPECT_GT(erase_all(), 0);
-  EXPECT_THAT(told(), ::testing::ElementsAre("carl model restored pot", "ada model deleted pot"));
+  EXPECT_THAT(lines_of_project(),
+              ::testing::ElementsAre("carl model restored pot", "ada model deleted pot"));
 }
 
 TEST_F(TrashOfAProject, what_was_in_it_long_enough_is_erased_in_steps_and_nothing_else) {
-  const Layer old = new_layer("Old"), fresh = new_layer("Fresh"), kept = new_layer("Kept");
-  for (const Layer& layer : {old, fresh, kept}) paint(layer, 2);
+  const Layer old = new_layer("Old"), fresh = new_layer("Fresh"), remaining = new_layer("Kept");
+  for (const Layer& layer : {old, fresh, remaining}) paint(layer, 2);
   ASSERT_TRUE(trash_.put_layer(old.id, by<>("ada")));
   ASSERT_TRUE(trash_.put_layer(fresh.id, by<>("ada")));
   run("UPDATE all_layers SET binned = now() - interval '31 days' WHERE id = " + to_string(old.id));
@@ -239,7 +241,7 @@ TEST_F(TrashOfAProject, what_was_in_it_long_enough_is_erased_in_steps_and_nothin
   EXPECT_EQ(count("all_layers"), 2);
   EXPECT_EQ(count("edits"), 4);
   EXPECT_EQ(count("tile_revisions WHERE layer_id = " + to_string(old.id)), 0);
-  EXPECT_FALSE(store_->journal().load_tiles(kept)->tiles.empty());
+  EXPECT_FALSE(store_->journal().load_tiles(remaining)->tiles.empty());
   restore(Kind::layer, fresh.id);
   EXPECT_FALSE(store_->journal().load_tiles(fresh)->tiles.empty());
   ASSERT_TRUE(trash_.put_model(model_.id, by<>("ada")));
@@ -280,7 +282,7 @@ TEST_F(TrashOfAProject, projects_and_tables_that_something_in_it_needs_are_kept)
   EXPECT_THAT(store_->tables().remove(*units.table).error().detail,
               ::testing::HasSubstr("is in the Trash"));
   EXPECT_THAT(store_->projects().remove(villa.id).error().detail,
-              ::testing::HasSubstr("Trash still holds 1"));
+              ::testing::HasSubstr("Trash of the project still contains 1"));
   ASSERT_TRUE(trash_.erase(
       trash_.entry(villa.id, Kind::model, vase.id.number(), 0, {Role::owner, days(30)}).value(),
       by<>("carl")));
@@ -321,10 +323,10 @@ TEST_F(TrashOfAProject, a_record_comes_back_with_its_key_and_values_once_they_fi
   table = store_->tables().create(table).value();
   const ColumnId name_id = table.columns[0].id, weight_id = table.columns[1].id;
   const auto write = [&](const std::string& text) {
-    WriteRecords asked;
-    asked.records.resize(1);
-    asked.records[0].values = {{name_id, text}, {weight_id, 7}};
-    return store_->records().write(table.id, asked, "ada").value();
+    WriteRecords request;
+    request.records.resize(1);
+    request.records[0].values = {{name_id, text}, {weight_id, 7}};
+    return store_->records().write(table.id, request, "ada").value();
   };
   const std::int64_t key = write("SU 1").created.at(0);
   write("SU 2");

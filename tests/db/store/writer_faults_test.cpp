@@ -18,7 +18,7 @@ namespace {
 
 using test::Painter;
 
-// Each test has a cluster of its own, since it kills it.
+// Each test has a separate cluster, because it kills it.
 class WriterFaults : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -47,7 +47,7 @@ class WriterFaults : public ::testing::Test {
   Layer layer_;
 };
 
-// Content after the first `count` edits of a painter with this seed.
+// Returns the content after the first `count` edits of a painter with this seed.
 Painter::Content replay(const Layer& layer, std::uint32_t seed, std::int64_t count) {
   Painter painter(layer, seed, 8);
   for (std::int64_t i = 1; i <= count; ++i) painter.paint(i, 2, 3);
@@ -101,7 +101,7 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
   EXPECT_EQ(store_->journal().history(layer_.id, 1, 0)->total, submitted);
   EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) ==
               replay(layer_, kSeed, submitted));
-  // Whole or not at all: every edit has its tiles.
+  // Edits are stored completely or not at all: every edit has its tiles.
   auto connection = PgConnection::connect(cluster_->dsn());
   EXPECT_EQ(
       connection
@@ -118,9 +118,9 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
   Painter painter(layer_, 5);
   JournalWriter writer(*store_, {.retry_for = std::chrono::milliseconds(1500)});
   ASSERT_TRUE(test::save(writer, painter.paint(1, 2, 4)));
-  const auto kept = painter.content();
+  const auto stored = painter.content();
   {
-    // what follows waits, and cannot be committed by a session that ends late
+    // later edits wait, and no session that ends late can commit them
     test::Hang hang(*cluster_);
     std::vector<std::int64_t> answered;
     for (int i = 2; i <= 30; ++i)
@@ -140,7 +140,7 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
   ASSERT_TRUE(cluster_->ensure_running());
   EXPECT_TRUE(store_->ready());
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 1);
-  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) == kept);
+  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) == stored);
   ASSERT_TRUE(test::save(writer, painter.entry(2)));
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2);
 }
@@ -153,7 +153,7 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
   ASSERT_TRUE(quick_store->projects().find("default"));
   JournalWriter writer(*store_, {.retry_for = milliseconds(2000), .limits = quick});
   ASSERT_TRUE(test::save(writer, painter.paint(1, 2, 4)));
-  const auto kept = painter.content();
+  const auto stored = painter.content();
   {
     const test::Hang hang(*cluster_);
     std::atomic<int> unsaved{0};
@@ -176,7 +176,7 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
   while (!store_->ready()) std::this_thread::sleep_for(milliseconds(10));
   EXPECT_TRUE(quick_store->projects().find("default"));
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 1);
-  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) == kept);
+  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) == stored);
   ASSERT_TRUE(test::save(writer, painter.entry(2)));
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2);
 }
@@ -193,7 +193,7 @@ TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
   auto watcher = PgConnection::connect(cluster_->dsn());
   while (watcher->query("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")
              ->integer(0, 0) == 0)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has the connection
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has connected
   const auto refused = narrow->projects().find("default");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::busy);
@@ -213,7 +213,7 @@ TEST_F(WriterFaults, a_commit_without_an_answer_is_said_to_be_of_unknown_outcome
   const auto committed = transaction->commit();
   ASSERT_FALSE(committed);
   EXPECT_EQ(committed.error().code, ErrorCode::unavailable);
-  EXPECT_EQ(committed.error().title, "Outcome unknown");
+  EXPECT_EQ(committed.error().title, "Result unknown");
   EXPECT_FALSE(connection->alive());
 }
 

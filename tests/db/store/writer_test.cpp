@@ -24,7 +24,7 @@ constexpr Answer kSaved = std::nullopt;
 
 class Writer : public ::testing::Test {
  protected:
-  // Submits and notes the answer: nothing, or the code of its error.
+  // Submits and records the answer: nothing, or the code of its error.
   void submit(JournalWriter& writer, JournalEntry entry) {
     ASSERT_TRUE(writer.submit(std::move(entry), [this](Result<void> result) {
       std::lock_guard lock(mutex_);
@@ -46,8 +46,8 @@ class Writer : public ::testing::Test {
   Error last_problem_;
 };
 
-// Keeps the writer waiting at its next transaction on a model, so that what is submitted meanwhile
-// is one group.
+// Keeps the writer waiting at its next transaction on a model, so that later submissions form one
+// group.
 class HeldModel {
  public:
   HeldModel(const std::string& dsn, ModelId id)
@@ -101,7 +101,7 @@ TEST_F(Writer, an_entry_that_an_earlier_try_committed_counts_as_saved) {
     submit(first, entry);
   }
   JournalWriter second(*store_, {});
-  submit(second, entry);  // as after a commit whose answer was lost
+  submit(second, entry);  // like the repeat after a commit whose answer was lost
   submit(second, next);
   second.drain();
   EXPECT_THAT(answers_, ElementsAre(kSaved, kSaved, kSaved));
@@ -124,8 +124,8 @@ TEST_F(Writer, an_edit_made_on_top_of_one_that_was_not_saved_is_refused_while_ot
   submit(writer, other.paint(2, 1, 4));
   held.release();
   writer.drain();
-  submit(writer, painter_.paint(4, 1, 4));  // still of the state that is gone
-  submit(writer, painter_.entry(2));        // the room has gone back and starts anew
+  submit(writer, painter_.paint(4, 1, 4));  // based on the state that was not saved
+  submit(writer, painter_.entry(2));        // the room has returned to the saved state
   writer.drain();
   EXPECT_THAT(answers_, ElementsAre(kSaved, ErrorCode::malformed, kSaved, ErrorCode::malformed,
                                     kSaved, ErrorCode::conflict, kSaved));

@@ -1,4 +1,5 @@
-"""Accounts over HTTP and from the command line: who comes in, what each role may do, what ends when, and that guessing is slow."""
+"""Accounts over HTTP and from the command line: signing in, the rights of each role, the end of
+links and sessions, and the limit on guesses."""
 import re
 import socket
 import subprocess
@@ -28,7 +29,7 @@ def server(server):
 
 
 def test_each_start_prints_a_link_until_the_owner_has_a_password(fresh_server):
-    """It is the only one, and good until then."""
+    """Only the newest link is valid, until the owner has a password."""
     server = fresh_server
     earlier = server.link
     assert server.stop() == 0
@@ -67,7 +68,7 @@ def test_each_start_prints_a_link_until_the_owner_has_a_password(fresh_server):
 
 
 def test_invitations(server, story):
-    """A link is good once, for a week, for one person, and is no token."""
+    """A link is valid once, for a week, for one person, and is not a token."""
     made = server.ok("POST", "/users", {"user": "Ada", "full_name": "Ada L.", "role": "annotator"})
     invitation, secret = made.json(), secret_of(made.json())
     assert (
@@ -101,7 +102,7 @@ def test_invitations(server, story):
         ("short", "Password too short"),
         ("ünßé", "Password too short"),
         ("ada ada 1", "Password too short"),
-        ("xxAda123456", "Password too easy"),
+        ("xxAda123456", "Password too simple"),
     ):
         refused = Browser(server).request(
             "POST", "/invitations/accept", {"invitation": secret, "password": password}
@@ -122,7 +123,7 @@ def test_invitations(server, story):
     for path in ("show", "accept"):
         body = {"invitation": secret, **({"password": PASSWORD} if path == "accept" else {})}
         assert Browser(server).request("POST", "/invitations/" + path, body).status == 401, "used"
-    # A new link makes the earlier one worthless, and the password good until another is chosen.
+    # A new link revokes the earlier one; the password stays valid until another is chosen.
     first = server.ok("POST", "/users/ada/invite").json()
     second = server.ok("POST", "/users/Ada/invite").json()
     assert (
@@ -142,7 +143,7 @@ def test_invitations(server, story):
 
 
 def test_roles(server, story):
-    """What each role may do, and that a change of it counts at once, for open connections too."""
+    """The rights of each role; a change takes effect immediately, also for open connections."""
     ada = story.ada
     vera = join(server, server.ok("POST", "/users", {"user": "vera"}).json())
     assert vera.ok("GET", "/me").json()["role"] == "viewer"
@@ -174,7 +175,7 @@ def test_roles(server, story):
             assert status == (good if what in may[role] else 403), (role, what, status)
     history = server.ok("GET", L + "/edits").json()["edits"]
     assert {edit["user"] for edit in history} == {"Ada", "carl", "anne"}, history
-    # Administrators: not themselves, not the owner, nothing above themselves.
+    # Administrators cannot change themselves or the owner, nor give a higher role than their own.
     for path in ("/users/anne", "/users/owner"):
         for method, body in (
             ("PATCH", {"role": "viewer"}),
@@ -195,7 +196,7 @@ def test_roles(server, story):
     server.ok("DELETE", "/users/amos")
     assert anne.request("PATCH", "/users/nobody", {"role": "viewer"}).status == 404
     assert anne.request("PATCH", "/users/ada", {}).status == 422
-    # A cookie is for this server's own page.
+    # A cookie is valid only for this server's own page.
     for origin in ("https://elsewhere.example", "null"):
         assert anne.request("PATCH", "/users/ada", {"role": "viewer"}, Origin=origin).status == 403
     live = LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url)
@@ -221,7 +222,7 @@ def test_roles(server, story):
 
 
 def test_who_is_shut_out_meanwhile_does_nothing(server):
-    """Who is shut out while their request is under way does nothing with it."""
+    """A person who loses access during a request cannot complete it."""
     boss = join(
         server, server.ok("POST", "/users", {"user": "boss", "role": "administrator"}).json()
     )
@@ -279,7 +280,7 @@ def test_sessions(server, story):
 
 
 def test_tokens(server, story):
-    """A script's token does what both it and its person may, and opens no session."""
+    """A script's token has the rights that both it and its person have, and opens no session."""
     ada = story.ada
     anne = story.anne
     made = ada.ok("POST", "/me/tokens", {"name": "nightly", "role": "viewer", "days": 3}).json()
@@ -319,7 +320,7 @@ def test_tokens(server, story):
         "last_used" in each for each in listed["tokens"]
     ), listed
     assert secret not in str(listed)
-    # One for a project alone, as curator at most, whoever makes it.
+    # A token for one project, with curator as the highest role of any maker.
     server.ok("POST", "/projects", {"name": "Tower"})
     refused = ada.request("POST", "/me/tokens", {"name": "t", "project": "nowhere"})
     assert refused.status == 404 and refused.json()["field"] == "project", refused
@@ -361,7 +362,7 @@ def test_tokens(server, story):
     assert [each["name"] for each in anne.ok("GET", "/me/tokens").json()["tokens"]] == [
         "of the first"
     ]
-    # remembered for some seconds
+    # the server caches it for some seconds
     wait_for(
         lambda: server.get("/me", token=only).status == 401, "the token to be gone with its project"
     )
@@ -380,7 +381,7 @@ def test_tokens(server, story):
 
 
 def test_deletion(server, story):
-    """Who is deleted cannot be told from the history any more, and nobody gets their name."""
+    """The history no longer names a deleted person, and nobody can take the name."""
     anne = story.anne
     before = server.ok("GET", L + "/edits").json()["edits"]
     mine = [edit["sequence"] for edit in before if edit["user"] == "Ada"]
@@ -400,7 +401,7 @@ def test_deletion(server, story):
 
 
 def test_commands(server):
-    """The same from the server's own machine, while it runs."""
+    """The same commands on the server's own machine, while the server runs."""
 
     def strata(*words, entered=None, code=0):
         done = subprocess.run(
@@ -506,14 +507,14 @@ def test_commands(server):
 
 
 def test_guessing_is_slow(server, story):
-    """Guesses are slowed down for a name wherever they come from; whoever is in stays in."""
+    """The server limits guesses for a name from all addresses together; open sessions stay open."""
     vera = story.vera
     statuses = [Browser(server).sign_in("vera", f"guess number {i}").status for i in range(14)]
     assert set(statuses) == {401, 429} and statuses[0] == 401 and statuses[-1] == 429, statuses
     refused = Browser(server).sign_in("vera", PASSWORD)
     assert refused.status == 429 and refused.headers["Retry-After"], refused
     assert vera.request("GET", "/me").status == 200
-    # Others come in meanwhile, from another address.
+    # Other people can sign in during this time from another address.
     anne = Browser(server)
     assert (
         anne.request(
@@ -539,7 +540,7 @@ def test_the_log_is_clean(server):
 
 
 def test_reach(server):
-    """A server that others can reach needs somebody who can let them in."""
+    """A server that other machines can reach needs a person who can give others access."""
     assert server.stop() == 0
 
     def serve():

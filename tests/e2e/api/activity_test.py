@@ -1,4 +1,5 @@
-"""What was done in a project over HTTP: every kind of thing, by whom, in pages; who sees it; what is left of who is deleted."""
+"""The activity of a project over HTTP: every kind of line, its author, pages, visibility, and the
+lines of a deleted person."""
 import urllib.parse
 
 import pytest
@@ -39,7 +40,7 @@ def site(server):
 
 
 def test_whatever_people_do_has_its_line(site):
-    """Whatever people do has its line, the newest first."""
+    """Every action of people has its line, the newest first."""
     site.server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
     site.ok(
         "carl",
@@ -80,7 +81,7 @@ def test_whatever_people_do_has_its_line(site):
     thread = site.ok(
         "ada", "POST", M + "/comments", {"text": "Is this a crack?", "position": [50, 50, 0]}
     ).json()
-    site.ok("vera", "GET", M + "/comments")  # who only reads does nothing
+    site.ok("vera", "GET", M + "/comments")  # reading makes no line
     site.ok("carl", "POST", f"/comments/{thread['id']}/replies", {"text": "Yes"})
     site.ok(
         "carl",
@@ -154,7 +155,7 @@ def test_whatever_people_do_has_its_line(site):
 
 
 def test_pages(site):
-    """Together, pages of any size are the whole list; nonsense is refused."""
+    """Pages of any size add up to the whole list; invalid parameters are refused."""
     whole = site.feed(limit=1000)
     assert "next" not in whole
     for limit in (1, 4):
@@ -192,7 +193,7 @@ def test_pages(site):
 
 
 def test_members(site):
-    """Roles are told to curators; guests see the activity of their projects alone."""
+    """Only curators see roles; guests see only the activity of their projects."""
     gus = join(
         site.server, site.server.ok("POST", "/users", {"user": "gus", "role": "guest"}).json()
     )
@@ -212,7 +213,7 @@ def test_members(site):
 
 
 def test_deleted_people(site):
-    """What they did stays, under a name that tells nothing."""
+    """The lines of a deleted person stay, under an anonymous name."""
     before = site.feed("carl", limit=1000)["activity"]
     for name in ("ada", "gus"):
         site.server.ok("DELETE", f"/users/{name}")

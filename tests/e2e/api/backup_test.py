@@ -1,4 +1,5 @@
-"""Backup of a site on which people paint, restored elsewhere: everything of one moment is there, and work goes on. Damaged backups are refused."""
+"""Backup of a site during painting, and its restore on another server: the state of one moment is
+complete, and work continues. Damaged backups are refused."""
 import json
 import os
 import shutil
@@ -55,7 +56,7 @@ def make_site(server):
 
 
 class Painters:
-    """Three who paint until they are told to stop."""
+    """Three people who paint until `stop` is set."""
 
     def __init__(self, server, camera):
         self.acknowledged, self.changed, self.stopping, self.faults = (
@@ -97,7 +98,7 @@ class Painters:
                 with self.changed:
                     self.acknowledged.append(done["sequence"])
                     self.changed.notify_all()
-        except Exception as fault:  # shown by `end`
+        except Exception as fault:  # `end` shows it
             with self.changed:
                 self.faults.append(repr(fault))
                 self.changed.notify_all()
@@ -117,7 +118,7 @@ class Painters:
 
 
 def contents(server, sequence):
-    """All that can be asked for, of this moment."""
+    """Returns all readable content as of the sequence."""
     layers = {}
     for layer in ("moisture", "cracks"):
         history = server.ok("GET", f"{M}/layers/{layer}/edits?limit=1000").json()["edits"]
@@ -138,7 +139,8 @@ def contents(server, sequence):
 
 
 def check_goes_on(server, camera, newest):
-    """People sign in with their passwords, undo what they did before, and keys and numbers are not given again."""
+    """People sign in with their passwords and undo earlier edits; keys and numbers are not given
+    again."""
     signed = server.request(
         "POST",
         "/login",
@@ -192,22 +194,22 @@ def check_bad_backups(whole, data, folder):
         ("flipped", flip, "checksum differs"),
         ("garbage", garbage, "manifest.json is not"),
         ("newer", edit(lambda m: m.update(schema_version=10**6)), "Newer backup"),
-        ("format", edit(lambda m: m.update(format=99)), "Another format"),
+        ("format", edit(lambda m: m.update(format=99)), "Newer backup format"),
         ("types", edit(lambda m: m.update(tables=[1])), "manifest.json is not"),
         (
             "rows",
             edit(lambda m: m["tables"]["public.edits"].update(rows=1)),
-            "public.edits is not what",
+            "public.edits differs from",
         ),
         (
             "missing",
             edit(lambda m: m["tables"].update({"public.gone": {"rows": 0, "digest": "0"}})),
-            "public.gone is not what",
+            "public.gone differs from",
         ),
         (
             "sequence",
             edit(lambda m: m["sequences"].update({next(iter(m["sequences"])): 10**9})),
-            "numbers again",
+            "numbers that are in use",
         ),
     ):
         bad = copy(name, change)
@@ -216,11 +218,11 @@ def check_bad_backups(whole, data, folder):
             os.path.join(data, "restoring")
         ), os.listdir(data)
         shutil.rmtree(bad)
-    refused("restore", folder, "--data", data, told="No backup")
+    refused("restore", folder, "--data", data, told="Backup not found")
 
 
 def check_killed_restore(whole, data):
-    """Cut short, a restore leaves nothing that a server would start on, and can be done again."""
+    """An interrupted restore leaves no data for the start of a server, and can be repeated."""
     child = subprocess.Popen(
         [os.environ["STRATA_BINARY"], "restore", whole, "--data", data],
         stdout=subprocess.DEVNULL,
@@ -252,7 +254,7 @@ def whole(folder):
 
 @pytest.fixture(scope="module")
 def second():
-    """A server that is not started yet, on an empty folder."""
+    """A server with an empty folder that is not started yet."""
     second = StrataServer()
     yield second
     second.remove()
@@ -263,20 +265,20 @@ def test_a_backup_is_made_while_people_paint(server, whole, story):
     painters = Painters(server, story.camera)
     story.before = painters.wait_for(30)
     done = strata("backup", whole, "--data", server.data)
-    painters.wait_for(len(painters.acknowledged) + 10)  # they were not held up for good
+    painters.wait_for(len(painters.acknowledged) + 10)  # painting was not blocked permanently
     painters.end()
     assert done.returncode == 0 and "backed up 1 model, 2 layers" in done.stdout, done
-    assert os.stat(whole).st_mode & 0o077 == 0  # it holds hashes of passwords
+    assert os.stat(whole).st_mode & 0o077 == 0  # it contains password hashes
     assert "whole: 1 model" in strata("restore", whole, "--check").stdout
 
 
 def test_what_is_there_is_not_written_over(server, whole):
-    refused("backup", whole, "--data", server.data, told="Already there")
+    refused("backup", whole, "--data", server.data, told="Folder already exists")
     refused("restore", whole, "--data", server.data, told="holds a site already")
 
 
 def test_a_full_disk_is_no_backup(server, folder):
-    """No room for the dump: refused, and no folder that looks like a backup."""
+    """Without room for the dump: refused, and no folder remains that looks like a backup."""
     small = os.path.join(folder, "small")
     os.mkdir(small)
     if (
@@ -297,7 +299,7 @@ def test_a_full_disk_is_no_backup(server, folder):
 
 
 def test_another_database(server, whole):
-    """--database: into an empty one, with a password that no list of processes shows."""
+    """--database: into an empty database, with a password that no process list shows."""
     socket_folder = os.path.join(server.data, "postgres")
     server.sql("CREATE DATABASE copy")
     copy = f"host='{socket_folder}' user=strata dbname=copy password='it\\'s a : secret'"

@@ -1,4 +1,5 @@
-"""The Bin: what is deleted is gone through every door, is kept over kill -9, comes back with texels, history and values, and is erased when its time is over."""
+"""The trash: no operation returns deleted content; it is kept over kill -9, is restored with
+texels, history and values, and is erased after its time."""
 import pytest
 from support.cameras import camera_from
 from support.kiosk_site import make_kiosk
@@ -90,7 +91,8 @@ class Site:
         return self.ok(who, "GET", BIN).json()["entries"]
 
     def state(self):
-        """What a layer is, says and shows, and what else knows of it."""
+        """Returns the state of the layer: its members, history, texels, values and picture, and all
+        references to it."""
         layer = self.ok("carl", "GET", M + "/layers/cracks").json()
         return {
             "layer": layer,
@@ -108,7 +110,7 @@ class Site:
 
 
 def doors_of_layer(site):
-    """Of a layer in the Bin no door tells, for the owner either."""
+    """No operation returns a layer in the trash, not even for the owner."""
     server, layer = site.server, site.layer
     for ref in ("cracks", layer["id"]):
         at = f"{M}/layers/{ref}"
@@ -154,7 +156,7 @@ def site():
 
 
 def test_layers(site):
-    """A layer goes and comes back, over kill -9, as it was; its short name is free meanwhile."""
+    """A layer is deleted and restored unchanged, over kill -9; its name is free until then."""
     server = site.server
     before = site.state()
     with LiveClient(server, "sheet") as live:
@@ -192,7 +194,7 @@ def test_layers(site):
     for what, value in before.items():
         assert after[what] == value, (what, value, after[what])
     assert not site.listed()
-    # Its history goes on, and another restart changes nothing.
+    # Its history continues, and another restart changes nothing.
     site.ok("carl", "PATCH", M + "/layers/cracks", {"locked": False})
     site.ok("ada", "POST", M + "/layers/cracks/undo")
     assert site.ok("carl", "GET", M + "/layers/cracks/texels.npy").body != before["texels"]
@@ -200,7 +202,7 @@ def test_layers(site):
     server.kill()
     server.start()
     assert site.ok("carl", "GET", M + "/layers/cracks/texels.npy").body == before["texels"]
-    # A short name that is taken meanwhile.
+    # Another layer takes the short name in the meantime.
     site.ok("carl", "DELETE", M + "/layers/cracks")
     assert (
         site.ok("carl", "POST", M + "/layers", {"name": "Cracks", "type": "u8"}).json()["slug"]
@@ -226,7 +228,7 @@ def test_layers(site):
 
 
 def test_models(site):
-    """A model goes with all it has and comes back with it."""
+    """A model is deleted and restored with all its content."""
     server = site.server
     site.ok("carl", "DELETE", f"{BIN}/{site.listed()[0]['id']}")
     before = [
@@ -305,7 +307,8 @@ def test_models(site):
 
 
 def test_records(site):
-    """A record comes back with its key and values, by who may delete it, once they fit."""
+    """A record is restored with its key and values, by people who may delete it, once its values
+    are valid."""
     table = site.ok("ada", "GET", "/tables/units").json()["id"]
     before = site.ok("ada", "GET", "/tables/units/records/1").json()
     site.ok("ada", "POST", M + "/layers/units/edits", {**FILL, "value": 1})
@@ -334,13 +337,13 @@ def test_records(site):
     after = site.ok("ada", "GET", "/tables/units/records/1").json()
     assert after["values"] == before["values"], after
     assert not site.listed("ada")
-    # its key is painted again
+    # a layer has texels of its key again
     site.ok("ada", "POST", M + "/layers/units/edits", {**FILL, "value": 1})
     assert site.ask("ada", "POST", f"{BIN}/{entry['id']}/restore").status == 404
 
 
 def test_roles(site):
-    """Who may not delete neither sees nor restores; nonsense is refused."""
+    """People who may not delete can neither see nor restore; invalid requests are refused."""
     site.ok("carl", "DELETE", M + "/layers/graves")
     entry = site.listed()[0]["id"]
     assert site.listed("ada") == [], "layers are for curators"
@@ -378,7 +381,7 @@ def test_roles(site):
 
 
 def test_expiry(site):
-    """What lay there long enough is erased at the next start, all of it, and nothing else; people erase at once."""
+    """The next start erases all expired content and nothing else; people can erase immediately."""
     server = site.server
     for name in ("Old", "Young", "Gone"):
         site.ok("carl", "POST", M + "/layers", {"name": name, "type": "u8", "resolution": 2048})
@@ -409,7 +412,7 @@ def test_expiry(site):
     ] == 7, listed
     site.ok("carl", "POST", f"{BIN}/{by_name['Young']}/restore")
     assert site.ok("carl", "GET", M + "/layers/young/statistics").json()
-    # Nothing is kept by who wants nothing kept.
+    # With 0 days nothing is kept.
     assert server.stop() == 0
     server.options[-1] = "0"
     server.start()

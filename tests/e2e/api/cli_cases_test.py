@@ -1,4 +1,5 @@
-"""The commands: exit codes, what `doctor` looks at without touching it, and servers that are none."""
+"""The commands: exit codes, the checks of `doctor`, which change nothing, and answers of other
+programs."""
 import http.server
 import os
 import subprocess
@@ -59,7 +60,7 @@ def test_wrong_usage_ends_with_a_reason(folder):
 
 
 def test_what_answers_an_import_is_no_strata_server(folder):
-    """What answers an import is no Strata server: a reason and exit code 1."""
+    """Another program answers the import: the command prints a reason and exits with 1."""
     scan = os.path.join(folder, "grid.ply")
     with open(scan, "wb") as file:
         file.write(folded_grid())

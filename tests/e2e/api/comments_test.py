@@ -1,4 +1,5 @@
-"""Comments on a model over HTTP: who may write, change and delete, where they lie, repeats and races, and what is left of who is deleted."""
+"""Comments on a model over HTTP: rights to write, change and delete, places, repeats and races, and
+the comments of a deleted person."""
 import json
 import urllib.parse
 
@@ -68,7 +69,7 @@ def site(server):
 
 
 def test_writing(site):
-    """A thread lies on the surface, with what it is about; everybody reads it."""
+    """A thread has a place on the surface and its subject; everybody can read it."""
     made = site.ok(
         "Ada.L", "POST", ALL, {"text": "Is this\nthe crack? δ <b>&amp;", "position": [50, 40, 3]}
     )
@@ -123,7 +124,7 @@ def test_writing(site):
 
 
 def test_malformed(site):
-    """What is no comment, or no place, is refused with the field, and nothing is written."""
+    """An invalid comment or place is refused with its field, and nothing is written."""
     before = site.ok("bob", "GET", ALL).json()["total"]
     here = [50, 50, 0]
     for body, field in (
@@ -199,13 +200,14 @@ def test_malformed(site):
         status=422,
         field="state",
     )
-    # Ten thousand characters, whatever their bytes.
+    # The limit is ten thousand characters, independent of their bytes.
     assert site.begin("bob", "😀" * 10000)["text"] == "😀" * 10000
     assert site.ok("bob", "GET", ALL).json()["total"] == before + 4
 
 
 def test_roles(site):
-    """Viewers read, annotators write and change their own, curators delete others'; everybody who writes resolves."""
+    """Viewers read, annotators write and change their own comments, curators delete those of
+    others; everybody who may write can resolve."""
     thread = site.begin("Ada.L")
     path = f"/comments/{thread['id']}"
     for method, where, body in (
@@ -243,7 +245,7 @@ def test_roles(site):
 
 
 def test_deleting(site):
-    """A first comment with replies leaves its place; it goes with the last of them."""
+    """A deleted first comment with replies keeps its place; it is removed with the last reply."""
     thread = site.begin("bob", "A slip of the pen")
     path = f"/comments/{thread['id']}"
     replies = [site.reply(who, thread) for who in ("Ada.L", "bob")]
@@ -266,7 +268,7 @@ def test_deleting(site):
 
 
 def test_repeats_and_races(site):
-    """A repeat writes nothing twice; who has not read the newest changes nothing."""
+    """A repeat writes nothing twice; a change based on an old version is refused."""
     key = {"Idempotency-Key": "9b2d0e7a-7c1a-4c3e-9a57-0e7d3c1d2f10"}
     before = site.ok("bob", "GET", ALL).json()["total"]
     body = {"text": "Once", "position": [10, 10, 0]}
@@ -303,7 +305,7 @@ def test_repeats_and_races(site):
 
 
 def test_lists(site):
-    """By state and time, in pages."""
+    """Lists by state and time, in pages."""
     for comment in site.ok("carl", "GET", ALL + "?limit=1000").json()["comments"]:
         site.request("carl", "DELETE", f"/comments/{comment['id']}")
     threads = [site.begin("bob", f"Number {n}", position=(10 * n + 5, 50, 0)) for n in range(5)]
@@ -330,7 +332,7 @@ def test_lists(site):
 
 
 def test_live(site):
-    """Who is on the model hears of every change, and who is on another does not."""
+    """People on the model receive every change; people on another model do not."""
     site.server.import_model(folded_grid(fold=0.001), "other.ply", name="Other", unit="mm")
     with LiveClient(site.server, "sheet", token=site.tokens["vera"]) as here, LiveClient(
         site.server, "other", token=site.tokens["vera"]
@@ -377,7 +379,7 @@ def test_live(site):
 
 
 def test_names(site):
-    """Whom one may name: who may sign in and sees the project."""
+    """People who can be mentioned: those who may sign in and see the project."""
     people = "/projects/default/people"
     told(site.request("vera", "GET", people), status=403)
     assert site.server.request("GET", people, token=False).status == 401
@@ -406,7 +408,8 @@ def test_names(site):
 
 
 def test_people_and_models(site):
-    """Of who is deleted the name goes, in what others say to them, too; a model's comments go with it."""
+    """The name of a deleted person is removed, also from the texts of others; comments are deleted
+    with their model."""
     person = next(
         user for user in site.server.ok("GET", "/users").json()["users"] if user["user"] == "Ada.L"
     )

@@ -1,4 +1,5 @@
-"""Records in questions, over HTTP: filters of tables, columns in conditions, and layers that are computed from others, from records and from the surface."""
+"""Records in queries, over HTTP: filters of tables, columns in conditions, and layers that are
+computed from other layers, from records and from the surface."""
 import math
 import urllib.parse
 
@@ -95,7 +96,7 @@ def test_filters(server):
     for text, offset, says in (
         ("thick > 3", 0, "no column 'thick'"),
         ("thickness > ", 12, "the end"),
-        ("state = 'lose'", 8, "no choice"),
+        ("state = 'lose'", 8, "not a choice"),
         ("name = 'ä' and thickness = 'x'", 15, "holds numbers"),
         ("1=1; drop table records.t1", 3, "no meaning"),
     ):
@@ -150,7 +151,7 @@ def test_computing(server):
     assert value(server, "risk", 90, 10)["valid"] is False
     assert server.get(M + "/layers/risk/edits").json()["edits"][0]["op"] == "compute"
 
-    # A record changes, then paint: the layer is stale until it is computed again.
+    # After a change of a record or of texels the layer is stale until it is computed again.
     server.ok("PATCH", "/tables/pieces/records/1", {"values": {"state": "firm"}})
     assert server.get(M + "/layers/risk").json()["stale"] is True
     assert value(server, "risk", 30, 30)["value"] == 7.5
@@ -187,15 +188,15 @@ def test_computing(server):
     assert done["state"] == "done" and len(done["layers"]) == 1, done
     near(server.get(M + "/layers/steep/statistics").json()["area_m2"], total, 0.001)
 
-    # What is written by an expression is written by nothing else.
+    # Only the expression can write a computed layer.
     for method, path, body in (
         ("POST", "edits", {"op": "fill", "value": 1, "mode": "where", "where": "true"}),
         ("POST", "undo", None),
     ):
         answer = server.request(method, f"{M}/layers/risk/{path}", body)
-        assert answer.status == 403 and answer.json()["title"] == "Layer locked", answer
+        assert answer.status == 403 and answer.json()["title"] == "Layer is locked", answer
 
-    # Circles and what names nothing.
+    # Cycles, and expressions with unknown names.
     for name, body in (
         ("risk", {"expression": "mask + 1"}),
         ("risk", {"expression": "risk + 1"}),
@@ -226,7 +227,7 @@ def test_computing(server):
 
 
 def test_they_are_computed_anew_by_themselves(server):
-    """One that follows, through another that follows."""
+    """An automatic layer, computed from another automatic layer."""
     for name in ("risk", "mask"):
         assert (
             server.ok("PATCH", f"{M}/layers/{name}", {"recompute": "automatic"}).json()["recompute"]
@@ -240,13 +241,13 @@ def test_they_are_computed_anew_by_themselves(server):
     server.ok("PATCH", "/tables/pieces/records/1", {"values": {"state": "loose"}})
     wait_for(lambda: value(server, "risk", 30, 30)["value"] == 7.5, "a record to reach the surface")
 
-    # Without its expression it is a layer like others.
+    # Without its expression it is an ordinary layer.
     plain = server.ok("PATCH", M + "/layers/mask", {"expression": ""}).json()
     assert "expression" not in plain and value(server, "mask", 30, 30)["value"] == 1
     dab(server, "mask", 7, 30, 30, 3)
     assert value(server, "mask", 30, 30)["value"] == 7
 
-    # An input that is gone is named.
+    # The error names a deleted input.
     compute(server, "Twice", "mask * 2")
     server.ok("DELETE", M + "/layers/mask")
     answer = server.post(M + "/layers/twice/compute")
@@ -255,7 +256,7 @@ def test_they_are_computed_anew_by_themselves(server):
 
 
 def test_transfer(server):
-    """Its values come over to another scan; what they were computed from need not be there."""
+    """The values are transferred to another scan, also without their inputs."""
     server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
     job = server.wait_for_job(
         server.ok(

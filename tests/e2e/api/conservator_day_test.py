@@ -1,8 +1,9 @@
-"""A conservator's day over HTTP, with nothing but Python's own library, to be read as an example: two walls of a chapel, a list of terms, places with photos
-across both, strokes, questions, a risk that is computed, and quantities for the report. Every figure is checked against what was painted.
+"""A conservator's day over HTTP, with only Python's own library, as an example for readers: two
+walls of a chapel, a list of terms, places with photos on both, strokes, queries, a computed risk,
+and quantities for the report. The test compares every figure with the painted areas.
 
-`server.ok(method, path, body)` sends a request to /api/v1 with the token; a dict goes as JSON;
-`story` has what an earlier step made."""
+`server.ok(method, path, body)` sends a request to /api/v1 with the token; it sends a dict as JSON;
+`story` has the results of earlier steps."""
 import csv
 import io
 import math
@@ -35,7 +36,7 @@ def near(value, expected, share=0.02):
 
 
 def paint(server, model, layer, value, x, y, radius):
-    """A disc around a place of the wall."""
+    """Paints a disc around a place of the wall."""
     path = f"{model}/layers/{layer}/readings?" + urllib.parse.urlencode({"radius_mm": radius})
     return server.ok(
         "POST", path, f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}
@@ -47,7 +48,7 @@ def rows_of(text):
 
 
 def test_the_site_is_set_up(server, story):
-    """Nine o'clock: the scans, the words, the tables."""
+    """Nine o'clock: the scans, the terms, the tables."""
     server.ok("POST", "/projects", {"name": "Chapel"})
     for name in ("North wall", "South wall"):
         server.import_model(
@@ -126,8 +127,8 @@ def test_look_and_paint(server, story):
     paint(server, NORTH, "damage", keys["flaking"], 30, 30, 12)
     paint(server, NORTH, "damage", keys["salts"], 70, 70, 10)
     paint(server, SOUTH, "damage", keys["flaking"], 50, 50, 20)
-    # A crack along the foot of the wall, with the brush: pixels of a camera that looks straight at
-    # it.
+    # A crack along the foot of the wall, with the brush: pixels of a camera perpendicular to the
+    # wall.
     camera = camera_from(server.get(SOUTH).json(), (0, 0, 1), up=(0, 1, 0))
     distance = -camera["view"][14]
     mm_of_pixel = 2 * distance / camera["projection"][5] / camera["height"]
@@ -140,7 +141,7 @@ def test_look_and_paint(server, story):
         "path": [[320 - 30 / mm_of_pixel, y], [320 + 30 / mm_of_pixel, y]],
     }
     near(server.ok("POST", SOUTH + "/layers/damage/edits", crack).json()["area_m2"], swept(2, 60))
-    # And one stroke too many, which is taken back.
+    # One stroke too many, which is undone.
     before = server.get(SOUTH + "/layers/damage/statistics").json()
     server.ok("POST", SOUTH + "/layers/damage/edits", {**crack, "radius_mm": 9})
     assert server.get(SOUTH + "/layers/damage/statistics").json()["keys"] != before["keys"]
@@ -175,7 +176,7 @@ def test_look_and_paint(server, story):
 
 
 def test_add_photos(server):
-    """A folder of photos finds its places by the names."""
+    """A folder of photos is matched to places by the file names."""
     names = ["apse_before_1.png", "door_before_1.png", "crypt_before_1.png"]
     match = server.ok(
         "POST",
@@ -205,7 +206,7 @@ def test_add_photos(server):
 
 
 def test_ask(server, story):
-    """In the afternoon: which, where, how much."""
+    """In the afternoon: queries of places, counts and areas."""
     keys = story.keys
 
     def found(text, path="/tables/places"):
@@ -233,7 +234,7 @@ def test_ask(server, story):
     areas = {each["key"]: each["area_m2"] for each in table["quantities"]}
     near(areas[1], disc(15) + disc(5))
     near(areas[3], disc(20))
-    # What lies in which place, in m².
+    # The area of each place, in m².
     cross = server.ok(
         "POST", NORTH + "/cross-table", {"rows": "damage", "columns": "places"}
     ).json()
@@ -245,7 +246,7 @@ def test_ask(server, story):
 
 
 def test_weigh(server):
-    """A risk is computed, and follows what is seen."""
+    """A computed risk follows the observations."""
     expression = "if(places.urgency = 'now', 2, 1) * reclass(moisture, 0, 30, 1, 60, 2)"
     risk = server.ok(
         "POST",
@@ -275,7 +276,7 @@ def test_weigh(server):
         0.03,
     )
     server.ok("POST", "/tables/places/undo")
-    # The picture for the report: by urgency, hatched, the urgent ones alone.
+    # The picture for the report: by urgency, hatched, only the urgent places.
     server.ok(
         "PATCH",
         NORTH + "/layers/places",
@@ -310,7 +311,7 @@ def test_weigh(server):
 
 
 def test_report(server, story):
-    """Before six: the figures, as they go into the report."""
+    """Before six: the figures for the report."""
     keys = story.keys
     answer = server.ok("GET", NORTH + "/layers/damage/quantities").json()
     by_class = {each["key"]: each for each in answer["quantities"]}

@@ -1,5 +1,5 @@
-// The contract, held against Redocly's recommended rules of OpenAPI: generators and validators of
-// others must see what the server enforces.
+// Checks the contract with Redocly's recommended rules for OpenAPI, so that other generators and
+// validators see the rules that the server enforces.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { kRoot, load_module } from "../support/js/modules.mjs";
@@ -7,7 +7,7 @@ import { kRoot, load_module } from "../support/js/modules.mjs";
 const { createConfig, lint } = load_module("@redocly/openapi-core");
 
 /**
- * Calls that succeed by another answer: the owner's link leads on to the page (303), a live
+ * Operations with another success status: the owner's link redirects to the page (303), a live
  * connection becomes a WebSocket (101).
  */
 const kWithoutSuccess = [

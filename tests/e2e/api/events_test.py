@@ -1,4 +1,5 @@
-"""Events of a model for scripts: what is done is told once it is durable, each reader hears what they see, and who was cut off misses nothing."""
+"""Events of a model for scripts: the server sends them once an edit is durable, each reader gets
+only visible content, and a reader loses nothing after a disconnection."""
 import json
 
 from support.event_reader import EventReader
@@ -88,7 +89,7 @@ def test_a_line_that_goes_on_is_told_again_with_what_it_is_now(server, story):
 
 
 def test_who_was_cut_off_misses_nothing(server, story):
-    """While the server was away, too: who comes back with the last id hears no line as it was told before."""
+    """Also over a restart of the server: a reader with the last id gets no line twice."""
     after = story.reader.last
     story.reader.close()
     paint(server, "units", "y > 80")

@@ -1,4 +1,5 @@
-"""What a project gives to reports, spreadsheets and other programs: quantities, texels as lines, workbooks, vertices."""
+"""Data of a project for reports, spreadsheets and other programs: quantities, texels as lines,
+workbooks, vertices."""
 import csv
 import datetime
 import io
@@ -80,7 +81,7 @@ def test_quantities_of_records(server, story):
     near(now["sum"]["area_m2"], 150 * math.pi * 1e-6, 0.02)
     assert now["sum"]["pieces"] == 3 and now["total"] == 2, now
 
-    # Of then, with the names of then.
+    # As of an earlier time, with the names of that time.
     server.ok("PATCH", "/tables/pieces/records/1", {"values": {"code": "Skull"}})
     assert server.get(pieces + "/quantities").json()["quantities"][0]["class"] == "Skull"
     past = server.get(f"{pieces}/quantities?at={first}")
@@ -163,7 +164,7 @@ def test_quantities_of_numbers(server):
     etag = server.get(moisture).headers["ETag"]
     server.ok("PATCH", moisture, {"palette": linear}, headers={"If-Match": etag})
     rows = rows_of(server.get(moisture + "/quantities?f=csv"))
-    # 0.7 of a 32-bit float lies below 0.7 of a double.
+    # 0.7 as a 32-bit float is less than 0.7 as a double.
     assert [(row["class"], row["from"], row["to"]) for row in rows] == [
         ("from 0 to 0.25", "0", "0.25"),
         ("from 0.25 to 0.7", "0.25", "0.7"),
@@ -302,7 +303,7 @@ def test_workbooks(server, story):
         text.startswith('"Pieces / Pieces, cm²",') and book.rows[0][0] == "Pieces / Pieces, cm²"
     ), (text, book.rows)
     near(book.rows[-1][-1], 1e4 * (areas[1] + areas[2]), 1e-12)
-    # they go after the answer
+    # removed after the answer
     wait_for(lambda: os.listdir(os.path.join(server.data, "uploads")) == [], "that nothing stays")
 
 
@@ -316,7 +317,7 @@ def lines_of(server, path, **query):
 
 
 def aggregated(rows, edge, keys):
-    """The oracle of `cell`: {cell: (centroid, area, value)} of lines of texels."""
+    """The oracle of `cell`: returns {cell: (centroid, area, value)} of lines of texels."""
     cells = {}
     for row in rows:
         place, area = [float(row[axis]) for axis in "xyz"], float(row["area_m2"])
@@ -369,7 +370,7 @@ def test_texel_lines(server, story):
     )
     assert {row["value"] for row in wet} <= {"0.05", "0.3", "0.7"}, {row["value"] for row in wet}
 
-    # Not what lies so close to the side of a cell that rounded places may be in the next one.
+    # Without texels so close to the side of a cell that rounded places may be in the next one.
     inside = (
         "abs(z) > 0.0002 and x % 5 between 0.0002 and 4.9998 and y % 5 between 0.0002 and 4.9998"
     )
@@ -390,7 +391,7 @@ def test_texel_lines(server, story):
                 centre,
             )
 
-    # Keys are never mixed, and bring what their records say.
+    # Keys are never mixed; the lines have the values of their records.
     rows = lines_of(server, pieces, columns="code", where="abs(z) > 0.0002")
     assert {(row["value"], row["code"]) for row in rows} == {
         ("1", "Skull"),
@@ -424,8 +425,8 @@ def test_texel_lines(server, story):
     assert server.get(pieces + "/texels.csv?columns=depth").json()["field"] == "columns"
     assert server.request("PUT", moisture + "/texels.csv", b"x,y,z\n").status == 404
 
-    # Another call on the same connection; HTTP/1.0 knows no chunks, there the end of the connection
-    # ends the answer.
+    # Another call on the same connection; HTTP/1.0 has no chunks, so the end of the connection ends
+    # the answer.
     link = server.connect()
     first = server.get(pieces + "/texels.csv", connection=link).body
     assert server.get(pieces + "/texels.csv", connection=link).body == first
@@ -470,7 +471,7 @@ def test_vertices(server):
         assert point["distance"] < 1e-4, point
         for layer in ("moisture", "salt", "pieces"):
             value = point["values"][layer]
-            # on a seam, where the position's texel is on the other side
+            # on a seam the position's texel is on the other side
             if vertex[layer + "_valid"] and not value["valid"]:
                 on_seams += 1
                 continue
@@ -478,7 +479,7 @@ def test_vertices(server):
             assert vertex[layer] == (value["value"] if value["valid"] else 0), (vertex, value)
             painted += value["valid"]
     assert painted > 10 and on_seams < painted / 5, (painted, on_seams)
-    # The project reads its own file, and finds the layers' values as numbers of the vertices.
+    # The server imports its own file, and finds the layers' values as numbers of the vertices.
     again = server.import_model(answer.body, "again.ply", name="Again", unit="mm")
     assert (again["vertices"], again["triangles"]) == (model["vertices"], model["triangles"])
     near(again["area_m2"], model["area_m2"], 1e-6)
@@ -502,7 +503,7 @@ def test_vertices(server):
 
 
 def test_quantities_of_a_table(server, story):
-    """One record on two models adds up."""
+    """The areas of a record on two models are added."""
     pieces = story.pieces
     other = server.import_model(
         folded_grid(fold=0.001, size=50.0), "small.ply", name="Small", unit="mm"

@@ -1,4 +1,5 @@
-"""Outlines of classes, and lines and points of records, as GeoJSON and GeoPackage, read as other programs read them."""
+"""Outlines of classes, and lines and points of records, as GeoJSON and GeoPackage, read as other
+programs do."""
 import contextlib
 import os
 import sqlite3
@@ -10,7 +11,7 @@ import pytest
 from support.meshes import folded_grid
 
 M, T = "/models/sheet", "/tables/damage"  # nearly flat, x and y from 0 to 100 mm
-TEXEL = 100 / 2048  # mm, at least
+TEXEL = 100 / 2048  # mm, the smallest
 GPKG = "application/geopackage+sqlite3"
 
 
@@ -117,7 +118,8 @@ def ring_area(ring):
 
 
 def check_polygons(geometry, area_m2, metres=0.001):
-    """Valid as far as rings tell: closed, outer ones counter-clockwise, holes clockwise; and as large as the statistics say."""
+    """Checks that rings are closed, outer ones counter-clockwise, holes clockwise, and that the
+    area agrees with the statistics."""
     total = 0
     for polygon in geometry["coordinates"]:
         for i, ring in enumerate(polygon):
@@ -184,7 +186,7 @@ def test_classes(server):
         )
     ranges = [feature["properties"] for feature in features(server, "wet")["features"]]
     assert [(own["from"], own["to"]) for own in ranges] == [(0, 5), (5, None)], ranges
-    # From the side nothing is seen of it but its edge; coordinates are x, z, y.
+    # From the side only its edge is visible; coordinates are x, z, y.
     side = features(server, "units", "along=-y")
     assert side["axes"] == "xzy" and [
         feature["properties"]["area_m2"] for feature in side["features"]
@@ -250,7 +252,7 @@ def test_a_reference_system_counts_in_its_unit(server):
 
 
 def read_blob(blob, srs):
-    """A GeoPackage geometry: type, and its numbers as GeoJSON has them."""
+    """Parses a GeoPackage geometry: its type, and its numbers as in GeoJSON."""
     magic, version, flags, its_srs = struct.unpack_from("<2sBBi", blob)
     assert (magic, version, flags, its_srs) == (b"GP", 0, 0b101, srs), (
         magic,

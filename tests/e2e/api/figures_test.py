@@ -1,5 +1,5 @@
-"""Measured figures: what is so long in the world is so long on paper, in every direction, kind of file and resolution; parts join without seams;
-one state of the layers; jobs; who sees what; and what is refused."""
+"""Measured figures: lengths are to scale on paper, in every direction, file format and resolution;
+parts join without seams; one state of the layers; jobs; visibility; and refusals."""
 import math
 import os
 import re
@@ -35,14 +35,14 @@ def figure(server, expect=200, token=True, model="sheet", lang="", **wish):
 
 
 def drawn(server, token=True, **wish):
-    """The sheet's pixels: rows × columns × 3."""
+    """Returns the sheet's pixels: rows × columns × 3."""
     rows, tags = tiff.read(figure(server, format="tiff", token=token, **wish).body)
     assert tags[296] == (2,) and tags[282] == tags[283] == (wish.get("dpi", 300), 1), tags
     return rows
 
 
 def spots(rows, color=RED, by=60):
-    """Where about this colour is, as x and y of the pixels' middles."""
+    """Returns the pixels with about this color, as x and y of their centers."""
     y, x = numpy.nonzero((abs(rows.astype(int) - color) <= by).all(axis=2))
     return numpy.stack([x, y], axis=1) + 0.5
 
@@ -60,7 +60,7 @@ def fill(server, where, value=1, layer="marks", model="sheet"):
 
 
 def dab(server, x, y, value=1, layer="marks", radius=2, model="sheet"):
-    """A disc as seen from above, whatever lies below it."""
+    """Paints a disc as seen from above, on every surface below it."""
     fill(
         server,
         f"(x - {x}) * (x - {x}) + (y - {y}) * (y - {y}) < {radius * radius}",
@@ -96,8 +96,9 @@ def folder():
 
 
 def test_lengths_are_those_of_the_world(server):
-    """On each side of a ball a small disc 15 mm before its middle and a larger one 15 mm behind, as seen from there: how far they are from each other on paper tells the scale,
-    and which is on the right the direction."""
+    """Each side of a ball has a small disc 15 mm before its middle and a larger one 15 mm behind,
+    as seen from there: their distance on paper gives the scale, and the one on the right the
+    direction."""
     server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
     server.ok("POST", "/models/ball/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
     sides = {
@@ -157,7 +158,8 @@ def test_lengths_are_those_of_the_world(server):
 
 
 def group_of(svg, name):
-    """What an SVG draws under this name: paths as rows of x and y in millimetres on paper, and words."""
+    """Returns the SVG's content under this name: paths as rows of x and y in millimeters on paper,
+    and words."""
     group = next(each for each in xml.fromstring(svg).iter(SVG + "g") if each.get("id") == name)
     paths = [
         numpy.array(re.findall(r"-?[\d.]+(?:e-?\d+)?", each.get("d")), float).reshape(-1, 2)
@@ -167,7 +169,8 @@ def group_of(svg, name):
 
 
 def test_bars(server):
-    """The scale bar is so long on paper, in vectors and in pixels, as what it says is at that scale; from a find of a few centimetres at 5 : 1 to a site at 1 : 500."""
+    """The length of the scale bar on paper, in vectors and in pixels, agrees with its label at that
+    scale; from a find of a few centimeters at 5 : 1 to a site at 1 : 500."""
     site = {
         "model": "site",
         "direction": "top",
@@ -212,7 +215,7 @@ def test_bars(server):
         assert [float(each) for each in words[: len(steps)]] == [
             float(number) * i / len(steps) for i in range(len(steps))
         ], words
-        # The same in pixels, outline and all.
+        # The same in pixels, including the outline.
         per_mm = dpi / 25.4
         row = (
             drawn(server, dpi=dpi, scale=scale, **asked)[
@@ -230,7 +233,7 @@ def test_bars(server):
 
 
 def test_north(server):
-    """The arrow points along what lies north of something, whichever axis is up, from above and from below."""
+    """The arrow points north for each up axis, from above and from below."""
     palette = {
         "mode": "categorical",
         "points": [{"at": 11, "color": "#ff0000"}, {"at": 12, "color": "#00ff00"}],
@@ -252,7 +255,7 @@ def test_north(server):
         server.ok("PATCH", "/models/ball", {"up": up, "north": str(degrees)})
         fill(server, "true", 0, model="ball")
         turn = math.radians(degrees)
-        sign = -1 if up == "y" else 1  # y up: north is away from who looks along -z
+        sign = -1 if up == "y" else 1  # y up: for a view along -z, north points into the picture
         for value, away in ((11, 0), (12, 25)):
             fill(
                 server,
@@ -273,7 +276,8 @@ def test_north(server):
 
 
 def test_parts_join_without_seams(server):
-    """A3 at 600 dpi, the largest: the drawing is made of parts of three inches, and together they are the picture of few."""
+    """A3 at 600 dpi, the largest: the drawing has parts of three inches, and equals the picture of
+    fewer parts."""
     asked = {
         "direction": "top",
         "scale": 0.35,
@@ -298,9 +302,9 @@ def test_parts_join_without_seams(server):
     differs = ((means < around.min(axis=0) - 12) | (means > around.max(axis=0) + 12)).any(axis=2)
     in_frame = differs[45:700, 45:1115]
     assert in_frame.mean() < 0.0005, in_frame.mean()
-    # Along the borders of parts the surface goes on as smoothly as elsewhere.
+    # At the borders of parts the surface is as smooth as elsewhere.
     corner, part = round(10 / 25.4 * 600), 3 * 600
-    for axis, low, high in ((0, 300, 4100), (1, 1500, 5500)):  # all of it surface
+    for axis, low, high in ((0, 300, 4100), (1, 1500, 5500)):  # surface only
         steps = abs(numpy.diff(fine[300:4100, 1500:5500].sum(axis=2), axis=axis)).mean(
             axis=1 - axis
         )
@@ -338,7 +342,7 @@ def test_kinds(server, folder):
     assert re.search(
         r"Page size:\s+(595\.\d+ x 841\.\d+|841\.\d+ x 595\.\d+) pts \(A4\)", facts
     ) and re.search(r"Pages:\s+1\n", facts), facts
-    # What the PDF draws lies where the TIFF has it.
+    # The PDF draws at the same places as the TIFF.
     bare = {"direction": "top", "dpi": 72, **BARE}
     with open(path, "wb") as out:
         out.write(figure(server, format="pdf", **bare).body)
@@ -369,7 +373,7 @@ def test_kinds(server, folder):
     tags = tiff.read(figure(server, format="tiff", **wish).body)[1]
     assert tags[269] == "Sheet 7" and tags[315] == "Museum", tags
 
-    # The legend tells of what is there: no class, and no layer, of which nothing is painted.
+    # The legend lists only painted layers and classes.
     server.ok("POST", M + "/layers", {"name": "Bare", "type": "u8", "resolution": 2048})
     points = [
         {"at": at, "color": color, "label": label}
@@ -384,8 +388,8 @@ def test_kinds(server, folder):
     assert b">One mark<" in shown and b">Nowhere<" not in shown and b">Bare<" not in shown
     server.ok("DELETE", M + "/layers/bare")
 
-    # A model that says where north is gets an arrow in the plan, and none in an elevation that
-    # looks north.
+    # A model with a north direction gets an arrow in the plan, and none in an elevation that faces
+    # north.
     server.ok("PATCH", M, {"north": "30"})
     for direction, shown in (("top", True), ("front", False)):
         groups = {
@@ -398,7 +402,7 @@ def test_kinds(server, folder):
 
 
 def test_names(server, story):
-    """What records are called, at their places; of terms too; what is private is not there."""
+    """Names of records, also of terms, at their places; without private ones."""
     server.ok(
         "POST",
         M + "/layers",
@@ -453,7 +457,7 @@ def test_names(server, story):
 
 
 def test_views(server):
-    """A figure of a named view shows what the view does, from where it looks."""
+    """A figure of a saved view shows the view's content from its camera."""
     camera = {**camera_from(server.get(M).json(), (0, -1, 0.0)), "section": [[0, 1, 0, -50]]}
     server.ok(
         "POST",
@@ -481,7 +485,7 @@ def test_views(server):
 
 
 def test_reviews(server):
-    """What waits for review is hatched, and told in the legend, until it is accepted."""
+    """Pending edits are hatched, and the legend lists them, until they are accepted."""
     rita, vito = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
     server.ok(
         "POST",
@@ -520,7 +524,7 @@ def test_reviews(server):
         spots(plain).min(axis=0).astype(int) + 4,
         spots(plain).max(axis=0).astype(int) - 4,
     )
-    up = round(50 / 25.4 * 100)  # from what is accepted to what waits
+    up = round(50 / 25.4 * 100)  # from the accepted to the pending ones
 
     def inks(rows, above):
         part = rows[top - above : bottom - above, left:right].astype(int)
@@ -529,7 +533,7 @@ def test_reviews(server):
     rows = drawn(server, token=vito, **wish)
     assert inks(rows, 0) == [1, 0], inks(rows, 0)
     red, dark = inks(rows, up)
-    # lines without a tint: the colour below is what it was
+    # lines without a tint: the color below does not change
     assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
     words = lambda **more: group_of(
         figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend"
@@ -538,7 +542,7 @@ def test_reviews(server):
         words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1
     ), words()
     assert "Provisional" not in words(layers=[{"layer": "finds", "visible": False}])
-    sequence = painted.json()["sequence"]  # as a moment of the past it is what was in force
+    sequence = painted.json()["sequence"]  # as of an earlier sequence, only edits in force
     assert "Provisional" not in words(at=sequence) and inks(
         drawn(server, at=sequence, **wish), up
     ) == [1, 0]
@@ -552,7 +556,7 @@ def test_reviews(server):
         "Provisional" not in words()
         and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
     )
-    # Where all of a layer was erased, no class of it is left, but that waits.
+    # Where a whole layer was erased, no class remains except the pending one.
     server.ok("PATCH", M + "/layers/finds", {"visibility": "public"})
     erased = server.request(
         "POST", edits, {"op": "fill", "mode": "where", "where": "true", "erase": True}, token=rita
@@ -564,7 +568,8 @@ def test_reviews(server):
 
 
 def test_legends(server):
-    """The legend has what the drawing shows: not what an opaque layer covers wholly, nor what is out of it; with classes that are lines and points alone."""
+    """The legend lists the content of the drawing: not layers that an opaque layer covers
+    completely, nor content outside it, but also classes that are only lines and points."""
     for name in ("Low", "High"):
         points = [
             {"at": at, "color": color, "label": f"{name} {at}"}
@@ -620,7 +625,7 @@ def test_legends(server):
         "Low",
         "Low 2",
     ], "on 15 mm around its right side"
-    # Records that have lines alone are classes of the drawing, too.
+    # Records that have only lines are also classes of the drawing.
     table = server.ok(
         "POST",
         "/projects/default/tables",
@@ -657,7 +662,7 @@ def test_legends(server):
         "Low 2",
     ], "what hangs before the surface is drawn"
     assert "Above" not in told(direction="bottom"), "what lies behind it is not"
-    # A long list goes on below its title.
+    # A long list continues below its title.
     points = [{"at": at, "color": "#2040ff", "label": f"Class {at}"} for at in range(1, 61)]
     server.ok(
         "POST",
@@ -680,7 +685,8 @@ def test_legends(server):
 
 
 def test_states_and_jobs(server, story):
-    """A figure of then; one that others cannot change while it is drawn; jobs, their files, who gets them and who ends them."""
+    """A figure of an earlier time; a figure whose layers others cannot change while it is drawn;
+    jobs and their files, with the rights to get and cancel them."""
     labels = story.labels
     viewer, other = server.add_person("vera", "viewer"), server.add_person("ada", "annotator")
     before = server.get(M).json()["sequence"]
@@ -715,12 +721,12 @@ def test_states_and_jobs(server, story):
     ), done
     file = server.request("GET", job + "/file", token=viewer)
     assert file.status == 200 and file.body == then and len(then) == done["file"]["bytes"]
-    for who in (other, True):  # it shows what the viewer sees, and is theirs
+    for who in (other, True):  # the viewer's own figure
         assert "file" not in server.request("GET", job, token=who).json()
         assert server.request("GET", job + "/file", token=who).status == 404
     assert server.request("DELETE", job, token=viewer).status == 409
 
-    # A long one is ended by who started it, not by another; it leaves no file.
+    # Only the person who started a long figure can cancel it; it leaves no file.
     long = {**wish, "dpi": 600, "paper": "a3", "format": "tiff", "scale": 0.3}
     for who, ends in ((viewer, viewer), (other, True)):
         started = server.request("POST", F, long, headers={"Prefer": "respond-async"}, token=who)
@@ -736,7 +742,7 @@ def test_states_and_jobs(server, story):
     kept = os.listdir(os.path.join(server.data, "uploads"))
     assert sum(each.endswith(".figure") for each in kept) == 1, kept
 
-    # Edits go on while a figure is drawn; it shows none of them.
+    # Edits are possible while a figure is drawn; the figure shows none of them.
     answers = []
     thread = threading.Thread(
         target=lambda: answers.append(
@@ -762,7 +768,8 @@ def test_states_and_jobs(server, story):
         == answers[0].body
     )
 
-    # What is private shows in no figure of who does not see it: no colour, no legend, no label.
+    # Private content appears in no figure of people who cannot see it: no color, no legend, no
+    # label.
     server.ok("PATCH", M + "/layers/units", {"visibility": "private"})
     svg = figure(server, token=viewer, format="svg", dpi=60).body
     assert b">Units<" not in svg and b">Marks<" in svg

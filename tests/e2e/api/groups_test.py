@@ -1,4 +1,5 @@
-"""Groups of people: each role that a project gives one, the highest that counts, what ends at once when it ends, and what is refused."""
+"""Groups of people: each role that a project gives a group, the highest role, the immediate effect
+of its end, and refusals."""
 import pytest
 from support.browsers import Browser, join, uncoloured
 from support.event_reader import EventReader
@@ -10,7 +11,7 @@ FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
 
 def give(server, project, group, role):
-    """The role, or none any more."""
+    """The role, or no role."""
     if role:
         server.ok("PUT", f"/projects/{project}/groups/{group}", {"role": role})
     else:
@@ -37,7 +38,8 @@ def gus(server, villa):
 
 
 def test_making(server, story):
-    """Made, read, renamed, filled and emptied; what is wrong is told, and changes nothing."""
+    """Groups are created, read, renamed, filled and emptied; invalid requests are refused without
+    effect."""
     made = server.ok("POST", "/groups", {"name": "Students", "members": ["gus", "Vera", "GUS"]})
     students = made.json()
     assert (
@@ -146,7 +148,7 @@ def test_making(server, story):
 
 
 def test_foreign(server, story):
-    """Who is no administrator reads and changes nothing of it; nor do scripts change anything."""
+    """Only administrators can read and change groups; scripts cannot change them."""
     group = story.group
     calls = [
         ("GET", "/groups", None),
@@ -183,7 +185,8 @@ def test_foreign(server, story):
 
 
 def test_ladder(server, gus, villa, story):
-    """By a group a guest may do in the villa what the role says, in turn from nothing to curator and back, and nothing in the forum."""
+    """Through a group a guest has the rights of the role in the villa, from none to curator and
+    back, and none in the forum."""
     group = story.group
     model = "/models/" + villa["model"]["slug"]
     tries = (
@@ -233,7 +236,7 @@ def test_nothing_is_seen_without_a_role(server, gus, villa):
 
 
 def test_the_highest_role_counts(server, gus, story):
-    """Of one's own role and those of one's groups, and where it comes from is told."""
+    """The highest of a person's own role and the roles of groups, with its origin."""
     group = story.group
     diggers = server.ok("POST", "/groups", {"name": "Diggers", "members": ["Gus"]}).json()["id"]
     give(server, "villa", group, "annotator")
@@ -267,7 +270,7 @@ def test_the_highest_role_counts(server, gus, story):
         server.ok("GET", f"/groups/{diggers}").json()["losing"] == 1
         and server.ok("GET", f"/groups/{group}").json()["losing"] == 0
     )
-    # Who may look everywhere is told of a group only where it gives more.
+    # For a person with a role everywhere, a group is listed only if it gives a higher one.
     vera = Someone(server, "Vesta", "viewer")
     server.ok("PATCH", f"/groups/{diggers}", {"add": ["Vesta"]})
     assert projects_of(vera) == {
@@ -275,7 +278,7 @@ def test_the_highest_role_counts(server, gus, story):
         "forum": ("viewer", None),
         "villa": ("curator", ["Diggers"]),
     }
-    # Each way in which it ends counts at once.
+    # Each way to end it takes effect immediately.
     server.ok("PATCH", f"/groups/{diggers}", {"remove": ["gus"]})
     assert projects_of(gus) == {"villa": ("annotator", ["Students"])}
     server.ok("DELETE", f"/groups/{diggers}")
@@ -285,7 +288,8 @@ def test_the_highest_role_counts(server, gus, story):
 
 
 def test_ends_at_once(server, gus, villa, story):
-    """Open connections and readers of events end with what a group gave, by whichever of its ends; who may still come in does so with the role they have now."""
+    """Open connections and event streams end with the group's role, in each way it can end; people
+    who still have a role can reconnect with it."""
     group = story.group
     model = villa["model"]["slug"]
 
@@ -327,7 +331,8 @@ def test_ends_at_once(server, gus, villa, story):
 
 
 def test_coming_and_going(server):
-    """The invited come with groups; the deleted leave them; what was done is told, in each project."""
+    """Invitations can contain groups; deleted people leave them; the activity of each project lists
+    this."""
     group = server.ok("POST", "/groups", {"name": "Season"}).json()["id"]
     give(server, "forum", group, "annotator")
     for groups, status in (

@@ -1,4 +1,5 @@
-"""What the HTTP interface answers to everything but good requests: one table, then the cases that need several steps."""
+"""The answers of the HTTP interface to invalid requests: one table, then the cases with several
+steps."""
 import concurrent.futures
 import json
 import os
@@ -644,7 +645,7 @@ def test_sign_in(server):
     missing = server.get("/models/nowhere").json()
     page = server.get("//problems", token=False).body.decode()
     assert missing["type"] == "/problems#not_found" and 'id="not_found"' in page, missing
-    # The cookie is for this server's own page only.
+    # The cookie is valid only for this server's own page.
     login = server.post(
         "/login", {"token": server.token}, token=False, headers={"Origin": server.url}
     )
@@ -681,7 +682,7 @@ def test_sign_in(server):
 
 
 def test_paths(server):
-    """No address leads out of the page's folder, however it is written."""
+    """No address leads outside the page's folder, however it is encoded."""
     secret = os.path.join(server.data, "secret.txt")
     with open(secret, "w", encoding="ascii") as file:
         file.write("the secret of this test")
@@ -724,7 +725,7 @@ def test_paths(server):
 
 
 def test_sizes(server):
-    """A raster may be as large as its layer; what is larger is refused before it travels."""
+    """A raster may be as large as its layer; a larger one is refused before it is sent."""
     for size, is_refused in (
         (2 * 2048 * 2048 + 128, False),
         (10 << 20, False),
@@ -749,7 +750,7 @@ def test_sizes(server):
 
 
 def test_repeats(server, camera):
-    """An edit with a key is done once; the key belongs to its address."""
+    """An edit with a key is applied once; the key belongs to its address."""
     stroke = {"op": "stroke", "value": 9, "camera": camera, "radius_px": 30, "path": [[320, 240]]}
     key = {"Idempotency-Key": str(uuid.uuid4())}
     first = server.ok("POST", L + "/edits", stroke, headers=key).json()
@@ -776,7 +777,7 @@ def test_repeats(server, camera):
     # without a key: a new edit, which changes nothing
     again = server.ok("POST", L + "/edits", stroke).json()
     assert again["sequence"] == other["sequence"] + 1 and again["texels_changed"] == 0, again
-    # The same for what is no edit.
+    # The same for requests that are not edits.
     key = {"Idempotency-Key": "layer once"}
     made = server.ok("POST", M + "/layers", {"name": "Once"}, headers=key)
     assert (
@@ -798,7 +799,7 @@ def test_repeats(server, camera):
 
 
 def test_import_repeats(server):
-    """An import with a key is done once, also for those who ask again after the server was restarted."""
+    """An import with a key runs once, also if the repeat comes after a restart of the server."""
     scan = folded_grid()
 
     def ask(content=scan):
@@ -849,7 +850,7 @@ def test_versions(server):
     assert server.request("PATCH", M, {"unit": "m"}, headers=tag).status == 412
     assert server.get(M).json()["unit"] == "cm"
     server.ok("PATCH", M, {"unit": "mm"}, headers={"If-Match": changed.headers["ETag"]})
-    # Who names no version is not told of others who change the same thing at once.
+    # Without a version in the request, concurrent changes are not reported.
     with concurrent.futures.ThreadPoolExecutor(8) as people:
         answers = list(
             people.map(
@@ -869,7 +870,7 @@ def things(server):
 
 
 def test_bad_files(server):
-    """A file that cannot be used leaves nothing behind."""
+    """A file that cannot be used leaves no trace."""
     before = things(server)
     good = folded_grid()
     head, _, body = good.partition(b"end_header\n")
@@ -905,7 +906,7 @@ def test_bad_files(server):
 
 
 def test_cancel(server):
-    """Imports are cancelled while they wait and while they run; nothing is left of them."""
+    """Imports are cancelled while they wait and while they run; nothing of them remains."""
     before = things(server)
     large = bumpy_ball(300, 600)
     first, second = [

@@ -1,5 +1,6 @@
-"""Tours over HTTP, and the links of kiosks that show them: who makes them, what a kiosk sees (what is public of its model, read only, through every door of the contract),
-beside whom its cookie counts, and how it ends."""
+"""Tours over HTTP, and the links of kiosks that show them: the rights to make them, the content
+that a kiosk sees (the public part of its model, read only, in every operation of the contract), the
+use of its cookie next to a person's, and its end."""
 import subprocess
 import uuid
 
@@ -63,7 +64,7 @@ def test_tours(server, tokens, story):
     assert (
         ask("carl", "GET", path).json() == ask("carl", "GET", f"{ALL}/{tour['id']}").json() == tour
     )
-    # What one does not see is left out.
+    # Content that a person cannot see is left out.
     seen = ask("vera", "GET", path).json()
     assert seen["stops"][0]["layers"] == ["cracks"] and [
         column["column"] for column in seen["stops"][0]["records"][0]["columns"]
@@ -80,7 +81,7 @@ def test_tours(server, tokens, story):
         ).status
         == 304
     )
-    # What is told may be sent back; versions protect it.
+    # The answer can be sent back; versions protect it.
     again = ask(
         "carl", "PATCH", path, {"stops": tour["stops"]}, headers={"If-Match": '"v1"'}
     ).json()
@@ -94,7 +95,7 @@ def test_tours(server, tokens, story):
         "version": 3,
     }
 
-    # What is wrong is named.
+    # The refusal names the invalid field.
     def stop(**more):
         return {"stops": [{**TOUR["stops"][1], **more}]}
 
@@ -137,7 +138,7 @@ def test_tours(server, tokens, story):
         if "stops" in body:
             told(ask("carl", "POST", ALL, {**TOUR, **body}), 422, field)
     told(ask("carl", "POST", ALL, {**TOUR, "nothing": 1}), 422)
-    # A view or a layer that goes leaves the tour as it is.
+    # Deleting a view or a layer does not change the tour.
     spare = ask(
         "carl", "POST", ALL, {**TOUR, "name": "Spare", "stops": [{**STOP, "view": "east"}]}
     ).json()
@@ -164,7 +165,7 @@ def test_tours(server, tokens, story):
 
 
 def test_links(server, tokens, story):
-    """Who makes, lists and ends them."""
+    """The rights to make, list and revoke them."""
     tour = story.tour
     for who in ("vera", "ada"):
         told(server.post(tour + "/kiosks", {"name": "Hall"}, token=tokens[who]), 403)
@@ -193,7 +194,7 @@ def test_links(server, tokens, story):
         listed.json() == {"kiosks": [kiosk], "total": 1} and secret not in listed.body.decode()
     ), listed
     assert server.get("/kiosks", token=tokens["carl"]).json()["total"] == 1, "a curator everywhere"
-    # A curator of one project has those of it.
+    # A curator of one project sees the kiosks of that project.
     gus = join(server, server.ok("POST", "/users", {"user": "gus", "role": "guest"}).json())
     server.ok("PUT", "/projects/villa/members/gus", {"role": "curator"})
     assert gus.request("GET", "/kiosks").json()["total"] == 0
@@ -222,7 +223,7 @@ def test_a_kiosk_opens_the_doors_of_its_tour_alone(server, site, story):
 
 
 class Screen(Browser):
-    """A kiosk's page: all that it asks says that it is one."""
+    """A kiosk's page: marks all its requests as those of a kiosk."""
 
     def request(self, method, path, body=None, **headers):
         return super().request(
@@ -231,7 +232,7 @@ class Screen(Browser):
 
 
 def test_cookies(server, story):
-    """Whose cookie counts: the kiosk's for what is marked so, the person's for the rest."""
+    """The kiosk's cookie is used for marked requests, the person's for all others."""
     tour = story.tour
     kiosk, secret = make_kiosk(server, tour, "Cookie")
     page = server.get(f"//kiosk/{secret}", token=False)
@@ -269,7 +270,7 @@ def test_cookies(server, story):
         ),
         403,
     )
-    # Without the mark it is nobody, and so is a person's session with it.
+    # Without the mark the kiosk's cookie is not used; with it a person's session is not used.
     told(server.get("/kiosk", token=False, headers={"Cookie": screen.cookie}), 401)
     told(server.get(M, token=False, headers={"Cookie": screen.cookie}), 401)
     dora = join(server, server.ok("POST", "/users", {"user": "dora", "role": "curator"}).json())
@@ -284,9 +285,9 @@ def test_cookies(server, story):
         401,
     )
     told(server.get(M, token=False, headers={"Cookie": "strata_session=" + secret}), 401)
-    told(server.get(M + "?as=kiosk"), 401)  # the owner's token is no kiosk's
+    told(server.get(M + "?as=kiosk"), 401)  # the owner's token is not a kiosk's
     told(server.get(M + "?as=person"), 400, "as")
-    # Both at once: each where it belongs.
+    # With both cookies, each is used for its own requests.
     dora.cookie = session + "; " + screen.cookie
     assert (
         len(dora.ok("GET", M + "/layers").json()["layers"]) == 3
@@ -302,7 +303,7 @@ def test_cookies(server, story):
         200,
         401,
     )
-    # Nobody signs in with it, and guesses are counted.
+    # Nobody can sign in with the secret, and guesses are counted.
     for path, body in (
         ("/login", {"token": secret}),
         ("/invitations/accept", {"invitation": secret, "password": "seven blue herons at noon"}),
@@ -339,7 +340,7 @@ def test_cookies(server, story):
 
 
 def test_heartbeat(server, story):
-    """It is seen, and loads its page anew when it is asked to."""
+    """The list shows the last contact, and a reload on request."""
     kiosk = story.kiosk
     secret = story.cookie_secret
     screen = story.screen
@@ -362,7 +363,7 @@ def test_heartbeat(server, story):
 
 
 def test_live(server, story, camera):
-    """The live connection of a kiosk: it looks, and hears of nobody."""
+    """The live connection of a kiosk: it can look, and gets no names of people."""
     tour = story.tour
     kiosk, secret = make_kiosk(server, tour, "Live")
     cookie = "strata_kiosk=" + secret
@@ -430,13 +431,13 @@ def test_live(server, story, camera):
         ):
             screen.send(message)
             problem = screen.receive_until("problem")
-            assert problem["status"] == 403 and problem["title"] == "Not for kiosks", (
+            assert problem["status"] == 403 and problem["title"] == "Not allowed for kiosks", (
                 message,
                 problem,
             )
         screen.send({"op": "pick", "id": one, "camera": camera, "x": 320, "y": 240})
         heard = [screen.receive_until("picked", "presence", "record.editors")]
-        # What others do is told without their names, and what is not of the model is not told.
+        # Changes of others come without their names; changes outside the model do not come.
         server.ok("PATCH", "/tables/finds/records/1", {"values": {"name": "Find one"}})
         server.ok("POST", M + "/comments", {"text": "Here.", "position": [10, 10, 0]})
         owner.send({"op": "presence", "pointer": [320, 240]})
@@ -461,7 +462,7 @@ def test_live(server, story, camera):
             heard.append(screen.receive_until(*ops))
         assert {message["op"] for message in heard} == {"picked", "layer", "view"}, heard
         assert all("user" not in message for message in heard), heard
-        # Nobody is told of the kiosk.
+        # People do not see the kiosk.
         owner.send({"op": "presence", "pointer": [321, 240]})
         assert {user["name"] for user in owner.receive_until("presence")["users"]} == {"owner"}
         server.ok("DELETE", f"/kiosks/{kiosk['id']}")
@@ -471,7 +472,7 @@ def test_live(server, story, camera):
 
 
 def test_commands(server):
-    """The same from the server's own machine."""
+    """The same commands on the server's own machine."""
 
     def strata(*words, code=0):
         done = subprocess.run(
@@ -533,7 +534,7 @@ def test_a_link_is_good_over_a_restart(server, story):
 
 
 def test_ends(server, story):
-    """Revoked: at once and everywhere; and the link goes with its tour."""
+    """Revocation takes effect everywhere immediately; the link is deleted with its tour."""
     kiosk = story.kiosk
     secret = story.cookie_secret
     screen = story.screen
@@ -543,7 +544,7 @@ def test_ends(server, story):
     told(screen.request("GET", "/kiosk"), 401)
     told(server.get(M, token=secret), 401)
     told(server.post("/auth/kiosk", {"link": secret}, token=False), 401, "link")
-    server.ok("DELETE", f"/kiosks/{kiosk['id']}")  # again is the same
+    server.ok("DELETE", f"/kiosks/{kiosk['id']}")  # a repeat has no effect
     _, other = make_kiosk(server, tour, "Last")
     with LiveClient(server, "sheet", token=other) as connection:
         connection.hello(dpr=1, accept=["jpeg"])

@@ -1,4 +1,5 @@
-"""Lists in pages: while others add and delete, a walk along `next` tells what is there all the time exactly once."""
+"""Lists in pages: while others add and delete, a walk along `next` returns each permanent entry
+exactly once."""
 import base64
 import itertools
 import json
@@ -12,7 +13,7 @@ from support.meshes import folded_grid
 from support.pictures import png
 
 M, T = "/models/sheet", "/tables/units"
-KEPT = 7  # entries of each list that are there all the time
+KEPT = 7  # permanent entries of each list
 
 
 def next_of(answer):
@@ -21,7 +22,7 @@ def next_of(answer):
 
 
 def walk(server, asked, member, limit=2):
-    """All entries of a list, page by page, each behind the last one told."""
+    """Returns all entries of a list, page by page, each after the last returned one."""
     told, pages = [], 0
     target = f"{asked}{'&' if '?' in asked else '?'}limit={limit}"
     while target:
@@ -39,7 +40,7 @@ def walk(server, asked, member, limit=2):
 
 
 class Writer:
-    """Somebody who adds to a list and deletes from it again, as fast as the server answers, all the while."""
+    """Adds to a list and deletes from it as fast as the server answers, until the test ends."""
 
     def __init__(self, churn):
         self.churn, self.stopped, self.rounds, self.failure = churn, threading.Event(), 0, None
@@ -50,7 +51,7 @@ class Writer:
             while not self.stopped.is_set():
                 self.churn(self.rounds)
                 self.rounds += 1
-        except BaseException as failure:  # told by the test's own thread
+        except BaseException as failure:  # the test's own thread reports it
             self.failure = failure
 
     def __enter__(self):
@@ -65,7 +66,7 @@ class Writer:
 
 
 def check_walks(server, asked, member, name_of, kept, churn, in_order=True):
-    """`kept`: what `name_of` says of the entries that stay, in their order."""
+    """`kept`: the names (`name_of`) of the permanent entries, in their order."""
     with Writer(churn) as writer:
         walks = 0
         while walks < 3 or (writer.rounds < 4 and not writer.failure):
@@ -104,7 +105,7 @@ def camera(server):
 
 
 def test_records(server):
-    """Sorted by a column of each kind, both ways, with equal values and with none."""
+    """Sorted by a column of each kind, in both directions, with equal and missing values."""
     values = []
     for n in range(KEPT * 2):
         values.append(
@@ -167,7 +168,7 @@ def test_records(server):
     ):
         whole = [each["key"] for each in server.ok("GET", asked).json()["records"]]
         assert [each["key"] for each in walk(server, asked, "records", limit=2)] == whole, asked
-    # By what is measured on the layer.
+    # By measurements of the layer.
     server.ok(
         "POST",
         M + "/layers/units/edits",
@@ -186,7 +187,7 @@ def test_lists_that_others_write(server, camera):
 
 
 def lists_that_others_write(server, camera):
-    """Each list with how entries are made and deleted, and what tells them apart."""
+    """Returns each list with functions to make, delete and identify its entries."""
 
     def views(kind, body):
         def make(n):
@@ -316,13 +317,13 @@ def check_list(server, asked, member, make, remove, name_of):
     assert len(stays) >= KEPT
 
     def churn(_):
-        # Those that only begin a page end it, too, and go away before the next.
+        # These entries also end a page that they begin, and are deleted before the next page.
         added = [make(next(numbers)) for _ in range(2)]
         for one in added:
             remove(one)
 
     check_walks(server, asked, member, name_of, stays, churn)
-    # One that ended a page is deleted before the next one is read.
+    # The last entry of a page is deleted before the next page is read.
     lost = make(next(numbers))
     whole = [name_of(entry) for entry in server.ok("GET", asked + "?limit=1000").json()[member]]
     place = whole.index(lost) + 1
@@ -343,7 +344,7 @@ def check_list(server, asked, member, make, remove, name_of):
 
 
 def test_edits(server):
-    """Newest first, while others paint: the journal grows at its head."""
+    """Newest first, while others paint: the journal grows at the start of the list."""
     layer = M + "/layers/marks"
     server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8"})
     fill = lambda n: server.ok(
@@ -412,7 +413,7 @@ def encoded(value):
 
 
 def test_nonsense(server):
-    """What is no place in the list is refused, whatever it is."""
+    """Any value that is no place in the list is refused."""
     cursor = next_of(server.ok("GET", T + "/records?limit=1")).partition("after=")[2]
     values = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
     mark = values[0]
@@ -471,7 +472,7 @@ def test_nonsense(server):
         assert answer.status == 422 and answer.json()["field"] == "after", (path, after, answer)
     both = server.get(f"{T}/records?offset=1&after={cursor}")
     assert both.status == 422 and both.json()["field"] == "after", both
-    # Of each list in its own shape, but with what nobody has: it begins or ends there.
+    # In the form of each list, but without a matching entry: the list begins or ends there.
     for path, own in (("/users", ["zzzzz", 99]), (M + "/layers", [-5, 0])):
         link = next_of(server.ok("GET", path + "?limit=1")).partition("after=")[2]
         own_mark = json.loads(base64.urlsafe_b64decode(link + "=" * (-len(link) % 4)))[0]

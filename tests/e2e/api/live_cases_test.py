@@ -1,4 +1,5 @@
-"""The live connection: who is here, bad clients, slow clients, and the server's orderly end."""
+"""The live connection: participants, invalid clients, slow clients, and the server's orderly end.
+"""
 import glob
 import json
 import os
@@ -39,7 +40,7 @@ def wait_for_picture(live, seq):
 
 
 def test_leaving(server):
-    """What the views of many took the system has again when they have left."""
+    """After many viewers leave, the system has their memory again."""
     model = server.get(M).json()
     with ExitStack() as people:
 
@@ -91,7 +92,8 @@ def test_upgrade(server):
 
 
 def test_sign_out(server):
-    """Who signs out is out everywhere: the connections of the session end, those of others live on."""
+    """Signing out ends the session everywhere: its connections end, those of other sessions stay
+    open."""
 
     def sign_in():
         login = server.post(
@@ -131,13 +133,14 @@ def test_sign_out(server):
 
 
 def test_bad_messages(server):
-    """Every invalid fixture of the protocol gets a problem that names the field, and the connection lives on."""
+    """Every invalid fixture of the protocol gets a problem that names the field, and the connection
+    stays open."""
     fixtures = sorted(glob.glob(os.path.join(ROOT, "protocol", "fixtures", "invalid", "*.json")))
     with LiveClient(server, "grid") as live:
         live.send({"op": "camera", "seq": 1})
         assert live.receive_until("problem")["status"] == 422
         live.send({"op": "ack", "frame": 1})
-        assert live.receive_until("problem")["title"] == "Say hello first"
+        assert live.receive_until("problem")["title"] == "Missing hello message"
         live.hello()
         tried = 0
         for file in fixtures:
@@ -220,7 +223,8 @@ def test_bad_messages(server):
 
 
 def test_presence(server):
-    """Who is here: names, colours, pointers with the brush in hand; whom somebody follows, and of cameras only theirs."""
+    """Participants: names, colors, pointers with the brush in use, the followed person, and the
+    camera of that person only."""
     with LiveClient(server, "grid") as one, LiveClient(server, "grid") as two, LiveClient(
         server, "grid"
     ) as three:
@@ -231,7 +235,8 @@ def test_presence(server):
         gone = {}
 
         def heard(live, condition):
-            """What is told once it fulfils the condition; before, it may be of a time when not everybody was there."""
+            """Returns the first presence message that fulfills the condition; earlier ones may lack
+            participants."""
             while True:
                 users = {user["session"]: user for user in live.receive_until("presence")["users"]}
                 if set(sessions) - {gone.get("session")} <= set(users) and condition(users):
@@ -290,7 +295,8 @@ def test_presence(server):
 
 
 def test_colors(server):
-    """Who looks at one model is told apart by colour, as long as there are colours; somebody at two browsers has one."""
+    """People on one model have different colors while there are enough; one person in two browsers
+    has one."""
     tokens = [server.add_person(f"guest{i}", "viewer") for i in range(5)]
     lives = [LiveClient(server, "grid", token=token) for token in [*tokens, tokens[0]]]
     try:
@@ -307,7 +313,7 @@ def test_colors(server):
 
 
 def test_slow_client(server):
-    """Two people who never read do not hold up a third: pictures and saved edits go on."""
+    """Two clients that never read do not delay a third: pictures and saved edits continue."""
     model = server.get(M).json()
     cameras = [
         camera_from(model, [0.05 * turn, 0.2, 1], width=1280, height=720, up=(0, 1, 0))
@@ -349,7 +355,8 @@ def test_slow_client(server):
 
 
 def test_what_was_answered_before_the_end_is_kept(server, story):
-    """SIGTERM in mid-load: what was answered is kept, what is refused is not there, and the exit status is 0."""
+    """SIGTERM under load: answered edits are kept, refused ones do not exist, and the exit status
+    is 0."""
     answered, refused = [], []
     go_on = threading.Event()
 
@@ -389,7 +396,7 @@ def test_what_was_answered_before_the_end_is_kept(server, story):
             while True:
                 live.receive()
         except Closed as closed:
-            assert closed.code in (1001, None), closed.code  # "going away", when it came through
+            assert closed.code in (1001, None), closed.code  # "going away", if it was received
         except OSError:
             pass
     assert server.process.wait(120) == 0

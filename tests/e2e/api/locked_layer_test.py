@@ -1,4 +1,4 @@
-"""Locked layers, over HTTP and live: every way by which texels change is shut to annotators, and open to curators."""
+"""Locked layers, over HTTP and live: annotators cannot change texels in any way, curators can."""
 import hashlib
 import urllib.parse
 import uuid
@@ -33,7 +33,7 @@ def texels(server, layer):
 
 
 def state(server):
-    """What must stay as it is: every layer's texels, its history, and the records."""
+    """Returns the content that must not change: texels and history of all layers, and records."""
     layers = [each["slug"] for each in server.get(M + "/layers").json()["layers"]]
     return (
         {
@@ -55,9 +55,9 @@ def is_refused(answer, name):
     problem = answer.json()
     assert (
         answer.status == 403
-        and problem["detail"] == f"The layer {name} is locked: a curator can unlock it."
+        and problem["detail"] == f"The layer {name} is locked. Ask a curator to unlock it."
     ), answer
-    assert problem["title"] == "Layer locked" and problem["field"] == "layer", answer
+    assert problem["title"] == "Layer is locked" and problem["field"] == "layer", answer
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +107,7 @@ def curator(server):
 
 
 def test_doors(server, annotator, curator, camera):
-    """Over HTTP. Each of them changes something when a curator comes in."""
+    """Over HTTP. Each operation changes texels if a curator calls it."""
     seen = {"camera": camera}
     stroke = {"op": "stroke", "value": 11, **seen, "radius_px": 8, "path": [[300, 200], [340, 220]]}
     first = server.ok("POST", L + "/edits", stroke, token=annotator).json()["sequence"]
@@ -203,7 +203,7 @@ def test_doors(server, annotator, curator, camera):
 
 
 def test_settings(server, annotator, viewer):
-    """What a layer is stays a curator's affair, locked or not."""
+    """Only curators can change a layer's settings, locked or not."""
     for locked in (False, True):
         lock(server, "cracks", locked)
         before = server.get(L).json()
@@ -283,8 +283,8 @@ def test_live(server, annotator, curator, camera):
             )
             return live.receive_until("saved", "problem")
 
-        # The lock falls while she paints: what is saved stays, the rest is refused, and she hears
-        # why.
+        # The layer is locked while she paints: saved parts stay, the rest is refused, and she gets
+        # the reason.
         stroke = begin(ada, 41)
         saved = extend(ada, stroke, 0, [200, 200])
         assert saved["op"] == "saved", saved
@@ -297,8 +297,8 @@ def test_live(server, annotator, curator, camera):
         refused = extend(ada, stroke, 1, [260, 260])
         assert refused["op"] == "problem" and refused["status"] == 403, refused
         assert (
-            refused["title"] == "Layer locked"
-            and "a curator can unlock it" in refused["detail"]
+            refused["title"] == "Layer is locked"
+            and "Ask a curator to unlock it" in refused["detail"]
             and refused["field"] == "layer"
         ), refused
         changes = [
@@ -337,7 +337,7 @@ def test_live(server, annotator, curator, camera):
         again = begin(ada, 45)
         assert extend(ada, again, 0, [210, 300])["status"] == 403
         assert state(server) == before
-        # A curator goes on as if nothing were locked.
+        # A curator can edit as if the layer were not locked.
         assert extend(carl, begin(carl, 46), 0, [320, 320])["op"] == "saved"
         for change in [{"op": "undo"}, {"op": "redo"}] + changes[2:]:
             carl.send({**change, "id": new(), "layer": "cracks"})
@@ -362,7 +362,7 @@ def test_records(server, annotator, curator):
         for path in ("/tables/units/records/1?", M + "/layers/open-units/records/1?"):
             is_refused(server.request("DELETE", path + texels_go, token=annotator), "Units")
             assert state(server) == before, texels_go
-    # It was not retired: it is painted, and changed, as before.
+    # The record was not deleted: it can be painted and changed as before.
     server.ok(
         "POST",
         M + "/layers/open-units/edits",
@@ -370,7 +370,7 @@ def test_records(server, annotator, curator):
         token=annotator,
     )
     server.ok("PATCH", "/tables/units/records/1", {"values": {"name": "One"}}, token=annotator)
-    # Nor makes a map records for a layer that it may not paint.
+    # A map also makes no records for a layer that it may not paint.
     body, headers = geojson(5, 60, 60, 20), {"Content-Type": "application/geo+json"}
     before = state(server)
     is_refused(
@@ -418,12 +418,12 @@ def test_computed(server, annotator, curator):
     )
     server.ok("POST", M + "/layers/twice/compute", token=curator)
     then = texels(server, "twice")
-    # The server itself follows what the layer is computed from: the lock is for people.
+    # The server itself may update the computed layer: the lock is for people.
     server.ok("PATCH", M + "/layers/twice", {"recompute": "automatic"})
     change(31)
     wait_for(lambda: texels(server, "twice") != then, "a locked automatic layer to follow")
     assert server.get(M + "/layers/twice").json()["locked"] is True
-    # Who copies layers to another scan goes on there.
+    # A person who copies layers to another scan can paint the copies.
     server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
     job = server.wait_for_job(
         server.ok(
@@ -440,7 +440,8 @@ def test_computed(server, annotator, curator):
 
 
 def test_repeats(server, annotator):
-    """What was saved before the lock fell is told again, also after a restart."""
+    """A repeat of an edit that was saved before the lock gets its first answer, also after a
+    restart."""
     edit = {"op": "fill", "mode": "where", "where": "cracks > 0", "value": 50}
     send = lambda: server.post(
         L + "/edits", edit, headers={"Idempotency-Key": KEPT}, token=annotator

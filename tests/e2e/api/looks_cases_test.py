@@ -1,4 +1,5 @@
-"""Looks, light, sections and scans of several files, over HTTP and from the command line."""
+"""Surface images (looks), light, sections and scans of several files, over HTTP and from the
+command line."""
 import os
 import subprocess
 import tempfile
@@ -177,7 +178,7 @@ def test_looks(server, camera):
         answer = server.request(method, path, body, headers=headers)
         assert answer.status == status, f"{what}: {answer}"
 
-    # Other formats are kept as a PNG of their pixels, and shown in a frame.
+    # Other formats are stored as a PNG of their pixels, and shown in a frame.
     blue = lambda x, y: (0, 0, 255)
     for name, kind, other in (
         ("tga", "image/x-tga", tga(8, 4, blue)),
@@ -220,9 +221,10 @@ def test_raking(server, camera):
 
 
 def test_section(server, camera):
-    """A stroke's record holds its section: what is cut away takes no paint, and the answer is the same after a repeat."""
+    """A stroke's record contains its section: the removed part gets no paint, and a repeat gets the
+    same answer."""
     server.ok("POST", M + "/layers", {"name": "Inside", "type": "u8", "resolution": 2048})
-    # keeps y above 0: the half that is away from the eye
+    # keeps y above 0: the half on the far side
     cut = {**camera, "section": [[0, 1, 0, 0]]}
     stroke = {
         "op": "stroke",
@@ -275,7 +277,7 @@ def test_several_files(server, folder):
         assert server.ok("GET", f"/models/form/source/{name}").body == content
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)
-    # The command finds what lies beside the mesh by itself, and takes what it is given.
+    # The command finds the files next to the mesh, and accepts named ones.
     for more in ([], ["scan.mtl", "color.png"]):
         words = [
             server.binary,

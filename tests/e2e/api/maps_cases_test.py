@@ -1,4 +1,5 @@
-"""Flat maps painted over a layer: shapefiles, GeoTIFF, scanned maps by their colours. With the refusals, undo and restart."""
+"""Flat maps painted over a layer: shapefiles, GeoTIFF, scanned maps by their colors. With refusals,
+undo and restart."""
 import json
 import os
 import urllib.parse
@@ -9,7 +10,7 @@ from support.meshes import folded_grid
 from support.pictures import pixels, png
 from support.strata_server import wait_for
 
-M = "/models/sheet"  # x and y from 0 to 100, seen whole from above
+M = "/models/sheet"  # x and y from 0 to 100, all visible from above
 POLYGONS = [[square(10, 10, 20)], [square(50, 10, 20), square(55, 15, 5)], [square(10, 60, 30)]]
 TABLE = [
     ("UNIT", "N", 6, ["11", "12", "13"]),
@@ -99,7 +100,7 @@ def test_shapefile(server, story):
     server.ok("POST", units + "/redo")
     assert values(server, units, *places) == [11, 12, None, 13, None]
 
-    # One value for all, from a zip in folders, without its table.
+    # One value for all polygons, from a zip with folders, without the attribute table.
     zipped = packed(
         **{
             "survey/units_shp": files["units_shp"],
@@ -115,7 +116,7 @@ def test_shapefile(server, story):
     )
     assert values(server, units, *places) == [7, 7, None, 7, None]
 
-    # Names of files in no encoding that we know go into the journal like others.
+    # File names in an unknown encoding are written to the journal like others.
     body, headers = form(**files)
     server.ok(
         "POST",
@@ -140,7 +141,7 @@ def test_shapefile(server, story):
         (1, "salt"),
         (4, "crack"),
     ] and points[1]["color"] == "#112233ff", points
-    # Names of numbers, from GeoJSON.
+    # Numbers with names, from GeoJSON.
     feature = {
         "type": "Feature",
         "properties": {"id": 9, "what": "moss"},
@@ -156,7 +157,8 @@ def test_shapefile(server, story):
 
 
 def check_crs_question(server, path, good):
-    """The model has no coordinate system: a map that names one is painted only where the request says that it is the model's."""
+    """The model has no coordinate system: a map with one is painted only if the request confirms
+    that it is the model's."""
     polygons, of_polygons = form(a_shp=good, a_prj=UTM.encode())
     raster = tiff(10, 10, lambda x, y: x, kind="B", scale=10.0, origin=(0, 100), epsg=25830), {
         "Content-Type": "image/tiff"
@@ -197,7 +199,7 @@ def check_crs_question(server, path, good):
             > 0
         )
         server.ok("POST", path + "/undo")
-    assert server.get(M).json()["crs"] == ""  # the answer is for this map alone
+    assert server.get(M).json()["crs"] == ""  # the confirmation is only for this map
 
 
 def test_shapefile_refusals(server):
@@ -239,13 +241,13 @@ def test_shapefile_refusals(server):
             422,
             "do not belong together",
         ),
-        ("cut off", {"a_shp": good[:-20], "a_dbf": table}, {"value": 1}, 422, "cut off"),
+        ("cut off", {"a_shp": good[:-20], "a_dbf": table}, {"value": 1}, 422, "is incomplete"),
         (
             "a table that is cut off",
             {"a_shp": good, "a_dbf": table[:-20]},
             {"value": 1},
             422,
-            ".dbf is cut off",
+            ".dbf is incomplete",
         ),
         ("two maps", {"a_shp": good, "b_shp": good}, {"value": 1}, 422, "a.shp, b.shp"),
         ("no map", {"a_dbf": table, "a_prj": b"x"}, {"value": 1}, 415, "a.dbf is no map by itself"),
@@ -258,7 +260,7 @@ def test_shapefile_refusals(server):
         answer = server.post(query(path + "/polygons", **parameters), body, headers=headers)
         assert answer.status == status and says in answer.json()["detail"], (what, answer)
     for what, body, status, says in [
-        ("an empty zip", packed(notes_md=b"x"), 415, "holds no map"),
+        ("an empty zip", packed(notes_md=b"x"), 415, "contains no map"),
         ("a broken zip", packed(a_shp=good)[:-30], 422, "zip"),
     ]:
         answer = server.post(
@@ -305,7 +307,7 @@ def test_raster(server):
     assert values(server, depth, *places) == [1.0, None, 13.5], values(server, depth, *places)
     server.ok("POST", depth + "/undo")
     assert values(server, depth, *places) == [None, None, None]
-    # A place that is given counts more than its own; a world file beside it, too.
+    # A given place overrides the file's own; so does a world file next to it.
     server.ok("POST", query(depth + "/picture", world="5,0,0,-5,2.5,97.5"), raster, headers=kind)
     assert values(server, depth, (12, 98)) == [1.0] and values(server, depth, (95, 5)) == [None]
     server.ok("POST", depth + "/undo")
@@ -325,7 +327,7 @@ def test_raster(server):
         ("no such band", two, {"band": 3}, 422, "1 to 2"),
         ("band zero", two, {"band": 0}, 422, "band"),
         ("a band and colours", two, {"band": 1, "colors": "auto"}, 422, "not both"),
-        ("colours of numbers", raster, {"colors": "auto"}, 422, "no colours"),
+        ("colours of numbers", raster, {"colors": "auto"}, 422, "instead of colors"),
         (
             "another system",
             tiff(1, 1, lambda x, y: 1, kind="B", scale=1.0, origin=(0, 0), epsg=32633),
@@ -370,7 +372,7 @@ def test_colors(server):
             color = (44, 64, 180)
         return tuple(each + shake for each in color)
 
-    picture = png(100, 100, scanned)  # a pixel a unit; its first row is y = 100
+    picture = png(100, 100, scanned)  # one pixel a unit; its first row is y = 100
     place = "1,0,0,-1,0.5,99.5"
     told = contents(server, picture, {"Content-Type": "image/png"})
     colors = told["colors"]
@@ -409,7 +411,7 @@ def test_colors(server):
 
 
 def look_colors(server, look, *places):
-    """What a camera from above sees at these places of the sheet, unlit."""
+    """Returns the colors that a camera from above sees at these places of the sheet, unlit."""
     answer = server.ok(
         "POST",
         M + "/frame",
@@ -479,7 +481,8 @@ def test_orthophoto(server, story):
     near = lambda a, b: all(abs(x - y) <= 3 for x, y in zip(a, b))
     wanted = [(220, 30, 30), (30, 30, 220), (30, 200, 30), (220, 30, 30), (30, 30, 220)]
     assert all(near(a, b) for a, b in zip(seen, wanted)), seen
-    # The picture ends at x = 80 and y = 20: beyond, nothing of it, and no dark seam before.
+    # The picture ends at x = 80 and y = 20: beyond it is nothing of the picture, and before it no
+    # dark seam.
     bare = look_colors(server, look["id"], (90, 10), (77, 50))
     assert (
         not near(bare[0], plain[0])
@@ -568,7 +571,8 @@ def test_orthophoto(server, story):
 
 
 def test_cancelled_orthophoto(server):
-    """Cancelled while it runs: neither a look nor a file is left, and the same name can be made after it."""
+    """Cancelled while it runs: neither a surface image nor a file remains, and the name can be used
+    again."""
     things = lambda: (
         [look["slug"] for look in server.get(M + "/looks").json()["looks"]],
         os.listdir(os.path.join(server.data, "uploads")),

@@ -1,7 +1,7 @@
-// Thousands of calls that fast-check makes of the contract, good ones and bad ones, against a real
-// server: no answer may be a server's mistake, each must be one that the contract describes for
-// that call, and what the contract forbids must not be carried out. STRATA_SEED repeats a run's
-// calls, STRATA_OPERATION (an operationId) keeps to one operation.
+// fast-check makes thousands of valid and invalid calls of the contract to a real server. No answer
+// may be an internal error, the contract must describe each answer for its call, and the server
+// must not execute calls that the contract forbids. STRATA_SEED repeats a run's calls,
+// STRATA_OPERATION (an operationId) selects one operation.
 import http from "node:http";
 import { fc } from "../support/js/arbitraries.mjs";
 import { calls_of } from "../support/js/calls.mjs";
@@ -10,17 +10,17 @@ import { Site } from "../support/js/site.mjs";
 import { kLong_ms, StrataServer } from "../support/js/strata-server.mjs";
 import { kSpare } from "../support/js/vocabulary.mjs";
 
-// each operation is called early and late, and beside different ones; many more fill what has a
-// limit (looks of a model)
+// each operation is called early and late, and after different ones; many more rounds fill lists
+// that have a limit (looks of a model)
 const kRounds = 5;
-const kCallsInRound = 10; // of each operation
-const kAtOnce = 4; // as many as may download: a fifth would be put off (503)
-// what the server reads of a call that it refuses; larger ones ask first, since it may end the
-// connection
+const kCallsInRound = 10; // for each operation
+const kAtOnce = 4; // the limit of concurrent downloads: the server would refuse a fifth (503)
+// the largest body that the server reads of a refused call; larger ones wait for its permission,
+// since it may end the connection
 const kSmallBody = 60_000;
 const kFewest = 2000;
 
-/** What cannot succeed here, or not surely. */
+/** Operations that cannot succeed here, or not reliably. */
 const kExceptions = {
   live: "it becomes a WebSocket, which live_cases_test.py opens",
   change_password:
@@ -126,7 +126,7 @@ function send({ method, target, headers, body }) {
         answer.on("data", (chunk) => {
           chunks.push(chunk);
           if (answer.headers["content-type"] !== "text/event-stream") return;
-          done(); // it has no end
+          done(); // the stream has no end
           request.destroy();
         });
         answer.on("end", () => {
@@ -166,7 +166,7 @@ async function check(operation, call) {
     );
 }
 
-/** Runs the tasks, some at once. */
+/** Runs the tasks, several at once. */
 async function run_all(tasks) {
   const waiting = [...tasks];
   const work = async () => {

@@ -1,4 +1,5 @@
-"""Every CSV and XLSX that the API gives is a table for pandas as it comes: rows, columns and types, with nothing to be mended."""
+"""pandas reads every CSV and XLSX of the API as a table without corrections: rows, columns and
+types."""
 import io
 import urllib.parse
 
@@ -7,7 +8,7 @@ from support.meshes import folded_grid
 from support.missing import missing
 
 try:
-    import openpyxl  # noqa: F401  (what pandas reads XLSX with)
+    import openpyxl  # noqa: F401  (pandas reads XLSX with it)
     import pandas
 except ImportError as error:
     missing(f"{error}; ./test installs python3-pandas and python3-openpyxl")
@@ -23,7 +24,7 @@ TERMS = "code,parent,label,label-es,color\nloss,,Loss,Pérdida,#c04020\nflaking,
 
 
 class Reader:
-    """Reads as a script of a user would, and knows which operations were read."""
+    """Reads tables as a user's script does, and records which operations were read."""
 
     def __init__(self, server):
         self.server, self.read = server, set()
@@ -55,20 +56,21 @@ class Reader:
 
 
 def whole(frame):
-    """No index that somebody wrote, no nameless or doubled column, no mark before the first name."""
+    """Checks for a written index, for unnamed or doubled columns, and for a byte order mark before
+    the first name."""
     names = [str(name) for name in frame.columns]
     assert not [
         name
         for name in names
         if name.startswith("Unnamed") or name != name.strip("\ufeff ") or name.endswith(".1")
     ], names
-    # no row has more cells than the head
+    # no row has more cells than the header
     assert isinstance(frame.index, pandas.RangeIndex), frame.index
     return frame
 
 
 def kinds(frame):
-    """A letter for the type of each column: integer, float, bool, or O for texts."""
+    """Returns a letter for the type of each column: integer, float, bool, or O for texts."""
     return {name: frame[name].dtype.kind for name in frame.columns}
 
 
@@ -251,7 +253,7 @@ def test_texels(server, reader):
         < 1e-6
     )
     cells = reader.csv("get_texel_lines", WALL + "/layers/moisture/texels.csv", cell="5mm")
-    # The same made of the texels. The wall lies across z = 0, and with it some cells, but no cell
+    # The same computed from the texels. The wall crosses z = 0, and so do some cells, but no cell
     # is left out or counted twice.
     columns = [
         each.groupby([each["x"] // 5, each["y"] // 5])["area_m2"].sum() for each in (frame, cells)

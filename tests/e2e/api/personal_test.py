@@ -1,5 +1,6 @@
-"""What belongs to one person, over HTTP and live: how they show the layers of a model, and the name and colour that they have everywhere. And layers that were computed, which
-are locked until somebody unlocks them to edit them by hand."""
+"""The data of one person, over HTTP and live: the person's own view of a model's layers, the name
+and the color. Also computed layers, which are locked until somebody unlocks them for edits by hand.
+"""
 import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
@@ -65,7 +66,7 @@ def test_personal_views(server):
     assert kept["layers"][1]["opacity"] == 0.25 and kept["layers"][1]["palette"]["points"][0][
         "color"
     ].startswith("#112233"), kept
-    # It is hers, in whatever browser, and nobody else's.
+    # The view is hers in any browser, and nobody else's.
     with LiveClient(server, model="sheet", token=ada) as live:
         assert live.hello()["personal_view"] == kept
     assert (
@@ -75,8 +76,8 @@ def test_personal_views(server):
     assert server.ok("GET", M + "/layers/cracks").json()["order"] == 0
     with LiveClient(server, model="sheet", token=vera) as live:
         assert live.hello()["personal_view"] == {"layers": []}
-    # Viewers keep theirs, too; what one does not see cannot be named, nor is it told once it is not
-    # seen any more.
+    # Viewers also have their own. Layers that a person cannot see cannot be named, and are left out
+    # once they become invisible.
     server.ok("PUT", V, {"layers": [{"layer": "salts", "visible": False}]}, token=vera)
     refused = server.request(
         "PUT", V, {"layers": [{"layer": "secret", "visible": True}]}, token=vera
@@ -93,7 +94,7 @@ def test_personal_views(server):
     assert shown(server, vera) == [] and [each["layer"] for each in shown(server, ada)] == [
         ids["cracks"]
     ]
-    # What does not belong there, and who asks for nothing.
+    # Unknown members and values, and a request without content.
     for body in (
         {"layers": [{"layer": "cracks", "highlight": {"keys": [1]}}]},
         {"layers": [{"layer": "none"}]},
@@ -130,7 +131,8 @@ def test_personal_views(server):
 
 
 def test_order_in_pictures(server):
-    """Somebody's own order is drawn for them: of two layers that cover all the other one is seen."""
+    """Pictures use the person's own order: with two layers that cover everything, the other one is
+    visible."""
     for name, color in (("under", "#ff0000"), ("over", "#0000ff")):
         server.ok(
             "POST",
@@ -199,7 +201,7 @@ def test_computed(server):
         lowest - 2,
     ), height
 
-    # By hand nobody changes them, whoever it is.
+    # Nobody can edit them by hand, with any role.
     for layer, name in (("twice", "Twice"), ("height", "Height")):
         for token in (True, carl, ada):
             for answer in (
@@ -209,9 +211,9 @@ def test_computed(server):
                 assert answer.status == 403 and (
                     answer.json()["title"],
                     answer.json()["field"],
-                ) == ("Layer locked", "layer"), answer
+                ) == ("Layer is locked", "layer"), answer
                 assert "its values were computed" in answer.json()["detail"], answer
-    # The computation itself goes on.
+    # The computation itself continues to work.
     assert fill(server, "wet", 0.5, "x < 50").status == 200
     assert server.ok("POST", M + "/layers/twice/compute", token=carl).json()["locked"] is True
     assert server.get(M + "/layers/twice/statistics").json()["max"] == 1
@@ -221,7 +223,7 @@ def test_computed(server):
     assert refused.status == 422 and refused.json()["field"] == "locked", refused
     assert server.request("PATCH", M + "/layers/twice", {"locked": False}, token=ada).status == 403
 
-    # Unlocked, it is edited by hand, which stays known, and is not computed away.
+    # Unlocked, it can be edited by hand; the layer records this and is not computed again.
     server.ok("PATCH", M + "/layers/twice", {"recompute": "automatic"}, token=carl)
     open_ = server.ok("PATCH", M + "/layers/twice", {"locked": False}, token=carl).json()
     assert (open_["locked"], open_["edited_by_hand"], open_["computed"]) == (
@@ -236,8 +238,7 @@ def test_computed(server):
     assert (
         server.request("POST", M + "/layers/twice/compute?overwrite=true", token=ada).status == 403
     )
-    # An automatic layer that is computed after it, and is seen to be, proves that this one was
-    # passed over.
+    # Another automatic layer that is visibly computed later shows that this one was skipped.
     server.ok(
         "POST",
         M + "/layers",
@@ -268,7 +269,7 @@ def test_computed(server):
     ) and "expression" not in plain, plain
     assert fill(server, "twice", 3, token=ada).status == 200
 
-    # A condition is painted where it holds, and nowhere else.
+    # A condition is painted where it is true, and nowhere else.
     risk = server.ok(
         "POST",
         M + "/layers",
@@ -285,7 +286,7 @@ def test_computed(server):
 
 
 def test_people(server):
-    """One colour and one name, wherever somebody is named."""
+    """One color and one name, wherever a person is named."""
     ida, rob = server.add_person("ida", "curator"), server.add_person("rob", "annotator")
     server.ok("PATCH", "/users/ida", {"full_name": "Ida Roe"})
     me = server.ok("GET", "/me", token=ida).json()
@@ -389,7 +390,7 @@ def test_words(server):
         each["values"]["note"]
         for each in server.ok("GET", f"/tables/finds/records?{query}").json()["records"]
     ]
-    # Terms by the tree, texts by the alphabet of a language.
+    # Terms in the order of the tree, texts by the alphabet of a language.
     assert order("sortby=damage") == ["Apfel", "Öl", "äther", "Zebra", "banane"], order(
         "sortby=damage"
     )
@@ -411,7 +412,7 @@ def test_words(server):
     )
     assert server.get("/tables/finds/records?sortby=note&lang=de%22%3B--").status == 200
 
-    # Words in files; what several are called stands there by its code. The file comes back and
+    # Labels in files; terms with the same label appear with their codes. Importing the file again
     # changes nothing.
     for query in (
         "f=csv",
@@ -453,10 +454,10 @@ def test_words(server):
     ).json()
     assert [(each["line"], each["title"]) for each in report["problems"]] == [
         (3, "Several records"),
-        (4, "No such record"),
+        (4, "Record not found"),
     ], report
 
-    # A title that people choose, which may be a term.
+    # People choose the title column, which may be one of terms.
     assert "title_column" not in server.ok("GET", "/tables/finds").json()
     titled = server.ok("PATCH", "/tables/finds", {"title_column": "damage"}).json()
     assert (

@@ -1,4 +1,5 @@
-"""Roles in one project: what a guest sees of the others (nothing, through every door of the contract), and what each role does in its own."""
+"""Roles in one project: a guest sees nothing of other projects, in every operation of the contract,
+and has the rights of each role in their own."""
 import pytest
 from support.browsers import uncoloured
 from support.live_client import LiveClient, Refused
@@ -33,7 +34,7 @@ def test_nothing_is_seen_without_a_role(server, guest, villa):
 
 
 def test_ladder(server, guest, villa, forum):
-    """In the villa, from nothing to curator and back."""
+    """In the villa, from no role to curator and back."""
     model, table = "/models/" + villa["model"]["slug"], f"/tables/{villa['table']['id']}"
     tries = (
         ("GET", model, None),
@@ -90,7 +91,7 @@ def test_ladder(server, guest, villa, forum):
         ).json()["id"]
     )
     assert imported["state"] == "done", imported
-    # From a model of elsewhere nothing can be brought over.
+    # Nothing can be transferred from a model of another project.
     refused = [
         guest.request("POST", "/models/second/transfer", {"from": source})
         for source in (forum["model"]["slug"], "ghost")
@@ -105,7 +106,7 @@ def test_nothing_is_seen_of_another_project(server, guest, forum):
 
 
 def test_scripts(server, guest, villa):
-    """A token does no more than its own role, in every project."""
+    """A token has at most the rights of its own role, in every project."""
 
     def token(**asked):
         made = guest.ok("POST", "/me/tokens", {"name": "t", "days": 1, **asked}).json()
@@ -131,7 +132,8 @@ def test_scripts(server, guest, villa):
 
 
 def test_both(server, villa, forum):
-    """Who may look everywhere does more where they have a role, and no less elsewhere."""
+    """A person who can view everything has more rights in a project with a role, and no fewer
+    elsewhere."""
     vera = Someone(server, "Vera", "viewer")
     vera.now("villa", "curator")
     vera.ok("PATCH", "/models/" + villa["model"]["slug"], {"credit": "Vera"})
@@ -146,7 +148,7 @@ def test_both(server, villa, forum):
     anne = Someone(server, "Anne", "curator")
     anne.now("villa", "viewer")
     anne.ok("PATCH", "/models/" + villa["model"]["slug"], {"credit": "Anne"})
-    # What is wrong is told.
+    # Errors are reported.
     for body, status in (
         ({"role": "administrator"}, 422),
         ({"role": "guest"}, 422),
@@ -163,7 +165,7 @@ def test_both(server, villa, forum):
 
 
 def test_live(server, guest, villa):
-    """An open connection ends with the role, and another one has the new role."""
+    """An open connection ends with the role; a new one has the new role."""
 
     def look():
         return LiveClient(

@@ -1,4 +1,5 @@
-"""Questions over HTTP: statistics with their parts, of the past, where a condition holds; selections, cross-tables, refusals."""
+"""Queries over HTTP: statistics with their parts, of earlier times, of a condition; selections,
+cross-tables, refusals."""
 import math
 import urllib.parse
 

@@ -1,4 +1,5 @@
-"""Edits that wait for review, over HTTP and live: who decides, what is told to whom, and what is refused."""
+"""Edits that wait for review, over HTTP and live: the right to decide, notifications, and refusals.
+"""
 import hashlib
 import uuid
 
@@ -38,7 +39,7 @@ def entry(server, sequence):
 
 
 class Site:
-    """Anna and Ben annotate, Cleo curates, Vera looks."""
+    """Anna and Ben annotate, Cleo curates, Vera views."""
 
     def __init__(self, server):
         self.server = server
@@ -196,7 +197,7 @@ def test_refusals(site):
     assert server.request("PATCH", L, {"review": "yes"}).status == 422
     assert (texels(server), waiting(server)["total"]) == (then, count)
 
-    # A repeat hears the first answer, and decides nothing.
+    # A repeat gets the first answer, and decides nothing.
     body, key = {"decision": "accept", "all": True}, {"Idempotency-Key": "once"}
     first = server.request("POST", L + "/review", body, headers=key, token=site.cleo)
     again = server.request("POST", L + "/review", body, headers=key, token=site.cleo)
@@ -208,7 +209,7 @@ def test_refusals(site):
         == 422
     )
 
-    # What somebody does not see has no queue for them.
+    # A person has no review queue of layers that they cannot see.
     server.ok(
         "POST",
         M + "/layers",

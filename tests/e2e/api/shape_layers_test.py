@@ -1,4 +1,4 @@
-"""Layers that are computed from the shape, and layers brought over to another version of a scan."""
+"""Layers that are computed from the shape, and layers transferred to another version of a scan."""
 import math
 import random
 import struct
@@ -27,7 +27,7 @@ def ended(server, job):
 
 
 def compute(server, at, kind, **more):
-    """The layer that a recipe makes, with its statistics."""
+    """Creates the layer of a recipe; returns it with its statistics."""
     compute_members = {
         key: more.pop(key)
         for key in ("radius_mm", "distance_mm", "rays", "absolute", "model", "property", "source")
@@ -84,7 +84,7 @@ def test_refusals(server):
     for body, status, field in cases:
         answer = server.post(BALL + "/layers", body)
         assert answer.status == status and answer.json().get("field") == field, (body, answer)
-    # What only the work itself finds out.
+    # Errors that only the job itself finds.
     for body, field in [
         (layer(kind="boundary_distance"), "compute.kind"),
         (layer(kind="model_distance", model="ball"), "compute.model"),
@@ -131,7 +131,7 @@ def test_kinds(server):
     assert abs(statistics["max"] - high) < 0.2 and abs(statistics["mean"]) < 0.5, statistics
     assert absolute["name"] == "absolute height"
 
-    server.ok("PATCH", BALL, {"up": "-z"})  # on its head: what was lowest is highest
+    server.ok("PATCH", BALL, {"up": "-z"})  # upside down: the lowest is now the highest
     _, statistics = compute(server, BALL, "height", absolute=True, name="upside down")
     assert abs(statistics["max"] + low) < 0.2 and abs(statistics["min"] + high) < 0.2, (
         statistics,
@@ -163,8 +163,8 @@ def test_kinds(server):
         mean["palette"]["min"] == -mean["palette"]["max"] and "12 mm" in mean["description"]
     ), mean
     _, gaussian = compute(server, BALL, "gaussian_curvature", radius_mm=12)
-    # Gauss and Bonnet: over a closed surface without holes it sums to 4 pi; a fit over a part of a
-    # wave is not exact.
+    # Gauss and Bonnet: the integral over a closed surface without holes is 4 pi; a fit over a part
+    # of a wave is not exact.
     total = gaussian["mean"] * gaussian["area_m2"] * 1e6 / (4 * math.pi)
     assert abs(total - 1) < 0.1, total
     _, largest = compute(server, BALL, "max_curvature", radius_mm=12)
@@ -185,7 +185,7 @@ def test_kinds(server):
 
 def test_distance(server):
     apart, statistics = compute(server, BALL, "model_distance", model="larger-ball")
-    # The same waves at 51 mm, measured in centimetres there.
+    # The same waves at 51 mm, measured in centimeters there.
     assert (
         apart["unit"] == "mm" and abs(statistics["mean"] + 1) < 0.05 and statistics["max"] < -0.6
     ), (statistics["mean"], statistics["max"])
@@ -206,7 +206,7 @@ def test_undo(server):
     layer, before = compute(server, BALL, "slope", name="to undo")
     path = f"{BALL}/layers/{layer['id']}"
     answer = server.post(path + "/undo")
-    assert answer.status == 403 and answer.json()["title"] == "Layer locked", answer
+    assert answer.status == 403 and answer.json()["title"] == "Layer is locked", answer
     server.ok("PATCH", path, {"locked": False})
     server.ok("POST", path + "/undo")
     assert server.get(path + "/statistics").json()["texels"] == 0
@@ -252,7 +252,7 @@ def test_repeats(server):
 
 
 def with_quality(scan):
-    """A PLY of float positions with a further property: twice the height."""
+    """Returns a PLY with float positions and another property: twice the height."""
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
     vertices = [struct.unpack_from("<3f", body, 12 * i) for i in range(count)]
@@ -288,7 +288,7 @@ def test_vertex_property(server):
         abs(quality["mean"] - 2 * height["mean"]) < 1e-4
         and abs(quality["area_m2"] - height["area_m2"]) < 1e-12
     )
-    # The same numbers from outside, one a line, in the file's order.
+    # The same numbers from a file, one per line, in the order of the scan.
     scan = bumpy_ball()
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
@@ -308,8 +308,8 @@ def test_vertex_property(server):
     )
     server.ok("POST", path + "/undo")
     assert server.get(path + "/statistics").json()["texels"] == 0
-    # Whole numbers are keys: nothing between them, and a vertex without one gives its surroundings
-    # to the others.
+    # Whole numbers are keys: no values between them, and the area around a vertex without a key
+    # goes to its neighbors.
     server.ok("POST", model + "/layers", {"name": "Sides", "type": "u8"})
     sides = "".join("\n" if abs(z) < 10 else ("7\n" if z > 0 else "200\n") for z in heights)
     server.ok("PUT", model + "/layers/sides/vertices.csv?source=ball.ply", sides.encode())
@@ -342,7 +342,8 @@ def test_vertex_property(server):
 
 
 def test_transfer(server):
-    """Classes of height, brought over to a scan of another tessellation, atlas and unit, with the noise of scanning."""
+    """Classes of height, transferred to a scan with another tessellation, atlas and unit, with the
+    noise of scanning."""
     source = server.import_model(bumpy_ball(60, 120), "then.ply", name="Then", unit="mm")
     palette = {
         "mode": "categorical",
@@ -367,7 +368,7 @@ def test_transfer(server):
     job = run(server, "/models/now/transfer", {"from": "then", "tolerance_mm": 1})
     report = job["report"]
     assert report["from"] == source["id"] and report["matched_m2"] / now["area_m2"] > 0.999, report
-    # As they lie on one another: what was computed last is the lowest.
+    # In their order: the layer that was computed last is the lowest.
     assert [layer["name"] for layer in report["layers"]] == ["Slope", "Classes"] and [
         layer["layer"] for layer in report["layers"]
     ] == job["layers"]
@@ -396,11 +397,11 @@ def test_transfer(server):
     )
     print(f"transfer: {len(keys[0])} keys, largest difference of area {100 * worst:.2f} %")
     assert worst < 0.02, worst
-    # Undone like any other edit.
+    # Undo works as for any other edit.
     server.ok("POST", "/models/now/layers/classes/undo")
     assert server.get("/models/now/layers/classes/statistics").json()["texels"] == 0
 
-    # Half of the ball is gone: what lay there is lost, and said to be.
+    # Half of the ball is missing: the report lists its content as lost.
     half = bumpy_ball(97, 211)
     server.import_model(cut_below(half), "half.ply", name="Half", unit="mm")
     job = run(
@@ -433,7 +434,7 @@ def test_the_server_ends_with_a_clean_log(server):
 
 
 def noisy(scan, amplitude):
-    """Every vertex moved by up to `amplitude` along each axis, the same way in every run."""
+    """Moves every vertex by up to `amplitude` along each axis, the same way in every run."""
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
     shake = random.Random(11)
@@ -445,7 +446,7 @@ def noisy(scan, amplitude):
 
 
 def cut_below(scan):
-    """Without the faces below z = 0."""
+    """Removes the faces below z = 0."""
     head, body = scan.split(b"end_header\n", 1)
     count, faces = (
         int(head.split(b"element %s " % name)[1].split()[0]) for name in (b"vertex", b"face")

@@ -1,4 +1,5 @@
-"""https: by the server itself from files, with renewal, and behind nginx with the configuration that ships."""
+"""https: by the server itself from files, with renewal, and behind nginx with the project's
+configuration."""
 import os
 import re
 import shutil
@@ -18,7 +19,7 @@ PASSWORD = "a heron and six otters"
 
 
 def shown_by(server):
-    """Subject of the certificate that a new connection gets."""
+    """Returns the subject of the certificate that a new connection gets."""
     untrusting = ssl.create_default_context()
     untrusting.check_hostname, untrusting.verify_mode = False, ssl.CERT_NONE
     with socket.create_connection((server.host, server.port)) as plain, untrusting.wrap_socket(
@@ -36,7 +37,8 @@ def shown_by(server):
 
 
 def sign_in(server):
-    """Through the page's door; the cookie's whole line. `server.url` is where the browser believes itself."""
+    """Signs in through the page; returns the cookie's whole line. `server.url` is the address that
+    the browser sends."""
     invitation = (
         server.ok("POST", "/users", {"user": "hana", "role": "annotator"})
         .json()["path"]
@@ -65,13 +67,13 @@ def sign_in(server):
 
 
 def check_everything(server):
-    """What a browser and a script do, from signing in to a frame."""
+    """The requests of a browser and of a script, from signing in to a frame."""
     server.import_model(folded_grid(21), "sheet.ply", name="Sheet", unit="mm")
     whole = sign_in(server)
     assert "Secure" in whole and "HttpOnly" in whole, whole
     cookie = whole.split(";")[0]
     assert server.ok("GET", "/me", headers={"Cookie": cookie}, token=False).json()["user"] == "hana"
-    # Larger than any buffer on the way, both ways.
+    # Larger than any buffer on the way, in both directions.
     points = [[x % 100, x // 1000, 0.5] for x in range(100_000)]
     answer = server.ok(
         "POST",
@@ -123,9 +125,9 @@ def test_bad_files(folder):
         capture_output=True,
     )
     cases = [
-        ([chain, folder + "/none"], "none`: there is no such file"),
-        ([folder, key], "there is no such file"),
-        ([key, key], "holds no certificate"),
+        ([chain, folder + "/none"], "none`: the file does not exist"),
+        ([folder, key], "the file does not exist"),
+        ([key, key], "contains no certificate"),
         ([chain, chain], "not the key of the certificate"),
         ([chain, other], "not the key of the certificate"),
         ([chain, make_certificate(folder, "rsa", "rsa")[1]], "not the key of the certificate"),
@@ -176,7 +178,7 @@ def test_https_from_files(folder):
         ) as link:
             assert link.version() == "TLSv1.2"
 
-        # Who forgets the s is told where to go; who speaks no HTTP at all, or not at once, does no
+        # Requests to http:// are redirected; connections without HTTP, or with a late start, do no
         # harm.
         with socket.create_connection((server.host, server.port)) as plain:
             plain.sendall(
@@ -194,7 +196,7 @@ def test_https_from_files(folder):
         assert server.get("/me").status == 200
         silent.close()
 
-        # The command line reaches a server of its own machine, whatever the certificate calls it.
+        # The command line reaches a server on its own machine, with any name in the certificate.
         scan = os.path.join(folder, "cli.ply")
         with open(scan, "wb") as file:
             file.write(folded_grid(5))
@@ -205,13 +207,13 @@ def test_https_from_files(folder):
         )
         assert server.get("/models/cli").status == 200
 
-        # Renewal: the files are written one after the other; new connections get the new one, those
-        # that are open go on.
+        # Renewal: the files are written one after the other; new connections get the new
+        # certificate, open ones stay open.
         with LiveClient(server, "sheet") as live:
             live.hello()
             renewed = make_certificate(folder, "second", "rsa")
             shutil.copy(renewed[0], chain)
-            assert shown_by(server) == "first"  # without its key
+            assert shown_by(server) == "first"  # its key is still missing
             shutil.copy(renewed[1], key)
             wait_for(lambda: shown_by(server) == "second", "the renewed certificate")
             server.tls = trusting(chain)
@@ -229,11 +231,13 @@ def test_https_from_files(folder):
             file.write("not a certificate")
         wait_for(
             lambda: shown_by(server) == "second"
-            and any("stays as it was" in line and chain in line for line in server.log),
+            and any(
+                "keeps its current certificate" in line and chain in line for line in server.log
+            ),
             "the log to tell",
         )
         assert server.stop() == 0
-        server.assert_clean_log(warnings=("the certificate stays as it was",))
+        server.assert_clean_log(warnings=("the server keeps its current certificate",))
 
 
 def nginx_binary():
@@ -283,7 +287,7 @@ def test_https_behind_nginx(folder):
             stderr=subprocess.DEVNULL,
         )
         try:
-            upstream, server.port = server.port, port  # from here on all goes through the proxy
+            upstream, server.port = server.port, port  # from here on all requests use the proxy
             server.tls = trusting(chain)
 
             def answers():

@@ -1,4 +1,5 @@
-"""How answers travel: codings of the page and of the API, their ETags, and what is told about rates and policies."""
+"""The transport of answers: encodings of the page and of the API, their ETags, and headers about
+rates and policies."""
 import gzip
 import re
 
@@ -16,7 +17,7 @@ def server(server):
 
 
 def test_the_page_travels_well(server):
-    """Files of the build come as the build has coded them."""
+    """Files of the build are sent as the build has encoded them."""
     page = server.get("//", token=False, headers={"Accept-Encoding": "gzip, br"})
     script = re.search(rb'src="(/assets/[^"]+\.js)"', page.body)[1].decode()
     plain = server.get("/" + script, token=False)
@@ -74,7 +75,7 @@ def test_answers_of_the_api_travel_well(server):
         assert (
             brotli.headers["Content-Encoding"] == "br" and len(brotli.body) < len(plain.body) / 2
         ), path
-    # An ETag that was read with a coding says the same as the one without.
+    # An ETag of an encoded answer is equivalent to the one without encoding.
     server.ok("PATCH", T, {"description": "x" * 1500})
     for coding in ("identity", "gzip", "br"):
         read = server.get(T, headers={"Accept-Encoding": coding})

@@ -1,4 +1,5 @@
-"""ETags of all reads that the contract says have one: 304 while the answer is the same, and never when it is not."""
+"""ETags of all reads that have one in the contract: 304 while the answer is the same, and never
+after a change."""
 import urllib.parse
 
 import pytest
@@ -27,7 +28,7 @@ OF_QUERY = {
     "/tables/{table}/columns/{column}/classes": "?method=unique",
 }
 LISTS_OF_TERMS = "/tables/{table}/terms"
-# Of a kiosk's cookie; of a sign-in, whose last use changes with each call.
+# A read with a kiosk's cookie; a sign-in's last use changes with each call.
 LEFT_OUT = {"/api/v1/kiosk"}
 TEXT = "a text that makes the answer as long as those that are compressed. " * 30
 
@@ -122,7 +123,7 @@ def address(path):
 
 
 def reads_with_tags(server):
-    """Addresses of all reads of the contract that list 304, below /api/v1."""
+    """Returns the addresses of all reads of the contract that list 304, below /api/v1."""
     paths = [
         path
         for path, item in server.contract.document["paths"].items()
@@ -140,12 +141,12 @@ def once_more(server, asked, tag, **more):
 
 
 def check_all(server, reads):
-    """A second call says that nothing changed, with the same tag, whichever way it names it."""
+    """A second call returns 304 with the same tag, in each form of the header."""
     known = {}
     for path, asked in reads.items():
         first = server.get(asked)
         assert first.status == 200 and first.headers["ETag"], (path, first)
-        if path.startswith("/me/sessions"):  # says when it was used last
+        if path.startswith("/me/sessions"):  # contains its own last use
             continue
         known[asked] = (first.headers["ETag"], first.body)
         tag = first.headers["ETag"]
@@ -165,7 +166,7 @@ def check_all(server, reads):
 
 
 def check_change(server, known, what, must_change):
-    """Whatever is told to be as it was is; and what must have changed is told anew."""
+    """A 304 must be correct, and a changed answer must be sent completely."""
     anew = set()
     for asked, (tag, body) in known.items():
         again = once_more(server, asked, tag)
@@ -188,7 +189,7 @@ def camera(server):
 
 @pytest.fixture(scope="module")
 def known(server, camera):
-    """The tag of each read of the contract, each of which a second read answers with 304."""
+    """Returns the tag of each read of the contract; a second read answers each with 304."""
     return check_all(server, reads_with_tags(server))
 
 
@@ -254,7 +255,7 @@ def test_changes(server, known, camera):
 
 
 def test_past(server):
-    """The past stays as it is while others paint."""
+    """Earlier states do not change while others paint."""
     layer = M + "/layers/finds"
     now = int(server.get(layer + "/statistics").headers["Strata-Sequence"])
     past, present = (server.get(f"{layer}/statistics?at={at}") for at in (now - 1, now))
@@ -268,7 +269,7 @@ def test_past(server):
 
 
 def test_who_asks(server):
-    """What one person read says nothing to another, and what somebody may see is part of it."""
+    """One person's tag is not valid for another; visibility is part of it."""
     ada = server.add_person("eve", "viewer")
     asked = M + "/layers/finds/quantities"
     tag = server.get(asked).headers["ETag"]
@@ -281,7 +282,8 @@ def test_who_asks(server):
 
 
 def test_formats_and_codings(server):
-    """A sheet is no JSON, and each coding is a representation of its own, which 304 names, too."""
+    """A sheet differs from JSON, and each encoding is a separate representation, which 304 also
+    names."""
     asked = T + "/records"
     tags = {
         accept: server.get(asked, headers={"Accept": accept}).headers["ETag"]
@@ -309,7 +311,7 @@ def test_formats_and_codings(server):
 
 
 def test_left_alone(server):
-    """Health and secrets are nobody's to keep."""
+    """Answers with health and secrets may not be cached."""
     for path in ("//livez", "//readyz", "//metrics"):
         answer = server.get(path, token=False)
         assert (
@@ -326,7 +328,7 @@ def test_left_alone(server):
 
 
 def test_a_tag_is_good_until_a_restart(server):
-    """A database may be another one after it."""
+    """The database may be another one after a restart."""
     asked = M + "/layers/finds/statistics"
     tag = server.get(asked).headers["ETag"]
     assert server.stop() == 0

@@ -1,4 +1,4 @@
-"""A project may demand that changes name the version that they were made for (If-Match, 428)."""
+"""A project may require that changes name the version that they are based on (If-Match, 428)."""
 import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
@@ -51,7 +51,8 @@ def make_site(server):
 
 
 def versioned_changes(server):
-    """Changes that the contract lists with 428, below /api/v1, with a body of the contract's own where it has one."""
+    """Returns the changes for which the contract lists 428, below /api/v1, with a body from the
+    contract if it has one."""
     found = []
     for path, item in server.contract.document["paths"].items():
         for method in ("patch", "put", "delete"):
@@ -67,7 +68,7 @@ def versioned_changes(server):
     return found
 
 
-# Where the version of a thing is read, of those that have none of an address of their own.
+# The address that has the version of things without their own address.
 def address_of_version(asked):
     return asked.rpartition("/columns/")[0] or asked
 
@@ -127,7 +128,7 @@ def test_demanded(server, changes):
 
 
 def test_elsewhere(server):
-    """Only what has versions, and only there."""
+    """Only for things with versions, and only in that project."""
     server.ok("POST", T + "/records", {"values": {"name": "More"}})
     server.ok(
         "POST",
@@ -151,7 +152,7 @@ def test_elsewhere(server):
 
 
 def test_roles(server):
-    """Curators of the project decide, not what it is called; others neither."""
+    """Curators of the project can change this setting, but not the name; others neither."""
     server.ok("PATCH", P, {"require_if_match": False}, headers={"If-Match": "*"})
     ann, cleo = server.add_person("ann", "annotator"), server.add_person("cleo", "curator")
     assert server.request("PATCH", P, {"require_if_match": True}, token=ann).status == 403
@@ -167,7 +168,7 @@ def test_roles(server):
     for wrong in ({"require_if_match": "yes"}, {"require_if_match": None}, {"require_if_match": 1}):
         answer = server.request("PATCH", P, wrong, headers={"If-Match": "*"})
         assert answer.status == 422 and answer.json()["field"] == "require_if_match", answer
-    # Who may not change a thing hears that, and not that a version is missing.
+    # Without the right to change a thing the answer is 403, not the missing version.
     assert server.request("PATCH", M, {"name": "x"}, token=ann).status == 403
 
 

@@ -1,4 +1,5 @@
-"""The mesh with the colours of its layers: each vertex has the colour that an unlit picture shows at its place."""
+"""The mesh with the colors of its layers: each vertex has the color of an unlit picture at its
+place."""
 import urllib.parse
 
 import pytest
@@ -26,7 +27,8 @@ def times(matrix, vector):
 
 
 def seen_colors(rows, camera, vertices):
-    """By vertex the colour at its pixel; nothing near an edge of colours, where a picture mixes them."""
+    """Returns the color at each vertex's pixel, without vertices near an edge of colors, where a
+    picture mixes them."""
     seen = {}
     for i, vertex in enumerate(vertices):
         x, y, _, w = times(
@@ -40,7 +42,7 @@ def seen_colors(rows, camera, vertices):
 
 
 def check_as_seen(server, query, at_least, kinds, **frame):
-    """`kinds`: so many colours are there at least, so that the comparison means something."""
+    """`kinds`: the least number of different colors, so that the comparison has meaning."""
     camera = camera_from(server.get(M).json(), (0, 0, 1), SIDE, SIDE, up=(0, 1, 0))
     answer = server.ok(
         "POST",
@@ -130,7 +132,7 @@ def test_colours_are_those_that_are_seen(server):
 
 
 def test_layers_that_are_named_are_drawn_in_their_order(server):
-    # Those that are named, in their order, whether they are visible or not.
+    # The named layers in their order, visible or not.
     server.ok("PATCH", M + "/layers/wet", {"visible": False})
     check_as_seen(server, "colors=layers", 500, 5)
     check_as_seen(server, "colors=layers&layers=units,wet", 500, 3, layers=["units", "wet"])

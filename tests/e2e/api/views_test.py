@@ -1,4 +1,5 @@
-"""Named views over HTTP: what they keep, who may change them, what is left of one when its layers go, events, and what is refused."""
+"""Saved views over HTTP: their content, the rights to change them, the rest of a view after its
+layers are deleted, events, and refusals."""
 import struct
 import uuid
 
@@ -75,7 +76,7 @@ def palette():
 
 @pytest.fixture(scope="module")
 def shown(camera, palette):
-    """What a view keeps."""
+    """Returns the content of a view."""
     return {
         "camera": camera,
         "light": {"mode": "raking", "direction": [1, 0.5, 0.25]},
@@ -124,7 +125,7 @@ def test_a_view_keeps_what_is_shown(server, ask, layer_of, shown, story):
 
 
 def test_everybody_reads_them(server, ask, tokens, camera, story):
-    """By slug and by id; a second one of the name gets a slug of its own."""
+    """By slug and by id; a second view with the name gets another slug."""
     view = story.view
     slug = story.slug
     for who in tokens:
@@ -160,7 +161,7 @@ def test_everybody_reads_them(server, ask, tokens, camera, story):
 
 
 def test_who_made_one_and_curators_change_it(ask, model, story):
-    """The slug stays."""
+    """The slug does not change."""
     view = story.view
     slug = story.slug
     told(ask("bob", "PATCH", f"{ALL}/{slug}", {"name": "Bob's"}), 403)
@@ -214,7 +215,7 @@ def test_what_cannot_be_shown_is_refused_and_named(server, ask, camera, story):
 
 
 def test_a_picture_is_what_the_view_keeps(server, ask, camera, palette):
-    """The frame of a model whose defaults are that."""
+    """Equals the frame of a model with these defaults."""
     light = {"mode": "raking", "direction": [1, 0.5, 0.25]}
     server.ok(
         "POST",
@@ -295,7 +296,7 @@ def test_a_picture_is_what_the_view_keeps(server, ask, camera, palette):
 
 
 def test_what_names_a_column_of_others_is_left_out(server, ask, layer_of, shown, story):
-    """Or one that is not there."""
+    """Also a column that does not exist."""
     slug = story.slug
     server.ok("PATCH", "/tables/units/columns/state", {"visibility": "private"})
     back = ask(

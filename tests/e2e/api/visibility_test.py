@@ -1,4 +1,5 @@
-"""Who sees what: private layers, columns and attachments are not there for viewers and annotators, through every door of the contract."""
+"""Visibility: private layers, columns and attachments do not exist for viewers and annotators, in
+every operation of the contract."""
 import hashlib
 import types
 
@@ -25,7 +26,7 @@ from support.visibility_site import (
 
 
 def still(connection):
-    """A whole picture at rest, as it came."""
+    """Returns the bytes of a whole picture at rest."""
     parts = []
     while True:
         frame = connection.receive_until("frame")
@@ -120,7 +121,7 @@ def test_the_secrets_are_not_there_through_any_door(server, site, role, request)
 
 
 def test_undo_shows_nothing(server, viewer, annotator):
-    """The journal of a table tells nothing of a column that is hidden, and no undo shows it."""
+    """The journal of a table does not contain a hidden column, and no undo shows it."""
     for token in (viewer, annotator):
         answer = server.get("/tables/finds/edits", token=token)
         assert not leaks(answer.body), answer
@@ -132,7 +133,7 @@ def test_undo_shows_nothing(server, viewer, annotator):
 
 
 def test_live(server, viewer, annotator, camera, thread):
-    """An open connection sees what it may from one moment to the next."""
+    """A change of visibility takes effect on an open connection immediately."""
 
     def message(connection, *ops):
         told = connection.receive_until(*ops)
@@ -151,7 +152,7 @@ def test_live(server, viewer, annotator, camera, thread):
             } == {"cracks", "finds"}, welcome
             connection.send({"op": "camera", "seq": 1, "moving": False, **camera})
         before = still(eyes)
-        # Edits of the secret layer are not told, and its records' cells neither.
+        # Edits of the secret layer are not announced, nor are the cells of its records.
         server.ok(
             "POST",
             f"{M}/layers/{LAYER}/edits",
@@ -177,7 +178,7 @@ def test_live(server, viewer, annotator, camera, thread):
                 }
             )
             message(connection, "picked")
-        # It becomes seen, and is gone again.
+        # The layer becomes visible, and is removed again.
         server.ok("PATCH", f"{M}/layers/{LAYER}", {"visibility": "team"})
         shown = hand.receive_until("layer")
         assert shown["event"] == "created" and shown["layer"]["slug"] == LAYER, shown
@@ -236,7 +237,7 @@ def test_live(server, viewer, annotator, camera, thread):
 
 
 def test_sql(server, reader):
-    """Analysts see what everybody sees."""
+    """Analysts see only public content."""
     assert {row["slug"] for row in reader.rows("SELECT slug FROM layers")} == {"cracks", "finds"}
     for view in ("layers", "areas", "edits", "record_edits", '"Finds"'):
         done = reader.run(f"SELECT * FROM {view}")
@@ -250,7 +251,7 @@ def test_sql(server, reader):
 
 
 def test_source(server, viewer, annotator, curator):
-    """The scan's files, its mesh and its pictures in full are a right of their own."""
+    """The scan's files, its mesh and its full pictures need a separate right."""
     doors = [M + "/source/sheet.ply", M + "/vertices.ply"]
     look = server.ok("POST", query(M + "/looks", name="UV"), PNG).json()["slug"]
     doors.append(f"{M}/looks/{look}/picture")
@@ -274,7 +275,8 @@ def test_source(server, viewer, annotator, curator):
 
 
 def test_ladder(server, viewer, annotator, curator, public):
-    """What each role sees of each kind of thing, as it changes; what was seen in the past is hidden, too."""
+    """The content of each kind that each role sees, as it changes; earlier visible states are
+    hidden, too."""
 
     def seen(path):
         return tuple(
@@ -322,7 +324,7 @@ def test_ladder(server, viewer, annotator, curator, public):
                 "plan.png"
                 in str(server.get("/tables/finds/records/1/attachments", token=token).json())
             ) == sees, visibility
-    # Who attaches a file sees it, and says who does.
+    # A person who attaches a file sees it, and chooses its visibility.
     mine = server.ok(
         "POST",
         query("/tables/finds/records/2/attachments", name="mine.png", visibility="private"),
@@ -340,20 +342,20 @@ def test_ladder(server, viewer, annotator, curator, public):
     )
     server.ok("PATCH", path, {"visibility": "team"}, token=annotator)
     assert server.get(path, token=other).status == 200 and seen(path) == (False, True, True)
-    # A cell that is written by who does not see one of its files keeps it.
+    # A cell keeps a hidden file if a person who cannot see it writes the cell.
     cell = server.get("/tables/finds/records/1", token=viewer).json()["values"]["photo"]
     assert len(cell) == 2, "ids of files stay in their cells, and tell nothing"
 
 
 def test_nothing_hidden_shows_through(server):
-    """What more people see is not made of what fewer see, however it is tried."""
+    """Content that more people see cannot be made from content that fewer see, in any way."""
 
     def refused(status, method, path, body, field):
         answer = server.request(method, path, body)
         assert (
             answer.status == status
             and answer.json()["field"] == field
-            and "show through" in answer.json()["title"]
+            and "too many people" in answer.json()["title"]
         ), answer
 
     refused(

@@ -1,4 +1,4 @@
-"""Heads and bodies that are too large, too many, nested without end or cut apart at the wrong place."""
+"""Headers and bodies that are too large, too many, deeply nested, or cut at the wrong place."""
 import re
 import socket
 import threading
@@ -33,10 +33,10 @@ def heads(server, section):
         raw_request(server, head(server, "GET /livez", *[f"X{n}: y" for n in range(2000)])),
     ]
     section.tried(
-        "A head of more than 8 KiB: one field, the address, 2000 fields",
+        "Headers of more than 8 KiB: one field, the address, 2000 fields",
         {status_of(answer) for answer in answers},
         431,
-        "8 KiB a head",
+        "8 KiB of headers for each request",
     )
     doubled = [
         b"Content-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\nGET /livez HTTP/1.1\r\n\r\n",
@@ -54,10 +54,10 @@ def heads(server, section):
     ]
     assert all(answer.count(b"HTTP/1.1 ") == 1 for answer in answers), answers
     section.tried(
-        "A second request hidden behind lengths that contradict each other (smuggling)",
+        "A second request hidden behind contradictory lengths (smuggling)",
         {status_of(answer) for answer in answers},
         400,
-        "such a head or chunk is refused and the connection ended",
+        "the server refuses such headers and chunks, and ends the connection",
         f"{len(doubled)} of them",
     )
     unknown = [
@@ -77,18 +77,18 @@ def heads(server, section):
     ]
     assert all(answer.count(b"HTTP/1.1 ") == 1 for answer in answers), answers
     section.tried(
-        "A second request behind a transfer encoding that others may read differently (smuggling)",
+        "A second request behind a transfer encoding that a proxy may read differently (smuggling)",
         {status_of(answer) for answer in answers},
         {400, 501},
-        "`chunked` alone is known; the connection is ended",
+        "the server accepts only `chunked`, and ends the connection",
         f"{len(unknown)} of them",
     )
     hosts = [b"GET /livez HTTP/1.1\r\n\r\n", b"GET /livez HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"]
     section.tried(
-        "No host, and two",
+        "No Host, and two",
         {status_of(raw_request(server, each)) for each in hosts},
         400,
-        "a request names one",
+        "each request needs exactly one",
     )
     odd = [
         b"nonsense\r\n\r\n",
@@ -100,15 +100,15 @@ def heads(server, section):
         head(server, "TRACE /"),
     ]
     section.tried(
-        "No HTTP, unknown methods, a request to be passed on to elsewhere",
+        "Bytes that are not HTTP, unknown methods, a request for another server",
         {status_of(answer) for answer in (raw_request(server, each) for each in odd) if answer},
         {400, 405},
-        "it is no proxy, and TRACE is unknown",
+        "the server is not a proxy, and does not support TRACE",
     )
 
 
 def refused_first(server, method, path, size, token=True):
-    """Whether a body of that length is refused before any of it was sent."""
+    """Returns the status for a body of that length when the client waits before sending it."""
     return status_of(
         raw_request(
             server,
@@ -124,7 +124,8 @@ def refused_first(server, method, path, size, token=True):
 
 
 def endless(server, path, token=True):
-    """A body in chunks that goes on until the server has had enough: its answer, and the bytes sent."""
+    """Sends an endless body in chunks until the server answers: returns its status, and the bytes
+    sent."""
     chunk = b"10000\r\n" + b" " * 65536 + b"\r\n"
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
         link.sendall(
@@ -172,27 +173,27 @@ def bodies(server, section):
         refused_first(server, "POST", "/models?filename=a.ply", 9 << 30),
     }
     section.tried(
-        "A length over the limit: sign-in, an edit, a raster, a scan",
+        "A declared length above the limit: sign-in, an edit, a raster, a scan",
         declared,
         413,
-        "refused by its head, before anything is read: 1 MiB of JSON, a raster of its layer, 8 GiB of a scan",
+        "refused before the server reads the body: 1 MiB of JSON, a raster as large as its layer, 8 GiB of a scan",
     )
     section.tried(
-        "A large body by somebody who may not send it",
+        "A large body of a client without the right to send it",
         {
             refused_first(server, "POST", "/models?filename=a.ply", 8 << 30, token=False),
             refused_first(server, "PUT", L + "/texels.npy", 1 << 20, token=False),
         },
         401,
-        "who asks is looked at before the body is read, and again after it",
+        "the server checks the rights before it reads the body, and again after it",
     )
     with PeakGrowth(server) as growth:
         answers = [endless(server, "/login", token=False), endless(server, L + "/edits")]
     section.tried(
-        "A body in chunks without end: to sign in, and as an edit",
+        "An endless body in chunks: for sign-in, and as an edit",
         {status for status, _ in answers},
         413,
-        "counted while it comes",
+        "the server counts the bytes as they arrive",
         f"refused within {max(sent for _, sent in answers) >> 20} MiB; {growth.checked(64)}",
     )
     with PeakGrowth(server) as growth:
@@ -202,10 +203,10 @@ def bodies(server, section):
         ]
         nested += [server.post("/login", b"[" * 1_000_000, headers=JSON, token=False)]
     section.tried(
-        "JSON nested 500 000 deep, and a million brackets that never close",
+        "JSON nested 500 000 deep, and a million open brackets",
         statuses(nested),
         422,
-        "32 objects and lists within each other",
+        "32 levels of objects and lists",
         growth.checked(128),
     )
 
@@ -227,7 +228,7 @@ def nested_texts(server, section):
         "Conditions and filters nested a thousand deep, or 100 KB long",
         statuses(answers),
         422,
-        "64 within each other, 4096 characters",
+        "64 levels, 4096 characters",
     )
     geo = {"Content-Type": "application/geo+json"}
     maps = [
@@ -250,7 +251,7 @@ def nested_texts(server, section):
         "GeoJSON, Turtle and RDF/XML nested 5000 deep and more",
         statuses(answers),
         422,
-        "each reader has a depth of its own",
+        "each parser limits the depth",
     )
     concept = (
         b'<s:Concept rdf:about="http://a/b"><s:prefLabel xml:lang="en">%s</s:prefLabel></s:Concept>'
@@ -277,17 +278,17 @@ def nested_texts(server, section):
         ]
     assert not any(b"root:" in answer.body for answer in answers), answers
     section.tried(
-        "XML entities that grow a billion times, or read a file or an address",
+        "XML entities that expand a billion times, or read a file or an address",
         statuses(answers),
         422,
-        "entities of more than plain text are refused before the parser sees them",
+        "the server refuses entities that are not plain text before it parses the file",
         growth.checked(64),
     )
     assert server.get("/tables/files").status == server.get("/tables/deep").status == 404
 
 
 def flood(server, section):
-    """6000 requests on one connection, none of which waits for an answer."""
+    """Sends 6000 requests on one connection without waiting for answers."""
     ask, start = head(server, "GET /livez", token=False), time.monotonic()
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
         answers = []
@@ -301,19 +302,19 @@ def flood(server, section):
         listener.join()
     heard = [int(status) for status in re.findall(rb"HTTP/1\.1 (\d+) ", b"".join(answers))]
     assert len(heard) == 6000 and set(heard) <= {200, 429}, (len(heard), set(heard))
-    # a machine that is busy does not answer faster than that anyway
+    # a busy machine answers fewer
     most = 2000 + 1000 * (time.monotonic() - start)
     section.tried(
         "6000 requests on one connection without waiting",
-        "200 as far as its rate goes, else 429" if heard.count(200) <= most else "200",
-        "200 as far as its rate goes, else 429",
-        "1000 a second and 2000 at once on a connection; 256 requests wait for a worker at most (503)",
+        "200 up to the rate, then 429" if heard.count(200) <= most else "200",
+        "200 up to the rate, then 429",
+        "1000 a second and 2000 at once on each connection; 256 requests wait for a worker at most (503)",
         f"{heard.count(200) // 100 * 100} answered",
     )
     assert server.get(M).status == 200
 
 
 def attempts(server, table):
-    section = table.section("Heads and bodies")
+    section = table.section("Headers and bodies")
     for attempt in (heads, bodies, nested_texts, flood):
         attempt(server, section)

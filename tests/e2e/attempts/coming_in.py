@@ -1,4 +1,5 @@
-"""Coming in without a right to: nothing, what has ended, what was copied, and more than a token may."""
+"""Access without rights: without a secret, with expired or copied ones, and beyond a token's role.
+"""
 from attempts.tools import FILL, L, M, body_for, calls, person, statuses, upgraded
 from support.browsers import PASSWORD, Browser, join, secret_of
 from support.strata_server import wait_for
@@ -7,7 +8,7 @@ from support.strata_server import wait_for
 def nobody(server, section):
     for what, token in (
         ("no session and no token", False),
-        ("a token that nobody was given", "x" * 43),
+        ("an unknown token", "x" * 43),
         ("a token of 5000 characters", "x" * 5000),
     ):
         answers = [
@@ -18,7 +19,7 @@ def nobody(server, section):
             f"Every call of the contract with {what}",
             statuses(answers),
             401,
-            "the secret is asked for before the address is looked at",
+            "the server checks the secret before the address",
             f"{len(answers)} calls",
         )
     headers = [
@@ -29,35 +30,35 @@ def nobody(server, section):
         {"Cookie": "strata_session=" + server.token + "x"},
     ]
     section.tried(
-        "Another kind of authorization, an empty one, a made-up cookie",
+        "Another authorization scheme, an empty token, an invented cookie",
         statuses(server.get(M, token=False, headers=each) for each in headers),
         401,
-        "one scheme and one cookie count",
+        "the server accepts one scheme and one cookie",
     )
     in_address = [
         server.get(f"{M}?{name}={server.token}", token=False)
         for name in ("token", "access_token", "key")
     ]
     section.tried(
-        "The owner's own token, but in the address",
+        "The owner's token in the address",
         statuses(in_address),
         401,
-        "secrets in addresses end up in logs: none is taken from there",
+        "the server accepts no secrets in addresses, because logs contain addresses",
     )
     section.tried(
-        "Upgrade to a live connection with none, an unknown and an empty secret",
+        "Upgrade to a live connection without a secret, with an unknown and with an empty one",
         {
             upgraded(server, token=""),
             upgraded(server, token="x" * 43),
             upgraded(server, token="", cookie="strata_session=", origin=server.url),
         },
         401,
-        "asked before the upgrade",
+        "checked before the upgrade",
     )
 
 
 def doors(server, cookie):
-    """Reading, writing and the live connection with a copied session."""
+    """Reads, writes and opens a live connection with a copied session."""
     headers = {"Cookie": cookie, "Origin": server.url}
     return {
         server.get(M, token=False, headers=headers).status,
@@ -67,7 +68,7 @@ def doors(server, cookie):
 
 
 def replayed_sessions(server, section):
-    """Who copied somebody's cookie tries it after the session has ended."""
+    """A copied cookie is used after its session has ended."""
 
     def other_browser_ends_it(browser, user):
         other = Browser(server)
@@ -83,10 +84,10 @@ def replayed_sessions(server, section):
         wait_for(lambda: doors(server, copied) == {401}, "the session's age to count")
 
     ends = [
-        ("its person signed out", "by1", lambda browser, user: browser.ok("POST", "/logout")),
-        ("it was ended from another browser", "by2", other_browser_ends_it),
+        ("its user signed out", "by1", lambda browser, user: browser.ok("POST", "/logout")),
+        ("it was ended in another browser", "by2", other_browser_ends_it),
         (
-            "a new password was chosen",
+            "a new password was set",
             "by3",
             lambda browser, user: join(
                 server,
@@ -95,12 +96,12 @@ def replayed_sessions(server, section):
             ),
         ),
         (
-            "its person was disabled",
+            "its user was disabled",
             "by4",
             lambda browser, user: server.ok("PATCH", f"/users/{user}", {"disabled": True}),
         ),
         (
-            "its person was deleted",
+            "its user was deleted",
             "by5",
             lambda browser, user: server.ok("DELETE", f"/users/{user}"),
         ),
@@ -118,7 +119,7 @@ def replayed_sessions(server, section):
         + " (read, write, upgrade)",
         answers,
         401,
-        "sessions stand in the database by their digest, and what is remembered of them is forgotten with each change of accounts",
+        "the database stores a digest of each session, and each change of accounts clears the server's cache of sessions",
     )
     browser = person(server, "by6")
     copied = browser.cookie
@@ -127,17 +128,17 @@ def replayed_sessions(server, section):
         "The same after its 90 days",
         doors(server, copied),
         401,
-        "the age is looked up again at the latest after 10 s",
+        "the server checks the age again after 10 s at the latest",
     )
     fixed = Browser(server)
     fixed.cookie = "strata_session=" + "f" * 43
     given = fixed.request("POST", "/login", {"user": "by1", "password": PASSWORD})
     assert given.status == 200
     section.tried(
-        "A session that the attacker chose and planted before somebody signs in",
+        "A session that the attacker sets in a browser before somebody signs in",
         doors(server, "strata_session=" + "f" * 43),
         401,
-        "each sign-in makes a secret of its own",
+        "each sign-in creates a new secret",
     )
 
 
@@ -161,7 +162,7 @@ def script_tokens(server, section):
         "A script's token after it was revoked (read, write, upgrade)",
         tried(made["secret"]),
         401,
-        "as sessions",
+        "as for sessions",
     )
     made = token(days=1)
     assert tried(made["secret"]) == {200, 101}
@@ -169,7 +170,7 @@ def script_tokens(server, section):
         f"UPDATE tokens SET expires = now() - interval '1 second' WHERE id = {made['token']['id']}"
     )
     wait_for(lambda: tried(made["secret"]) == {401}, "the token's age to count")
-    section.tried("The same after its last day", tried(made["secret"]), 401, "as sessions")
+    section.tried("The same after its last day", tried(made["secret"]), 401, "as for sessions")
     weak = token(role="viewer")["secret"]
     writes = [
         ("POST", L + "/edits", FILL),
@@ -180,10 +181,10 @@ def script_tokens(server, section):
         ("POST", M + "/comments", {"text": "x", "position": [1, 1, 0]}),
     ]
     section.tried(
-        "A curator's token for looking, used to change",
+        "A curator's token with the role viewer, used for changes",
         statuses(server.request(method, path, body, token=weak) for method, path, body in writes),
         403,
-        "the lower of the token's role and the person's counts",
+        "the lower role of the token and of its user applies",
     )
     strong = token()["secret"]
     accounts = [
@@ -204,43 +205,43 @@ def script_tokens(server, section):
     ]
     root = server.ok("POST", "/me/tokens", {"name": "root", "days": 1}).json()["secret"]
     section.tried(
-        "A script's token, its person's and the owner's, used on accounts, tokens, roles and passwords",
+        "A script's token of a user and of the owner, used for accounts, tokens, roles and passwords",
         statuses(
             server.request(method, path, body, token=secret)
             for secret in (strong, root)
             for method, path, body in accounts
         ),
         403,
-        "tokens for scripts change no accounts, whatever their role",
+        "tokens for scripts cannot change accounts, with any role",
     )
     section.tried(
-        "A script's token traded for a session in a browser",
+        "A script's token, exchanged for a session in a browser",
         Browser(server).request("POST", "/login", {"token": strong}).status,
         403,
-        "it opens none: a session would outlive it",
+        "refused: a session would outlive the token",
     )
     as_cookie = [
         server.get(M, token=False, headers={"Cookie": "strata_session=" + secret})
         for secret in (strong, root)
     ]
     section.tried(
-        "A script's token as the cookie of a session",
+        "A script's token as the session cookie",
         statuses(as_cookie),
         401,
-        "only the secret of a session counts as cookie",
+        "only the secret of a session is valid as cookie",
     )
     section.tried(
-        "A token stronger than its person",
+        "A token with a higher role than its user",
         ida.request("POST", "/me/tokens", {"name": "t", "role": "administrator"}).status,
         403,
-        "roles are compared when it is made and at each use",
+        "the server compares the roles when it creates the token and at each use",
     )
     server.ok("PATCH", "/users/ida", {"role": "viewer"})
     section.tried(
-        "A token made before its person lost their role",
+        "A token created before its user lost the role",
         statuses(server.request(method, path, body, token=strong) for method, path, body in writes),
         403,
-        "roles are compared when it is made and at each use",
+        "the server compares the roles when it creates the token and at each use",
     )
 
 
@@ -254,20 +255,23 @@ def invitations(server, section):
         )
 
     section.tried(
-        "An invitation after a later one was made", accept(first).status, 401, "one link a person"
+        "An invitation after a later one was created",
+        accept(first).status,
+        401,
+        "one link for each user",
     )
     section.tried(
-        "An invitation as a token, and to sign in by",
+        "An invitation as a token, and for signing in",
         {
             server.get(M, token=second).status,
             Browser(server).request("POST", "/login", {"token": second}).status,
         },
         401,
-        "links are traded for sessions and are no tokens",
+        "links are exchanged for sessions and are not tokens",
     )
     assert accept(second).status == 200
     section.tried(
-        "An invitation followed a second time",
+        "An invitation used a second time",
         statuses(
             [
                 accept(second),
@@ -275,7 +279,7 @@ def invitations(server, section):
             ]
         ),
         401,
-        "it is taken away in the transaction that sets the password",
+        "the transaction that sets the password deletes it",
     )
     old = secret_of(server.ok("POST", "/users/joe/invite").json())
     server.sql("UPDATE tokens SET expires = now() - interval '1 second' WHERE kind = 'invitation'")
@@ -283,7 +287,7 @@ def invitations(server, section):
         "An invitation after its seven days",
         accept(old).status,
         401,
-        "its age is part of the question",
+        "the query checks its age",
     )
     link = server.link.partition("link=")[2]
     server.sql("UPDATE tokens SET expires = now() - interval '1 second' WHERE kind = 'owner_link'")
@@ -291,11 +295,11 @@ def invitations(server, section):
         "The owner's link, a day after the server printed it",
         server.get("//login?link=" + link, token=False).status,
         401,
-        "its age is part of the question; once the owner has a password none is printed",
+        "the query checks its age; once the owner has a password, the server prints no link",
     )
 
 
 def attempts(server, table):
-    section = table.section("Coming in")
+    section = table.section("Access without rights")
     for attempt in (nobody, replayed_sessions, script_tokens, invitations):
         attempt(server, section)

@@ -1,4 +1,4 @@
-"""Files and addresses that lead out of their place, archives that grow, and texts that would be SQL."""
+"""Files and addresses outside their folder, archives that expand, and texts with SQL."""
 import io
 import json
 import os
@@ -16,7 +16,7 @@ PNG = png(8, 8, lambda x, y: (200, 100, 50))
 
 
 def paths(server, section):
-    """Every way to write an address that leads to a file of the server's machine."""
+    """Each spelling of an address of a file on the server's machine."""
     kept = os.path.join(server.data, "secret.txt")
     with open(kept, "w", encoding="ascii") as file:
         file.write("the secret of this test")
@@ -54,10 +54,10 @@ def paths(server, section):
     }
     assert odd <= {400, 404, 503}, odd
     section.tried(
-        "Addresses that lead out of the page's folder: dots plain, escaped once and twice, with NUL, backslashes, overlong UTF-8",
-        f"{len(leaked)} files told",
-        "0 files told",
-        "each part of an address is decoded once and must be a plain name; the file's true place must be in the folder",
+        "Addresses outside the page's folder: dots plain, escaped once and twice, with NUL, backslashes, overlong UTF-8",
+        f"{len(leaked)} files returned",
+        "0 files returned",
+        "the server decodes each part of an address once and accepts only plain names; the file's real path must be in the folder",
         f"{len(targets)} addresses",
     )
 
@@ -71,7 +71,7 @@ def packed(*files):
 
 
 def imported(server, name, body):
-    """How the import ends, and why where it failed."""
+    """Returns the final state of the import, and the reason if it failed."""
     started = server.post(f"/models?filename={name}", body)
     if started.status != 202:
         return str(started.status), ""
@@ -89,10 +89,10 @@ def archives(server, section):
         )
         assert state == "done" and not os.path.exists(outside), (name, state, why)
     section.tried(
-        "A zip whose files are called `../../…` or `/tmp/…` (zip slip)",
+        "A zip with files named `../../…` or `/tmp/…` (zip slip)",
         "imported, nothing outside" if not os.path.exists(outside) else "outside",
         "imported, nothing outside",
-        "unpacked to files without names; what they are called only finds companions",
+        "the server unpacks into files with other names; it uses these names only to find companion files",
     )
     with PeakGrowth(server) as growth:
         states = {
@@ -104,10 +104,10 @@ def archives(server, section):
             )
         }
     section.tried(
-        "A zip that unpacks to 1000 times its size, one of 10 001 files, one in another",
+        "A zip that unpacks to 1000 times its size, one with 10 001 files, one inside another",
         states,
         {"failed"},
-        "100 times its size, 10 000 files, one level",
+        "limits of 100 times its size, 10 000 files and one level",
         growth.checked(512),
     )
     scene = {
@@ -148,10 +148,10 @@ def archives(server, section):
     )
     assert not any("root:" in why for _, why in ends), ends
     section.tried(
-        "A glTF that keeps its data in `file:///etc/passwd`, `../…` or at an address",
+        "A glTF with its data in `file:///etc/passwd`, `../…` or at a URL",
         {state for state, _ in ends[:4]},
         {"failed"},
-        "companions are looked for among the files that were sent; the server opens no address",
+        "the server searches companion files only among the uploaded files, and opens no URL",
     )
     hollow = [
         b'{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}',
@@ -170,17 +170,17 @@ def archives(server, section):
         )[0]
     )
     section.tried(
-        "Scans that lie: circles of nodes, a million brackets, two milliard vertices in a small file",
+        "Scans with false data: cycles of nodes, a million brackets, two billion vertices in a small file",
         {end for end in ends if end != "400"},
         {"failed"},
-        "counts are held against the bytes that are there before anything is allocated; all readers are fuzzed",
+        "the server compares counts with the size of the file before it allocates memory; all readers are fuzzed",
     )
     left = os.listdir(os.path.join(server.data, "uploads"))
     section.tried(
-        "What all these leave behind",
+        "Files and models left by these attempts",
         f"{len(left)} files, {server.get('/models').json()['total']} model",
         "0 files, 1 model",
-        "an import is one transaction, and its files go with it",
+        "an import is one transaction, and its files are deleted with it",
     )
 
 
@@ -210,10 +210,10 @@ def attached(server, section):
     }
     assert ways == {"inline; filename*="}, ways
     section.tried(
-        "Files of records called `../../x`, with line breaks, with turned writing",
-        "kept by the last part of their names",
-        "kept by the last part of their names",
-        "names are cleaned, and stand in no path: files lie in the database",
+        "Files of records named `../../x`, with line breaks, with reversed text",
+        "stored under the last part of their names",
+        "stored under the last part of their names",
+        "the server cleans the names and uses them in no path: the database stores the files",
         f"{len(kept)} names",
     )
     running = [
@@ -234,7 +234,7 @@ def attached(server, section):
         "HTML, SVG and PDF with scripts, sent as pictures",
         {answer.headers["Content-Security-Policy"] for answer in read},
         {"sandbox; default-src 'none'"},
-        "types are told by bytes; all is shown in a sandbox, and saved unless it is a picture or PDF",
+        "the first bytes decide the type; browsers show files in a sandbox, and download them unless they are pictures or PDF",
     )
     bomb = bytearray(PNG)
     bomb[16:24] = (2**31 - 1).to_bytes(4, "big") * 2
@@ -244,10 +244,10 @@ def attached(server, section):
         ][0]["id"]
         status = server.get(f"/attachments/{id}?thumbnail=256").status
     section.tried(
-        "A picture that says it is 2 147 483 647 pixels wide, and its thumbnail",
+        "The thumbnail of a picture with a declared width of 2 147 483 647 pixels",
         status,
         422,
-        "sizes are looked at before pixels",
+        "the server checks the size before it decodes pixels",
         growth.checked(64),
     )
 
@@ -296,13 +296,13 @@ def sql(server, section):
         "SQL as filter, order, condition, key, address and name",
         f"refused, record is `{kept}`",
         "refused, record is `stays`",
-        "expressions are parsed by a grammar of their own; values are parameters, identifiers are numbers of the server's",
+        "a separate grammar parses expressions; values are parameters, and identifiers are numbers from the server",
         f"{len(answers)} calls",
     )
 
 
 def repeated(server, section):
-    """Idempotency keys of others."""
+    """Idempotency keys of other users."""
     nia = server.add_person("nia", "annotator")
     key = {"Idempotency-Key": "somebody's"}
     first = server.post(T + "/records", {"values": {"note": "owner's"}}, headers=key)
@@ -314,19 +314,19 @@ def repeated(server, section):
     )
     other = server.post(T + "/records", {"values": {"note": "owner's"}}, headers=key, token=nia)
     section.tried(
-        "Somebody else's Idempotency-Key with the same call, to hear their answer",
-        "an answer of its own"
+        "Another user's Idempotency-Key with the same call, to get that user's answer",
+        "a new answer"
         if "Idempotency-Replayed" not in other.headers
         and other.json()["key"] != first.json()["key"]
         else "theirs",
-        "an answer of its own",
-        "a key is its person's, method's and address's",
+        "a new answer",
+        "a key belongs to one user, method and address",
     )
     section.tried(
         "The same key with another body",
         server.post(T + "/records", {"values": {"note": "another"}}, headers=key).status,
         422,
-        "what was asked is kept with the key by its digest",
+        "the key is stored with a digest of the request",
     )
 
 

@@ -1,4 +1,4 @@
-"""Pages of elsewhere that use the session of whoever opens them, and what their browsers are told."""
+"""Pages of other sites that use a visitor's session, and the answers to their browsers."""
 import json
 import urllib.parse
 
@@ -17,8 +17,8 @@ def changing(server, section, cookie):
 
     for what, headers in (
         ("a foreign Origin", {"Origin": FOREIGN}),
-        ("none (an old browser)", {}),
-        ("`null` (a frame in a sandbox)", {"Origin": "null"}),
+        ("no Origin (an old browser)", {}),
+        ("`null` (a sandboxed frame)", {"Origin": "null"}),
     ):
         answers = [ask(method, path, **headers) for method, path in calls(server, CHANGES)]
         there = [answer for answer in answers if answer.status != 404]
@@ -30,8 +30,8 @@ def changing(server, section, cookie):
             f"Every changing call of the contract with the owner's cookie and {what}",
             statuses(there),
             403,
-            "Origin must be the server's own where a cookie signs",
-            f"{len(there)} calls; {len(answers) - len(there)} of things that are not there: 404",
+            "with a cookie, Origin must be the server's own",
+            f"{len(there)} calls; {len(answers) - len(there)} of missing things: 404",
         )
     lookalikes = [
         server.url + ".example",
@@ -46,13 +46,13 @@ def changing(server, section, cookie):
         " ",
     ]
     section.tried(
-        "Origins that look like the server's own",
+        "Origins similar to the server's own",
         statuses(ask("POST", L + "/undo", Origin=origin) for origin in lookalikes),
         403,
-        "compared as a whole",
+        "the server compares the whole Origin",
         f"{len(lookalikes)} of them",
     )
-    # What a form sends without asking first.
+    # The requests that a form sends without a preflight.
     body = json.dumps({"name": "Taken over"}).encode()
     answers = [
         server.request(
@@ -73,31 +73,31 @@ def changing(server, section, cookie):
         "Forms of other pages: JSON sent as urlencoded, as text, as multipart, without a type",
         statuses(answers),
         403,
-        "the type of a body is no way around Origin",
+        "the check of Origin is independent of the body's type",
     )
     method = {"X-HTTP-Method-Override": "DELETE", "X-Method-Override": "DELETE"}
     section.tried(
-        "DELETE in disguise: a header or a parameter beside GET and POST",
+        "DELETE as a header or a parameter of GET and POST",
         {
             ask("POST", "/projects/default", Origin=server.url, **method).status,
             ask("GET", M + "?_method=DELETE").status,
         },
         {400, 405},
-        "no such headers are known, and unknown parameters refused",
+        "the server ignores such headers and refuses unknown parameters",
     )
     assert server.get(L).status == 200
     section.tried(
-        "Signing somebody in as somebody else, from another page",
+        "Signing a visitor in as another user, from another page",
         server.post(
             "/login", {"token": server.token}, token=False, headers={"Origin": FOREIGN}
         ).status,
         403,
-        "Origin is compared for sign-in, too, where a browser says it",
+        "the server also checks Origin for sign-in, if the browser sends it",
     )
 
 
 def listening(server, section, cookie):
-    """What a foreign page gets to read."""
+    """The data that a foreign page can read."""
     origins = {
         upgraded(server, token="", cookie=cookie, origin=origin)
         for origin in (
@@ -109,10 +109,10 @@ def listening(server, section, cookie):
         )
     }
     section.tried(
-        "A live connection with the visitor's cookie, Origin foreign, `null`, like ours, ours by https or absent",
+        "A live connection with the visitor's cookie and a foreign, `null`, similar, https or missing Origin",
         origins,
         403,
-        "compared before the upgrade; tokens without Origin are for scripts",
+        "checked before the upgrade; only tokens of scripts need no Origin",
     )
     preflight = raw_request(
         server,
@@ -122,10 +122,10 @@ def listening(server, section, cookie):
     grants = (preflight.decode() + str(read.headers)).lower().count("access-control-")
     assert preflight.startswith(b"HTTP/1.1 204 "), preflight
     section.tried(
-        "Asking for leave to read across origins (CORS)",
-        f"{grants} leaves given",
-        "0 leaves given",
-        "no Access-Control header is ever sent, and `Cross-Origin-Resource-Policy: same-origin` always",
+        "A request for permission to read across origins (CORS)",
+        f"{grants} permissions",
+        "0 permissions",
+        "the server sends no Access-Control header, and always `Cross-Origin-Resource-Policy: same-origin`",
     )
     assert read.headers["Cross-Origin-Resource-Policy"] == "same-origin"
     page = server.get("//", token=False)
@@ -137,43 +137,43 @@ def listening(server, section, cookie):
         and page.headers["X-Content-Type-Options"] == "nosniff"
     ), page.headers
     section.tried(
-        "Our page in a frame of theirs",
+        "Strata's page in a frame of another site",
         "frame-ancestors 'none'",
         "frame-ancestors 'none'",
-        "Content-Security-Policy of each answer; no inline script and nothing from elsewhere either",
+        "Content-Security-Policy of each answer, which also forbids inline scripts and content of other sites",
     )
     whole = server.post("/login", {"token": server.token}, token=False).headers["Set-Cookie"]
     assert all(word in whole for word in ("HttpOnly", "SameSite=Strict", "Path=/")), whole
     section.tried(
-        "A script that reads the cookie, a link that takes it along",
+        "A script that reads the cookie, a link that sends it",
         "HttpOnly, SameSite=Strict",
         "HttpOnly, SameSite=Strict",
-        "the cookie itself; `Secure`, too, where the page came by https",
+        "attributes of the cookie; also `Secure` if the page was loaded by https",
     )
 
 
 def hosts(server, section, cookie):
-    """A name of theirs that leads to our address (DNS rebinding), and other tricks with Host."""
+    """A foreign name that resolves to the server's address (DNS rebinding), and other Hosts."""
     rebound = {"Host": "evil.example:8080", "Origin": "http://evil.example:8080"}
     answers = [
         server.get(M, token=False, headers=rebound),
         server.request("PATCH", M, {"credit": "x"}, token=False, headers=rebound),
     ]
     section.tried(
-        "A foreign name that was made to lead to our address, as Host and Origin",
+        "A foreign name that resolves to the server's address, as Host and Origin",
         statuses(answers),
         421,
-        "names are held against those of --origin and the machine's own",
+        "the server accepts only the names of --origin and of the machine",
     )
     section.tried(
-        "Our cookie with a foreign Host",
+        "The server's cookie with a foreign Host",
         server.post(
             L + "/undo",
             token=False,
             headers={"Cookie": cookie, "Origin": server.url, "Host": "evil.example"},
         ).status,
         421,
-        "the same, before anything else",
+        "the same, before all other checks",
     )
     evil = "http://evil.example"
     answers = [
@@ -193,10 +193,10 @@ def hosts(server, section, cookie):
         answer for answer in answers if evil.encode() in answer.body or evil in str(answer.headers)
     ]
     section.tried(
-        "Host and X-Forwarded-Host of theirs, to get links that lead there",
+        "A foreign Host and X-Forwarded-Host, to get links to another site",
         f"in {len(found)} of {len(answers)} answers",
         "in 0 of 4 answers",
-        "links are paths; no address is made of Host, but where plain http is sent on to https",
+        "links are paths; the server uses Host only in the redirect from http to https",
     )
     target = urllib.parse.quote("\r\nSet-Cookie: strata_session=x\r\n\r\n<script>", safe="")
     split = [
@@ -210,15 +210,15 @@ def hosts(server, section, cookie):
     ]
     assert not any("Set-Cookie" in answer.headers for answer in split), split
     section.tried(
-        "Line breaks in addresses, to write headers of the answer",
-        f"{sum('Set-Cookie' in answer.headers for answer in split)} headers written",
-        "0 headers written",
-        "what is told back in a header is encoded anew",
+        "Line breaks in addresses, to add headers to the answer",
+        f"{sum('Set-Cookie' in answer.headers for answer in split)} headers added",
+        "0 headers added",
+        "the server encodes values that it returns in headers",
     )
 
 
 def attempts(server, table):
-    section = table.section("Pages of elsewhere")
+    section = table.section("Pages of other sites")
     cookie = owner_browser(server).cookie
     for attempt in (changing, listening, hosts):
         attempt(server, section, cookie)

@@ -1,4 +1,5 @@
-"""Guessing names, passwords and links. The server listens on this machine only, so it believes its proxy's X-Forwarded-For: each attempt comes from an address of its own."""
+"""Guesses of names, passwords and links. The server listens only on this machine, so it trusts the
+X-Forwarded-For of its proxy: each attempt has a different address."""
 import concurrent.futures
 import itertools
 import time
@@ -8,10 +9,10 @@ from support.browsers import PASSWORD
 from support.process_memory import PeakGrowth
 from support.strata_server import wait_for
 
-MOST = 400  # tries, when nothing slows them down
-HANDS = 2  # as many as the server hashes passwords for at once: more would be refused for that
-OF_ADDRESS = "60 at once, then two a second, from an address"
-FASTEST_SHARE = 0.25  # of the time that a known name takes
+MOST = 400  # number of guesses without a limit
+HANDS = 2  # concurrent guesses: the server hashes that many passwords at once, and refuses more
+OF_ADDRESS = "60 at once, then two a second, for each address"
+FASTEST_SHARE = 0.25  # of the time for a known name
 
 
 def sign_in(server, user, password, address):
@@ -33,11 +34,12 @@ def token_guess(server, address):
 
 
 def is_slowed(answer):
-    return answer.status == 429 and b"too many tries" in answer.body
+    return answer.status == 429 and b"too many attempts" in answer.body
 
 
 def until_slowed(tries):
-    """The answers until one is 429; several at a time, since each password takes the server a while."""
+    """Returns the answers up to the first 429; asks several at once, because each password takes
+    the server some time."""
     answers = []
     with concurrent.futures.ThreadPoolExecutor(HANDS) as hands:
         for batch in zip(*[iter(tries)] * HANDS):
@@ -49,11 +51,12 @@ def until_slowed(tries):
 
 
 def let_through(answers):
-    return f"{sum(answer.status != 429 for answer in answers)} looked at"
+    return f"{sum(answer.status != 429 for answer in answers)} checked"
 
 
 def while_slowed(guess, ask, expected):
-    """The answer to `ask` right after a guess was held up; again where the limit had let one through meanwhile."""
+    """Returns the answer to `ask` right after a limited guess; repeats it if the limit has allowed
+    a guess in between."""
 
     def tried():
         if not is_slowed(guess()):
@@ -61,7 +64,7 @@ def while_slowed(guess, ask, expected):
         answer = ask()
         return answer if answer.status == expected else None
 
-    return wait_for(tried, f"{expected} while guesses are held up")
+    return wait_for(tried, f"{expected} while guesses are limited")
 
 
 def passwords(server, section):
@@ -73,27 +76,27 @@ def passwords(server, section):
 
     answers = until_slowed(guess for _ in range(MOST))
     section.tried(
-        "Passwords for one name from one address",
+        "Guesses of one user's password from one address",
         statuses(answers),
         {401, 429},
-        "10 at once, then one in 10 s, for a name from an address",
+        "10 at once, then one in 10 s, for each name from an address",
         let_through(answers),
     )
     right = while_slowed(guess, lambda: sign_in(server, "vera", PASSWORD, "10.1.0.1"), 429)
     assert right.headers["Retry-After"], right
     section.tried(
-        "… and then the right one from there",
+        "… and then the right one from that address",
         right.status,
         429,
-        "as long as guesses from that address are too many, its own person waits, too",
+        "while there are too many guesses from that address, the user also waits there",
     )
     section.tried(
-        "… and from somewhere else meanwhile",
+        "… and at the same time from another address",
         sign_in(server, "vera", PASSWORD, "10.1.0.2").status,
         200,
-        "the name is slowed down at the guesser's address first",
+        "the limit of a name applies first to the address of the guesses",
     )
-    # Tokens cost the server no hash, so that a slow machine reaches the address's limit, too.
+    # The server hashes no tokens, so a slow machine also reaches the address's limit.
     answers = until_slowed(lambda: token_guess(server, "10.1.0.3") for _ in range(MOST))
     section.tried(
         "Guesses of the owner's token from one address",
@@ -108,9 +111,9 @@ def passwords(server, section):
         )
     assert 429 in statuses(answers) and statuses(answers) <= {401, 429}, answers
     section.tried(
-        "… and one password for 20 names from there",
-        "held up",
-        "held up",
+        "… and one password for 20 names from that address",
+        "limited",
+        "limited",
         OF_ADDRESS,
         let_through(answers),
     )
@@ -118,16 +121,17 @@ def passwords(server, section):
         lambda n=n: token_guess(server, f"10.9.{n // 250}.{n % 250}, 10.1.0.4") for n in range(MOST)
     )
     section.tried(
-        "… with other addresses made up before it in X-Forwarded-For",
+        "… with invented addresses before it in X-Forwarded-For",
         statuses(answers),
         {401, 429},
-        "the last address of the header counts, and only of a proxy on this machine",
+        "only the last address of the header counts, and only from a proxy on this machine",
         let_through(answers),
     )
 
 
 def many_addresses(server, section):
-    """A net of machines guesses one person's password. Some of the tries are of the kind that costs no hash, so that a busy machine reaches the limit, too."""
+    """Many machines guess one user's password. Some of the guesses need no hash, so that a busy
+    machine also reaches the limit."""
     rosa = person(server, "rosa", "viewer")
     assert sign_in(server, "rosa", PASSWORD, "10.2.0.1").status == 200
     numbers = itertools.count(1)
@@ -146,33 +150,33 @@ def many_addresses(server, section):
     assert statuses(quick) == {422}, quick
     answers = quick + until_slowed(guess for _ in range(MOST))
     section.tried(
-        "One name from dozens of addresses, a try from each, signing in (401) and with a copied session (422)",
+        "One name from dozens of addresses, one guess from each, by signing in (401) and with a copied session (422)",
         statuses(answers),
         {401, 422, 429},
-        "60 at once, then one in 2 s, for a name from everywhere",
+        "60 at once, then one in 2 s, for each name from all addresses",
         let_through(answers),
     )
     known = while_slowed(guess, lambda: sign_in(server, "rosa", PASSWORD, "10.2.0.1"), 200)
     section.tried(
-        "… and meanwhile the person herself, where she signed in before",
+        "… and at the same time the user, at an address with an earlier sign-in",
         known.status,
         200,
-        "whoever was right from an address is not held up there by others",
+        "guesses of others do not affect an address from which the user has signed in",
     )
     homes = itertools.count(1)
     new = while_slowed(
         guess, lambda: sign_in(server, "rosa", PASSWORD, f"10.4.0.{next(homes)}"), 429
     )
     section.tried(
-        "… and from an address where she never was",
+        "… and the user, at a new address",
         new.status,
         429,
-        "**she waits** with the guessers, until they stop; sessions that are open go on",
+        "**the user waits** until the guesses stop; open sessions still work",
     )
 
 
 def links(server, section):
-    """Secrets of 256 bits, whose guesses are slowed down all the same."""
+    """Secrets of 256 bits, whose guesses are limited nevertheless."""
     zoe = person(server, "zoe", "viewer")
     stolen = {"Cookie": zoe.cookie, "Origin": server.url, "X-Forwarded-For": "10.5.0.1"}
     answers = until_slowed(
@@ -185,10 +189,10 @@ def links(server, section):
         for n in range(MOST)
     )
     section.tried(
-        "The password that somebody has now, with their session at hand",
+        "A user's current password, with a copied session",
         statuses(answers),
         {422, 429},
-        "as signing in: 10 at once, then one in 10 s",
+        "as for signing in: 10 at once, then one in 10 s",
         let_through(answers),
     )
     away = {"X-Forwarded-For": "10.5.0.3", "Origin": server.url}
@@ -197,7 +201,7 @@ def links(server, section):
         for _ in range(MOST)
     )
     section.tried(
-        "Guesses of links of kiosks",
+        "Guesses of kiosk links",
         statuses(answers),
         {401, 429},
         "256 random bits; " + OF_ADDRESS,
@@ -216,8 +220,8 @@ def links(server, section):
         "Guesses of invitations",
         statuses(answers),
         401,
-        "256 random bits; **not slowed down**",
-        "all of 100 looked at",
+        "256 random bits; **no limit**",
+        "all 100 checked",
     )
     answers = until_slowed(
         lambda: server.get(
@@ -235,7 +239,7 @@ def links(server, section):
 
 
 def names(server, section):
-    """Whether an answer tells who has an account."""
+    """Whether an answer shows which names have an account."""
     person(server, "yara", "viewer")
 
     def timed(user, n):
@@ -253,11 +257,11 @@ def names(server, section):
     ), f"an unknown name takes {unknown:.4f} s, a known one {known:.4f} s"
     bodies = {answer.body for each in tries.values() for _, answer in each}
     section.tried(
-        "Names that have an account, told by the answer or by how long it takes",
+        "Finding names with an account, by the answer or by its time",
         f"{told_status(tries)}, {len(bodies)} wording",
         "401, 1 wording",
-        "a password is hashed for unknown names, too",
-        f"the quickest of 4: unknown {unknown / known:.1f} times known (held to {FASTEST_SHARE})",
+        "the server also hashes a password for unknown names",
+        f"the fastest of 4: unknown {unknown / known:.1f} times known (limit {FASTEST_SHARE})",
     )
 
 
@@ -276,10 +280,10 @@ def at_once(server, section):
         )
     assert statuses(answers) <= {401, 429}, answers
     section.tried(
-        "40 sign-ins at one moment from 40 addresses",
+        "40 sign-ins at once from 40 addresses",
         "all answered",
         "all answered" if server.get("//livez").status == 200 else "",
-        "Argon2id takes 64 MiB a password: two at once, the others wait 2 s at most (429)",
+        "Argon2id needs 64 MiB for each password: two at once, the others wait 2 s at most (429)",
         growth.checked(512),
     )
 

@@ -1,4 +1,5 @@
-"""What somebody does not see, tried through every door: private things of a project, other projects, and the link of a kiosk that was copied from its screen."""
+"""Hidden content, requested in every way: private content of a project, other projects, and the
+copied link of a kiosk."""
 import concurrent.futures
 
 from attempts.tools import FOREIGN, statuses, upgraded
@@ -10,7 +11,7 @@ from support.strata_server import StrataServer
 
 
 def as_role(server, role, camera, before, words, hidden, thread):
-    """What somebody of that role finds of the private things, through each kind of door."""
+    """Returns the private content that a user with that role finds, by each kind of request."""
     token = server.add_person(role, role)
     answered, told = visibility_site.sweep(server, token, words, camera)
     assert answered > 150, answered
@@ -43,7 +44,7 @@ def as_role(server, role, camera, before, words, hidden, thread):
 
 
 def private(table):
-    section = table.section("Private layers, columns and files, tried by a viewer and an annotator")
+    section = table.section("Private layers, columns and files, as a viewer and an annotator")
     port = free_port()
     with StrataServer(
         options=["--sql-listen", f"127.0.0.1:{port}"]
@@ -61,37 +62,37 @@ def private(table):
             return sum(each[what] for each in both)
 
         section.tried(
-            "Every question of the contract, with each value of each parameter: points, profiles, statistics, exports, rasters, pictures, records, comments, views, tours, activity, jobs",
+            "Every query of the contract, with each value of each parameter: points, profiles, statistics, exports, rasters, pictures, records, comments, views, tours, activity, jobs",
             f"secrets in {of('told')} operations",
             "secrets in 0 operations",
-            "what reads layers, columns and files takes the role, without a default",
+            "all code that reads layers, columns and files requires the role, without a default",
             f"{of('answered')} answers",
         )
-        not_there = "as for what is not there, word for word"  # asserted answer by answer
+        not_there = "as for missing things, word for word"  # the function checks each answer
         section.tried(
-            "Addresses of the private things, by slug and by id, to read and to change",
+            "Addresses of the private things, by slug and by id, for reading and changing",
             not_there,
             not_there,
-            "looked up among what the person sees",
+            "the server searches only the content that the user can see",
         )
         section.tried(
             "Their names in conditions, filters, orders, lists, imports",
             "as for unknown names, word for word",
             "as for unknown names, word for word",
-            "looked up among what the person sees",
+            "the server searches only the content that the user can see",
             f"{of('names')} calls",
         )
         section.tried(
             "A picture of the model",
-            "byte for byte that without them" if of("same_picture") == 2 else "another",
-            "byte for byte that without them",
-            "the renderer is given the layers that are seen",
+            "byte for byte as without them" if of("same_picture") == 2 else "another",
+            "byte for byte as without them",
+            "the renderer gets only the visible layers",
         )
         section.tried(
             "The live connection, while curators paint and write them",
-            f"{of('leaked')} told, {'only the record’s public cells' if {each['heard'] for each in both} == {'record'} else both} heard",
-            "0 told, only the record’s public cells heard",
-            "each event goes through the eyes of each listener",
+            f"{of('leaked')} secrets, {'only the record’s public cells' if {each['heard'] for each in both} == {'record'} else both}",
+            "0 secrets, only the record’s public cells",
+            "the server filters each event for each client",
         )
         reader = Reader(server, port)
         leaked = {
@@ -100,10 +101,10 @@ def private(table):
             if visibility_site.leaks(reader.run(f"SELECT * FROM {view}").stdout.encode())
         }
         section.tried(
-            "Views of SQL",
+            "SQL views",
             f"in {len(leaked)} of 5 views",
             "in 0 of 5 views",
-            "analysts see what is public",
+            "analysts see only public content",
         )
         sql(reader, table.section("SQL of analysts"))
         server.assert_clean_log()
@@ -131,11 +132,11 @@ def sql(reader, section):
     )
     for what, statements, keeps in (
         (
-            "Changing anything, with `default_transaction_read_only` switched off first",
+            "Changes, after `default_transaction_read_only` is switched off",
             changes,
-            "rights of the role, not a setting",
+            "the rights of the role, not a setting",
         ),
-        ("Tables of tokens, people, files and texels", secrets, "rights on views alone"),
+        ("Tables of tokens, people, files and texels", secrets, "rights only on views"),
         ("Files and commands of the server's machine", machine, "no such rights"),
     ):
         done = [
@@ -148,7 +149,7 @@ def sql(reader, section):
             if each.returncode == 0 or not any(word in each.stderr for word in refused)
         ]
         section.tried(
-            what, f"{len(let)} let through", "0 let through", keeps, f"{len(statements)} statements"
+            what, f"{len(let)} allowed", "0 allowed", keeps, f"{len(statements)} statements"
         )
     others = [
         reader.run("SELECT 1", password="wrong"),
@@ -158,9 +159,9 @@ def sql(reader, section):
     ]
     section.tried(
         "A wrong password, another role, another database",
-        f"{sum(each.returncode == 0 for each in others)} let in",
-        "0 let in",
-        "a password of its own for one role and one database",
+        f"{sum(each.returncode == 0 for each in others)} accepted",
+        "0 accepted",
+        "a separate password for one role and one database",
     )
 
 
@@ -175,18 +176,18 @@ def kiosk(table):
         made, secret = kiosk_site.make_kiosk(server, tour)
         answered, refused = kiosk_site.sweep(server, secret, tour, files, thread)
         section.tried(
-            "Every call of the contract that changes something, or reads what no kiosk shows",
+            "Every call of the contract that changes something, or reads content that kiosks do not show",
             403,
             403,
-            "a list of what is open: all else is closed, what is added later, too",
-            f"{refused} calls; {answered} that read the tour's model are open",
+            "a list of allowed calls: all others are refused, also future ones",
+            f"{refused} calls; {answered} that read the tour's model are allowed",
         )
         kiosk_site.others_closed(server, secret, files)
         section.tried(
-            "Other models, tables that are neither behind its layers nor in the tour, private files",
+            "Other models, tables that neither its layers nor the tour use, private files",
             404,
             404,
-            "the address is held against the tour",
+            "the server compares the address with the tour",
         )
         section.tried(
             "Signing in with it, or accepting an invitation",
@@ -204,7 +205,7 @@ def kiosk(table):
                 ]
             ),
             {401, 403},
-            "it is no token of a person",
+            "it is not a user's token",
         )
         as_session = {
             server.get(
@@ -216,10 +217,10 @@ def kiosk(table):
             upgraded(server, token="", cookie="strata_session=" + secret, origin=server.url),
         }
         section.tried(
-            "As the cookie of a session, or its own cookie without the page's mark",
+            "As the session cookie, or its own cookie without the page's mark",
             as_session,
             401,
-            "each cookie counts for its own page alone",
+            "each cookie is valid only for its own page",
         )
         section.tried(
             "Its live connection from a foreign page, to another model",
@@ -234,7 +235,7 @@ def kiosk(table):
                 upgraded(server, "other", token=secret),
             },
             {403, 404},
-            "as for people",
+            "as for users",
         )
         with LiveClient(server, "sheet", token=secret) as connection:
             connection.hello(dpr=1, accept=["jpeg"])
@@ -257,7 +258,7 @@ def kiosk(table):
                 "Painting, undo, pointing and locks over its live connection",
                 answers,
                 403,
-                "five kinds of messages are let through",
+                "the server accepts five kinds of messages",
             )
             server.ok("DELETE", f"/kiosks/{made['id']}")
             connection.until_closed()
@@ -269,7 +270,7 @@ def kiosk(table):
                 upgraded(server, token=secret),
             },
             401,
-            "at once, and open screens are closed",
+            "immediately; open screens are disconnected",
         )
         server.assert_clean_log()
 
@@ -280,21 +281,21 @@ def projects(table):
         sites = make_sites(server)
         guest = Someone(server, "Gus", "guest")
         section.tried(
-            "Every address of the contract in a project that a guest has no role in, by slug and by id, to read and to change",
-            "404 as of what is not there"
+            "Every address of the contract in a project without a role for the guest, by slug and by id, for reading and changing",
+            "404, as for missing things"
             if nothing_is_seen(server, guest, sites["villa"]) > 120
             else "few",
-            "404 as of what is not there",
-            "the project is looked up before the handler runs",
-            "more than 120 addresses; lists, uploads and the live connection, too",
+            "404, as for missing things",
+            "the server checks the project before the handler runs",
+            "more than 120 addresses; also lists, uploads and the live connection",
         )
         guest.now("villa", "curator")
         section.tried(
-            "The same by somebody who is curator of another project",
-            "404 as of what is not there"
+            "The same as a curator of another project",
+            "404, as for missing things"
             if nothing_is_seen(server, guest, sites["forum"]) > 120
             else "few",
-            "404 as of what is not there",
-            "a role in one project is none elsewhere",
+            "404, as for missing things",
+            "a role applies only to its own project",
         )
         server.assert_clean_log()

@@ -1,4 +1,5 @@
-"""The live connection: messages too large, too many, of no form or in another's name, and connections that outlive their right."""
+"""The live connection: messages that are too large, too many, malformed or in another user's name,
+and connections whose right ends."""
 import itertools
 import json
 import os
@@ -22,7 +23,7 @@ def welcomed(server, **options):
 
 
 def messages(server, section):
-    """What is refused with a problem; the connection goes on."""
+    """Messages that are refused with a problem; the connection stays open."""
 
     def refused(what, send, expected, keeps):
         with welcomed(server) as connection:
@@ -30,43 +31,48 @@ def messages(server, section):
             status = connection.receive_until("problem")["status"]
             connection.send({"op": "hello"})
             assert connection.receive_until("problem")["status"] == 409, "it goes on"
-            section.tried(what, f"{status}, goes on", f"{expected}, goes on", keeps)
+            section.tried(what, f"{status}, stays open", f"{expected}, stays open", keeps)
 
     refused(
         "A message of 300 KB",
         lambda to: to.send({"op": "hello", "client": "x" * 300_000}),
         413,
-        "256 KiB a message",
+        "256 KiB for each message",
     )
     refused(
         "Lists nested 100 000 deep in a message",
         lambda to: to.send('{"op":"pick","id":' + "[" * 100_000 + "]" * 100_000 + "}"),
         422,
-        "32 objects and lists within each other",
+        "32 levels of objects and lists",
     )
-    refused("A binary message", lambda to: to.send_raw(2, b"\0" * 1000), 415, "clients send text")
     refused(
-        "JSON that is none", lambda to: to.send("{]"), 400, "read by the protocol's own schemas"
+        "A binary message",
+        lambda to: to.send_raw(2, b"\0" * 1000),
+        415,
+        "clients may only send text",
+    )
+    refused(
+        "Invalid JSON", lambda to: to.send("{]"), 400, "the protocol's schemas check each message"
     )
     with LiveClient(server, "sheet") as connection:
         connection.send({"op": "undo", "id": str(uuid.uuid4()), "layer": "marks"})
         section.tried(
-            "An order before `hello`",
+            "A command before `hello`",
             connection.receive_until("problem")["status"],
             409,
-            "nobody is there before they said who",
+            "a client must send `hello` first",
         )
 
 
 def frames(server, section):
-    """What ends the connection, by its code (RFC 6455)."""
+    """Messages that end the connection, with its code (RFC 6455)."""
 
     def ended(what, send, expected, keeps):
         with welcomed(server) as connection:
             try:
                 send(connection)
             except OSError:
-                pass  # it was ended meanwhile
+                pass  # the server has already ended it
             section.tried(what, close_code(connection), expected, keeps)
 
     def fragments(connection):
@@ -78,24 +84,24 @@ def frames(server, section):
 
     with PeakGrowth(server) as growth:
         ended(
-            "A message that says it has 4 EiB",
+            "A message with a declared size of 4 EiB",
             lambda to: to.socket.sendall(b"\x81\xff" + struct.pack(">Q", 1 << 62) + bytes(4)),
             1009,
             "4 MiB, then the connection ends",
         )
-        ended("A message in pieces without end", fragments, 1009, "4 MiB, whatever it is cut into")
+        ended("An endless message in fragments", fragments, 1009, "4 MiB for all fragments")
     section.tried(
         "… both in the server's memory",
         "bounded",
         "bounded",
-        "nothing is allocated for what a message says of itself",
+        "the server allocates nothing for a declared size",
         growth.checked(64),
     )
     ended(
-        "Frames that are not masked, have unknown bits or kinds, or pings of 200 bytes",
+        "Unmasked frames, frames with unknown bits or kinds, and pings of 200 bytes",
         lambda to: to.socket.sendall(b"\x81\x02{}"),
         1002,
-        "the framing is checked",
+        "the server checks the framing",
     )
     for broken in (b"\xf1\x82\0\0\0\0{}", b"\x83\x82\0\0\0\0{}", b"\x89\xfe\x00\xc8" + bytes(204)):
         with welcomed(server) as connection:
@@ -105,12 +111,12 @@ def frames(server, section):
         "Text that is not UTF-8",
         lambda to: to.send_raw(1, b"\xff\xfe"),
         1007,
-        "the framing is checked",
+        "the server checks the framing",
     )
 
 
 def floods(server, section):
-    """As fast as they can be sent."""
+    """Sends as fast as possible."""
     camera = {
         "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
         "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0],
@@ -127,12 +133,12 @@ def floods(server, section):
         code = close_code(connection)
         other.send({"op": "pick", "id": str(uuid.uuid4()), "camera": camera, "x": 1, "y": 1})
         other.receive_until("picked")
-    assert code in (1008, "cut off"), code  # the code is lost where the flood was still on its way
+    assert code in (1008, "cut off"), code  # the code is lost if messages were still on their way
     section.tried(
         "50 000 messages without a pause",
         "ended, others are served",
         "ended, others are served",
-        "500 a second and 1000 at once, then 429; after 2000 refusals more than were taken the connection ends with 1008",
+        "500 a second and 1000 at once, then 429; the connection ends with 1008 if refused messages exceed accepted ones by 2000",
         growth.checked(64),
     )
     with PeakGrowth(server) as growth, welcomed(server) as connection:
@@ -142,9 +148,9 @@ def floods(server, section):
         assert connection.receive_until("problem")["status"] == 409
     section.tried(
         "20 000 pings",
-        "answered, goes on",
-        "answered, goes on",
-        "pongs wait for nobody: one is kept",
+        "answered, stays open",
+        "answered, stays open",
+        "the server keeps at most one pong",
         growth.checked(64),
     )
     with PeakGrowth(server) as growth:
@@ -153,10 +159,10 @@ def floods(server, section):
         for connection in crowd:
             connection.socket.close()
     section.tried(
-        "200 live connections of one person",
-        "all let in",
-        "all let in",
-        "**no limit of their own**: 2048 connections in all",
+        "200 live connections of one user",
+        "all accepted",
+        "all accepted",
+        "**no limit for each user**: 2048 connections in total",
         growth.checked(256),
     )
     with welcomed(server, receive_buffer=4096) as lazy, PeakGrowth(server) as growth:
@@ -170,16 +176,16 @@ def floods(server, section):
             pass
         assert server.get("//livez").status == 200
     section.tried(
-        "6000 questions of somebody who reads no answer",
+        "6000 queries of a client that reads no answer",
         "ended or waiting, others are served",
         "ended or waiting, others are served",
-        "4096 answers or 16 MiB wait at most, then it ends with 1013; a message that does not leave within 60 s ends it, too",
+        "4096 answers or 16 MiB wait at most, then the connection ends with 1013; it also ends if a message cannot be sent within 60 s",
         growth.checked(64),
     )
 
 
 def unread_pictures(server, section):
-    """Somebody who says to have every picture and reads none: each is of noise, and large."""
+    """A client acknowledges every picture and reads none: each has noise, and is large."""
     slug = server.ok("POST", M + "/layers", {"name": "Noise", "type": "u8"}).json()["slug"]
     raster = server.get(f"{M}/layers/{slug}/texels.npy").body
     head = 10 + struct.unpack("<H", raster[8:10])[0]
@@ -206,17 +212,17 @@ def unread_pictures(server, section):
         code = close_code(lazy)
     assert code in (1013, "cut off"), code
     section.tried(
-        "Pictures of noise, of 4096 x 2160 pixels, that are acknowledged and not read",
+        "Pictures of noise, of 4096 x 2160 pixels, that the client acknowledges but does not read",
         "ended",
         "ended",
-        "64 MiB or 256 pictures wait at most, then it ends with 1013",
+        "64 MiB or 256 pictures wait at most, then the connection ends with 1013",
         growth.checked(768),
     )
     server.ok("DELETE", f"{M}/layers/{slug}")
 
 
 def in_others_names(server, section):
-    """Orders that say they are somebody else's."""
+    """Commands in the name of another user."""
     mia = server.add_person("mia", "annotator")
     eve = server.add_person("eve", "viewer")
     server.ok("POST", M + "/layers", {"name": "Tomb", "type": "u8", "visibility": "private"})
@@ -237,22 +243,22 @@ def in_others_names(server, section):
 
         assert answer(owner, edit) == 200
         section.tried(
-            "An edit of a private layer, sent again with its id by who does not see the layer",
+            "An edit of a private layer, sent again with its id by a user who cannot see the layer",
             answer(hand, edit),
             404,
-            "the layer is looked for before the id",
+            "the server looks up the layer before the id",
         )
         section.tried(
-            "The same id with an edit of another layer, to hear what became of the first",
+            "The same id with an edit of another layer, to learn the result of the first",
             answer(hand, {**edit, "layer": "marks"}),
             422,
-            "a repeat is told to who made the edit",
+            "only the author of an edit gets the answer to a repeat",
         )
         section.tried(
-            "An edit with somebody else's name in it",
+            "An edit that contains another user's name",
             answer(hand, {**edit, "id": str(uuid.uuid4()), "layer": "marks", "user": "owner"}),
             422,
-            "unknown members are refused; the name is that of who came in",
+            "the server refuses unknown members; the author is the signed-in user",
         )
         changes = [
             {**edit, "layer": "marks"},
@@ -270,15 +276,15 @@ def in_others_names(server, section):
             },
         ]
         section.tried(
-            "Edits, undo, redo, a stroke and a record's lock by somebody who may only look",
+            "Edits, undo, redo, a stroke and a record's lock, as a viewer",
             {answer(eyes, {**message, "id": str(uuid.uuid4())}) for message in changes},
             403,
-            "the role is compared at each message",
+            "the server checks the role for each message",
         )
         stroke = str(uuid.uuid4())
         owner.send({**changes[-1], "id": str(uuid.uuid4()), "stroke": stroke})
         section.tried(
-            "Going on with a stroke that somebody else began",
+            "Continuing a stroke of another user",
             answer(
                 hand,
                 {
@@ -290,19 +296,19 @@ def in_others_names(server, section):
                 },
             ),
             404,
-            "strokes are their person's",
+            "only its author can continue a stroke",
         )
 
 
 def outlived(server, section):
-    """Connections that are open while the right to them ends."""
+    """Open connections whose right ends."""
 
     def demoted(user):
         server.ok("PATCH", f"/users/{user}", {"role": "viewer"})
 
     ends = [
         ("sign-out", lambda browser, user: browser.ok("POST", "/logout")),
-        ("a token that is revoked", None),
+        ("the revocation of a token", None),
         (
             "a new password",
             lambda browser, user: browser.ok(
@@ -334,10 +340,10 @@ def outlived(server, section):
         codes.add(close_code(connection))
         longest = max(longest, time.monotonic() - start)
     section.tried(
-        "Connections that are open at " + ", ".join(what for what, _ in ends),
+        "Open connections at " + ", ".join(what for what, _ in ends),
         codes,
         1008,
-        "sockets are closed by the call that ends the right",
+        "the call that ends the right closes the sockets",
         f"{max(1, round(longest))} s at most",
     )
 

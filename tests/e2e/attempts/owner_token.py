@@ -1,4 +1,5 @@
-"""The owner's token of the environment, found by somebody after an administrator has chosen a password."""
+"""The owner's token in the environment, found by an attacker after an administrator has a password.
+"""
 from attempts.tools import FILL, L, M, person, statuses, upgraded
 from support.browsers import PASSWORD, Browser, secret_of
 from support.strata_server import StrataServer
@@ -26,7 +27,7 @@ WORK = [
 
 
 def attempts(table, site):
-    section = table.section("The owner's token of the environment")
+    section = table.section("The owner's token in the environment")
     with StrataServer() as server:
         site(server)
         person(server, "ann", "viewer")
@@ -38,7 +39,7 @@ def attempts(table, site):
         assert (
             session.request("POST", "/login", {"token": server.token}).status == 200
         ), "so far it is the owner's"
-        # From here on somebody else can let people in.
+        # From here on another administrator can give people access.
         invitation = server.ok("POST", "/users", {"user": "root", "role": "administrator"}).json()
         Browser(server).ok(
             "POST",
@@ -46,19 +47,19 @@ def attempts(table, site):
             {"invitation": secret_of(invitation), "password": PASSWORD},
         )
         section.tried(
-            "Once an administrator has a password: accounts, roles, tokens and passwords changed with it",
+            "Once an administrator has a password: changes of accounts, roles, tokens and passwords with it",
             statuses(server.request(*call, token=server.token) for call in RIGHTS),
             403,
-            "it is then a token for scripts, of an administrator",
+            "it is then a token for scripts with the role administrator",
         )
         section.tried(
-            "… traded for a session in a browser",
+            "… exchanged for a session in a browser",
             Browser(server).request("POST", "/login", {"token": server.token}).status,
             403,
-            "tokens for scripts open none",
+            "tokens for scripts open no sessions",
         )
         section.tried(
-            "… as the cookie of a session",
+            "… as the session cookie",
             {
                 server.get(
                     M, token=False, headers={"Cookie": "strata_session=" + server.token}
@@ -68,7 +69,7 @@ def attempts(table, site):
                 ),
             },
             401,
-            "only the secret of a session counts as cookie",
+            "only the secret of a session is valid as cookie",
         )
         worked = {server.request(*call).status for call in WORK} | {upgraded(server)}
         assert worked == {200, 201, 101}, f"`./run FILE` and scripts go on: {worked}"

@@ -1,4 +1,5 @@
-"""One who only looks, and asks for as much as they can: the others have theirs, and what nobody waits for any more is not worked on."""
+"""A viewer makes the largest possible queries: other users are still served, and the server stops
+work for closed connections."""
 import concurrent.futures
 import json
 import re
@@ -13,7 +14,8 @@ from support.strata_server import LONG_S, StrataServer, wait_for
 
 
 def long_condition(layer):
-    """As long as one may be, over numbers that have no table: some seconds of a processor on 2048²."""
+    """Returns a condition of the maximum length without a table: some seconds of a processor on
+    2048²."""
     return " or ".join([f"sin({layer})>1"] * 340)
 
 
@@ -27,7 +29,7 @@ def metric(server, name):
 
 
 def sent(server, path, body, token):
-    """A connection that has asked, and does not read."""
+    """Sends a query on a new connection without reading the answer."""
     text = json.dumps(body).encode()
     link = socket.create_connection((server.host, server.port), timeout=LONG_S)
     link.sendall(
@@ -60,15 +62,16 @@ def lists(server, section, viewer):
         for each in ("k", "n", "k not", "n not")
     ]
     section.tried(
-        "Lists of 1900 items in a condition, by a viewer",
+        "Lists of 1900 items in a condition, as a viewer",
         statuses(answers),
         200,
-        "lists are sets, and a condition over bytes is a table: what a texel costs does not grow with them",
+        "lists are sets, and a condition over bytes is a table: the time for a texel does not depend on their length",
     )
 
 
 def steps_after(server, links):
-    """Closes connections whose questions are under way: steps that were taken after the server had nothing to do any more."""
+    """Closes connections with running queries: returns the steps that the server took after it had
+    become idle."""
     left = metric(server, "strata_questions_left_total")
     for link in links:
         link.close()
@@ -87,10 +90,10 @@ def leaving(server, section, viewer):
     wait_for(lambda: metric(server, "strata_questions_under_way") > 0, "a question under way")
     steps = steps_after(server, links)
     section.tried(
-        "Three questions of many seconds whose client leaves at once",
+        "Three queries of many seconds whose client disconnects immediately",
         "ended" if steps == 0 else f"{steps} steps more",
         "ended",
-        "the server looks ten times a second who is still there",
+        "the server checks the connection ten times a second",
     )
 
 
@@ -98,7 +101,7 @@ def beside(server, section, viewer):
     links = []
 
     def as_many_wait_as_may():
-        # some may be answered meanwhile
+        # the server may answer some before this
         links.extend(sent(server, M + "/select", {"where": LONG}, viewer) for _ in range(15))
         return metric(server, "strata_waiting_questions") >= 32
 
@@ -109,10 +112,10 @@ def beside(server, section, viewer):
         server.get(M + "/position?coords=POINT(10%2010%200)"),
     ]
     section.tried(
-        "Dozens of such questions of one person: what another one asks meanwhile",
+        "Dozens of such queries of one user: another user's queries at the same time",
         statuses(asked),
         200,
-        "questions take turns by the time that each person's took, and a person's are answered two at a time",
+        "users take turns by the time that their queries took, with at most two queries of a user at once",
     )
     refused = []
     for link in links:
@@ -122,10 +125,10 @@ def beside(server, section, viewer):
         except BlockingIOError:
             pass
     section.tried(
-        "The same: their own",
+        "The same: further queries of the first user",
         set(refused) - {200},
         429,
-        "32 of a person wait",
+        "at most 32 queries of a user wait",
         f"{refused.count(429)} refused",
     )
     for link in links:
@@ -136,16 +139,16 @@ def beside(server, section, viewer):
 def budgets(server, section, viewer):
     answers = [server.post(M + "/select", {"where": long_condition("f")}, token=viewer)]
     section.tried(
-        "A condition of a thousand parts over 4096² texels, by a viewer",
+        "A condition of a thousand parts over 4096² texels, as a viewer",
         statuses(answers),
         422,
-        "20 thousand million steps for viewers, known before it begins",
+        "20 billion steps for viewers, checked before the start",
     )
 
 
 def empty_layer(server, section, viewer):
     server.ok("POST", M + "/layers", {"name": "Vast", "type": "u8", "resolution": 16384})
-    # The surface map that a new layer makes the server bake is not the question's.
+    # The query does not include the surface map that the server makes for a new layer.
     wait_for(lambda: rests(server), "a server that computes nothing")
     with PeakGrowth(server) as growth:
         answer = server.get(M + "/layers/vast/statistics", token=viewer)
@@ -153,7 +156,7 @@ def empty_layer(server, section, viewer):
         "Statistics of an empty layer of 16384²",
         answer.status,
         200,
-        "nothing is worked out about the surface where nothing is painted",
+        "the server computes nothing for unpainted surface",
         growth.checked(200),
     )
 
@@ -168,7 +171,7 @@ def points(server, section, viewer):
         "1 200 000 points at once",
         answer.status,
         422,
-        "a list is counted before its items are built",
+        "the server counts a list before it builds the items",
         growth.checked(200),
     )
 
@@ -184,14 +187,16 @@ def pictures(server, section, viewer):
         unfinished = sum(not_yet(link) for link in links)
     assert unfinished > 0, "the small ones waited for all of the large ones"
     section.tried(
-        "Six pictures of 8192² by one person: small ones of another meanwhile",
+        "Six pictures of 8192² of one user: another user's small ones at the same time",
         statuses(answers),
         200,
-        "large pictures are drawn in bands between which others have theirs, and are nowhere as a whole",
+        "the server draws large pictures in bands, with others' pictures between them, and never stores them as a whole",
         growth.checked(600),
     )
     steps_after(server, links)
-    section.tried("The same: their client leaves", "ended", "ended", "between two bands")
+    section.tried(
+        "The same: their client disconnects", "ended", "ended", "the server stops between two bands"
+    )
 
 
 def not_yet(link):
@@ -207,16 +212,16 @@ def stop(server, section, viewer):
     wait_for(lambda: metric(server, "strata_questions_under_way") > 0, "a question under way")
     code = server.stop()
     section.tried(
-        "The server is stopped meanwhile",
+        "The server is stopped during queries",
         {status_of(link) for link in links},
         503,
-        "questions end with the server",
+        "queries end with the server",
         "" if code == 0 else f"exit status {code}",
     )
 
 
 def attempts(table):
-    section = table.section("One reader beside the others")
+    section = table.section("Large queries of one reader")
     with StrataServer() as server:
         server.import_model(
             folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
@@ -233,7 +238,7 @@ def attempts(table):
             {"op": "fill", "mode": "where", "where": "true", "value": 7},
         )
         viewer = server.add_person("eve", "viewer")
-        # memory first: surfaces are baked for the others
+        # memory first: the later attempts make surface maps
         for attempt in (points, empty_layer, lists, leaving, beside, budgets, pictures, stop):
             attempt(server, section, viewer)
         server.assert_clean_log()

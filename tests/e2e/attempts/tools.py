@@ -1,4 +1,4 @@
-"""What several of the attempts need."""
+"""Functions for several of the attempts."""
 import re
 
 from support.browsers import Browser, join
@@ -26,7 +26,8 @@ def statuses(answers):
 
 
 def calls(server, methods=METHODS):
-    """Method and address of every call of the contract that needs somebody to be signed in, but for the live connection."""
+    """Yields method and address of every call of the contract that requires sign-in, except for the
+    live connection."""
     for path, operations in server.contract.document["paths"].items():
         address = re.sub(r"\{(\w+)\}", lambda match: WORDS.get(match[1], "1"), path)
         for method, operation in operations.items():
@@ -39,7 +40,7 @@ def body_for(method):
 
 
 def upgraded(server, model="sheet", **options):
-    """101, or the status of the refusal."""
+    """Returns 101, or the status of the refusal."""
     try:
         LiveClient(server, model, **options).socket.close()
         return 101
@@ -48,7 +49,7 @@ def upgraded(server, model="sheet", **options):
 
 
 def close_code(connection):
-    """By which code the server ends the connection, or `cut off` where it says none."""
+    """Returns the code with which the server ends the connection, or `cut off` without a code."""
     try:
         while True:
             connection.receive()
@@ -59,7 +60,7 @@ def close_code(connection):
 
 
 def person(server, user, role="annotator"):
-    """The browser of somebody new."""
+    """Returns the browser of a new user."""
     return join(server, server.ok("POST", "/users", {"user": user, "role": role}).json())
 
 

@@ -1,4 +1,4 @@
-"""Who connects and then takes their time: each waits in a thread of its own while the other attempts go on."""
+"""Slow and silent clients: each waits in a separate thread while the other attempts run."""
 import concurrent.futures
 import os
 import re
@@ -16,15 +16,15 @@ from support.meshes import folded_grid
 from support.process_memory import PeakGrowth
 from support.strata_server import LONG_S, StrataServer, wait_for
 
-# The options of the server by which these attempts are made, in seconds: the answers tell what is
-# without them.
+# The server's options for these attempts, in seconds; the answers in the table are those of the
+# defaults.
 TRIED_WITH = {"head-timeout": 2, "idle-timeout": 4, "stall-timeout": 3, "recheck-every": 1}
-LATE_S = 45  # a busy machine may be late by this; less than what most wait without an option
+LATE_S = 45  # a busy machine may be late by this; less than most waits with the defaults
 CONNECTIONS = 2048
 
 
 def until_closed(link, every_s=None, drop=b"x", limit_s=LONG_S):
-    """Seconds until the server ends the connection, which gets a drop more every so often."""
+    """Returns the seconds until the server ends the connection; sends `drop` at intervals."""
     start = time.monotonic()
     link.settimeout(every_s or limit_s)
     while time.monotonic() - start < limit_s:
@@ -50,7 +50,7 @@ def connected(server, first=b""):
 
 
 def without_option(name):
-    """What the program says to do where an option is not given."""
+    """Returns the default of an option from the program's help."""
     told = subprocess.run(
         [os.environ["STRATA_BINARY"], "serve", "--help"], capture_output=True, text=True, check=True
     ).stdout
@@ -62,7 +62,7 @@ def options():
 
 
 def cut(section, what, took, option, limit_s, keeps):
-    """`limit_s` is documented, and holds without the option."""
+    """Checks that the connection was cut off in time, and that `limit_s` is the default."""
     tried_s = TRIED_WITH[option]
     is_cut = tried_s / 2 <= took <= tried_s + LATE_S and without_option(option) == limit_s
     section.tried(
@@ -70,7 +70,7 @@ def cut(section, what, took, option, limit_s, keeps):
         f"cut off after {limit_s} s" if is_cut else f"after {took:.0f} s",
         f"cut off after {limit_s} s",
         keeps,
-        f"{round(took)} s with `--{option} {tried_s}` (held to {tried_s + LATE_S})",
+        f"{round(took)} s with `--{option} {tried_s}` (limit {tried_s + LATE_S})",
     )
 
 
@@ -90,7 +90,8 @@ def post(server, path, length, *more):
 
 
 def drops_of_a_body(server):
-    """200 bodies of a byte each second: seconds until one of them is ended, while others are served."""
+    """Sends 200 bodies, one byte a second: returns the seconds until one ends, while others are
+    served."""
     begin = post(server, "/login", 1000) + b"{"
     links = [connected(server, begin) for _ in range(199)]
     with concurrent.futures.ThreadPoolExecutor(1) as hand:
@@ -101,7 +102,7 @@ def drops_of_a_body(server):
                 try:
                     link.sendall(b" ")
                 except OSError:
-                    pass  # it has been ended
+                    pass  # the server has ended it
             assert server.get("//livez").status == 200 and server.get(M).status == 200
     for link in links:
         link.close()
@@ -109,7 +110,7 @@ def drops_of_a_body(server):
 
 
 def deaf(server):
-    """A live connection that answers no ping: seconds until it is ended."""
+    """A live connection that answers no ping: returns the seconds until its end."""
     with LiveClient(server, "sheet") as connection:
         connection.hello(dpr=1, accept=["jpeg"])
         start = time.monotonic()
@@ -120,7 +121,7 @@ def deaf(server):
 
 
 def expired(server):
-    """A live connection whose session comes of age: its close code and the seconds until then."""
+    """A live connection whose token expires: returns its close code and the seconds until then."""
     token = server.ok("POST", "/me/tokens", {"name": "old", "days": 1}).json()
     with LiveClient(server, "sheet", token=token["secret"]) as connection:
         connection.hello(dpr=1, accept=["jpeg"])
@@ -136,7 +137,8 @@ def expired(server):
 
 
 def slow_readers(server):
-    """Downloads that nobody reads: the statuses of others' downloads meanwhile, and of other questions."""
+    """Downloads that the client does not read: returns the statuses of others' downloads, and of
+    other requests, at the same time."""
     links = []
     for _ in range(6):
         link = socket.socket()
@@ -162,7 +164,8 @@ def slow_readers(server):
 
 
 def crowd(server):
-    """More connections than there may be, none of which says anything: what happens to the next one, and how long until there is room again."""
+    """More silent connections than the limit: checks that the last one is closed; returns the time
+    until there is room again, and the memory."""
     links = []
     with PeakGrowth(server) as growth:
         try:
@@ -191,7 +194,7 @@ def crowd(server):
 
 
 def half_open_tls(server):
-    """Nothing, half a greeting, and words that are none: seconds until each is ended."""
+    """Nothing, half a ClientHello, and a whole one: returns the seconds until each one ends."""
     greeting = ssl.MemoryBIO()
     client = ssl.create_default_context().wrap_bio(ssl.MemoryBIO(), greeting, server_hostname="x")
     try:
@@ -234,7 +237,7 @@ def make_sheet(server):
 def plain(table):
     section = table.section("Slow and idle connections")
     may_crowd = allow_descriptors(2 * CONNECTIONS + 1000)
-    # What must last while others are tried, at one without the options.
+    # A server with the defaults, for attempts that must last while others run.
     with StrataServer() as patient, StrataServer(options=options()) as server:
         for each in (patient, server):
             make_sheet(each)
@@ -265,27 +268,27 @@ def plain(table):
             readers = hands.submit(slow_readers, patient)
             cut(
                 section,
-                "A connection that says nothing",
+                "A connection without data",
                 silent.result(),
                 "head-timeout",
                 10,
-                "10 s from connecting to the end of the first head",
+                "10 s from the connection to the end of the first headers",
             )
             cut(
                 section,
-                "A head of which a line comes each second (slow-loris)",
+                "Headers that arrive one line each second (slow-loris)",
                 max(head.result() for head in heads),
                 "head-timeout",
                 10,
-                "10 s from connecting to the end of the first head, however it trickles",
+                "10 s from the connection to the end of the first headers, at any speed",
             )
             cut(
                 section,
-                "A second head that comes letter by letter on a connection that was served",
+                "Second headers that arrive one character at a time on a used connection",
                 second.result(),
                 "idle-timeout",
                 60,
-                "60 s from an answer to the end of the next head",
+                "60 s from an answer to the end of the next headers",
             )
             cut(
                 section,
@@ -297,7 +300,7 @@ def plain(table):
             )
             cut(
                 section,
-                "A body that stops, of a call that was refused",
+                "A body that stops, of a refused call",
                 refused.result(),
                 "stall-timeout",
                 60,
@@ -305,27 +308,27 @@ def plain(table):
             )
             cut(
                 section,
-                "200 bodies that come a byte a second",
+                "200 bodies that arrive one byte a second",
                 drops.result(),
                 "stall-timeout",
                 60,
-                "a body has a minute, and a second more for each kilobyte; others are served meanwhile",
+                "a body has a minute, and a second more for each kilobyte; others are served at the same time",
             )
             section.tried(
-                "6 downloads that nobody reads",
+                "6 downloads that the client does not read",
                 readers.result(),
                 200,
-                "4 streams at once: **further downloads get 503** until one ends, or does not move for 60 s; all else is served",
+                "4 streams at once: **further downloads get 503** until one ends, or makes no progress for 60 s; all other requests are served",
             )
             code, took = of_age.result()
             held_s = TRIED_WITH["recheck-every"] + 15 + LATE_S
             assert took <= held_s and without_option("recheck-every") == 30, took
             section.tried(
-                "A live connection whose token comes of age",
+                "A live connection whose token expires",
                 code,
                 1008,
-                "asked again every 30 s, and what is remembered is 10 s old at most",
-                f"{round(took)} s with `--recheck-every {TRIED_WITH['recheck-every']}` (held to {held_s})",
+                "checked again every 30 s; cached rights are at most 10 s old",
+                f"{round(took)} s with `--recheck-every {TRIED_WITH['recheck-every']}` (limit {held_s})",
             )
             cut(
                 section,
@@ -333,7 +336,7 @@ def plain(table):
                 no_pong.result(),
                 "idle-timeout",
                 60,
-                "pinged after 30 s, ended after 60",
+                "ping after 30 s, end after 60 s",
             )
         if crowded:
             took, memory = crowded
@@ -342,8 +345,8 @@ def plain(table):
                 f"{CONNECTIONS + 100} silent connections from one address",
                 "those above 2048 are closed, room after 10 s",
                 "those above 2048 are closed, room after 10 s",
-                f"{CONNECTIONS} connections in all, **none by address** (see above)",
-                f"{round(took)} s (held to {10 + LATE_S}); {memory}",
+                f"{CONNECTIONS} connections in total, **no limit for each address** (see above)",
+                f"{round(took)} s (limit {10 + LATE_S}); {memory}",
             )
         for each in (patient, server):
             assert each.get("//livez").status == 200 and each.stop() == 0
@@ -360,7 +363,7 @@ def tls(table):
             took = half_open_tls(server)
             cut(
                 section,
-                "A connection that says nothing, half a greeting, or a greeting and nothing more",
+                "A connection without data, with half a ClientHello, or with only a ClientHello",
                 max(took),
                 "head-timeout",
                 10,
@@ -375,7 +378,7 @@ def tls(table):
                     spoken = link.version()
             except (ssl.SSLError, OSError):
                 spoken = "refused"
-            section.tried("TLS 1.0 and 1.1", spoken, "refused", "1.2 and 1.3 alone")
+            section.tried("TLS 1.0 and 1.1", spoken, "refused", "only 1.2 and 1.3")
             offered = set()
             for weak in (
                 "AES128-SHA",
@@ -397,7 +400,7 @@ def tls(table):
                 "TLS 1.2 without forward secrecy, or with a cipher that authenticates separately",
                 sorted(offered) or "refused",
                 "refused",
-                "ECDHE with AES-GCM or ChaCha20-Poly1305 alone",
+                "only ECDHE with AES-GCM or ChaCha20-Poly1305",
             )
             link = connected(
                 server,
@@ -405,10 +408,10 @@ def tls(table):
             )
             head = link.recv(65536).decode()
             section.tried(
-                "Plain http at the same port",
+                "Plain http on the same port",
                 int(head.split()[1]),
                 308,
-                "sent on to https; nothing is served openly",
+                "redirect to https; the server serves nothing without encryption",
             )
             assert (
                 head.startswith("HTTP/1.1 308 Permanent Redirect\r\n")
@@ -426,10 +429,10 @@ def tls(table):
                 headers={"Cookie": cookie, "Origin": f"http://{server.host}:{server.port}"},
             )
             section.tried(
-                "A change from a page of the same name that came by http",
+                "A change from a page with the same name that was loaded by http",
                 forged.status,
                 403,
-                "by https the server's own pages are those by https",
+                "with https, only pages loaded by https are the server's own",
             )
             assert (
                 whole.startswith("__Host-strata_session=")
@@ -438,22 +441,22 @@ def tls(table):
             ), whole
             plain = cookie.removeprefix("__Host-")
             section.tried(
-                "A cookie that a neighbouring host of the same domain has set",
+                "A cookie set by another host of the same domain",
                 server.get("/me", token=False, headers={"Cookie": plain}).status,
                 401,
-                "by https its name is `__Host-…`, which browsers take from this host alone",
+                "with https its name is `__Host-…`, which browsers accept only from this host",
             )
             lasts = server.get("//", token=False).headers["Strict-Transport-Security"]
             section.tried(
                 "A later visit by http",
                 lasts,
                 "max-age=31536000",
-                "Strict-Transport-Security: browsers ask by https for a year",
+                "Strict-Transport-Security: browsers use https for a year",
             )
             section.tried(
-                "The cookie on its way by http",
+                "The cookie in a request by http",
                 "Secure" if "; Secure" in whole else whole,
                 "Secure",
-                "browsers send it by https alone",
+                "browsers send it only by https",
             )
             server.assert_clean_log()

@@ -1,5 +1,5 @@
-// What was done on a model, in the side panel: by days, with others' work as it comes, earlier
-// lines when asked for, and where a line leads.
+// The activity of a model in the side panel: by days, with new lines of others, earlier lines on
+// request, and the target of a line.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -18,7 +18,7 @@ const shot = async ({ page }, name) => {
 };
 const panel = ({ page }) => page.locator("strata-activity-panel");
 const line = (who, text) => panel(who).locator("[data-activity]", { hasText: text });
-/** As somebody else than the owner. */
+/** Sends a request as a person other than the owner. */
 const post = async ({ token }, path, body) => {
   const headers = { Authorization: `Bearer ${token}`, "Content-Type": "application/json" };
   const answer = await fetch(`${server.url}/api/v1${path}`, {

@@ -1,5 +1,5 @@
-// Whole areas: polygon, lasso, fill of what is connected, fill where a condition holds. What the
-// page shows while they are drawn, what they paint, and that they are taken back.
+// Whole areas: polygon, lasso, connected fill, fill with a condition. Tests the page while they are
+// drawn, the painted areas, and their undo.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
@@ -9,7 +9,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
+const kMagenta = "#ff00ffff"; // no part of the pot has this hue
 
 const base = "/models/demo-pot";
 const edits = async () => (await server.json("GET", `${base}/layers/test/edits?limit=1000`)).total;
@@ -22,7 +22,7 @@ const shot = async (name) => {
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 
-/** Points in shares of the stage, in pixels of the page. */
+/** Converts points in shares of the stage to pixels of the page. */
 async function pixels(points) {
   const box = await browser.stage_box();
   return points.map(([x, y]) => [box.x + x * box.width, box.y + y * box.height]);
@@ -58,7 +58,7 @@ async function taken_back(what) {
   await wait_for(async () => (await magenta()) === 0, `${what} to be taken back`, 150);
 }
 
-let cameras = 0; // that were sent: the number that a picture has may be older
+let cameras = 0; // number of sent cameras; a picture may show an older one
 
 let browser, page, server, corners, now;
 
@@ -161,7 +161,7 @@ test("what is connected is erased by one click, and what is not stays", async ()
   await browser.saved();
   assert.equal((await statistics("test")).area_m2, both);
   await click([0.02, 0.02]);
-  await page.getByText("There is no surface at this place").waitFor();
+  await page.getByText("There is no surface at this position").waitFor();
   await page.keyboard.press("b");
 });
 
@@ -183,7 +183,7 @@ test("a condition over other layers; a wrong one says where it is wrong", async 
   assert.equal(await condition.inputValue(), "not cracks");
   await condition.fill("valid(cracks)");
   await button(words.areas.apply).click();
-  // closed once it is durable
+  // the dialog closes when the edit is durable
   await page.getByRole("heading", { name: /where…/ }).waitFor({ state: "hidden" });
   const cracks = (await statistics("cracks")).area_m2;
   now = (await statistics("test")).area_m2;

@@ -1,5 +1,5 @@
-// The Bin on the page: Undo right after a deletion, the list of what was deleted in a project, with
-// keys, a mouse and a finger; what others may of it.
+// The trash on the page: Undo right after a deletion, the list of a project's deleted content, with
+// keyboard, mouse and finger, and the rights of each role.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -30,7 +30,7 @@ const undo = (who) =>
   who.page.locator("strata-notices").getByRole("button", { name: words.model.undo, exact: true });
 const layers_of = async () =>
   (await server.json("GET", `${kBase}/layers`)).layers.map(({ name }) => name);
-// what is deleted while it is drawn is a refused request
+// deleting a model while its picture is drawn would cause a refused request
 const pictured = ({ page }) => page.locator("strata-thumbnail canvas.drawn").waitFor();
 const confirm = async ({ page }, name) => {
   const question = page.locator("strata-dialog").last();

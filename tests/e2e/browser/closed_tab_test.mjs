@@ -1,5 +1,5 @@
-// A tab is closed, or dies, while what was painted is not saved: closing it warns, and the next
-// page of the same person sends it, once.
+// A tab is closed or crashes while edits are not saved: closing it shows a warning, and the
+// person's next page sends the edits, once.
 import assert from "node:assert/strict";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
@@ -8,7 +8,10 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-/** Ids of the batches of strokes that the browser keeps, or of other messages, in their order. */
+/**
+ * Returns the ids of the stroke batches, or of other messages, that the browser stores, in their
+ * order.
+ */
 const kept = (wanted = "stroke.extend") =>
   page.evaluate(
     (wanted) =>
@@ -37,7 +40,7 @@ async function open_model() {
   await page.keyboard.press("b");
 }
 
-/** Painted to a server that hears nothing. Returns what the browser keeps of it. */
+/** Paints while the server is stopped. Returns the messages that the browser stores. */
 async function paint_unheard(y) {
   await server.signal("SIGSTOP");
   await browser.drag([
@@ -52,7 +55,7 @@ async function paint_unheard(y) {
   return kept();
 }
 
-/** The tab is gone without a word, and another is opened. */
+/** The tab crashes, and another one is opened. */
 async function tab_dies() {
   const crashed = page.waitForEvent("crash");
   (await browser.context.newCDPSession(page)).send("Page.crash").catch(() => {});

@@ -1,6 +1,6 @@
-// Comments on the surface: written at a place, kept unsent, seen by others at once, answered,
-// resolved, edited, deleted, found in the panel and by their address; by mouse, keyboard and
-// finger. Pins are not shown through the model.
+// Comments on the surface: written at a place, kept while unsent, visible to others immediately,
+// answered, resolved, edited, deleted, found in the panel and by their address; by mouse, keyboard
+// and finger. The model hides the pins behind it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -12,7 +12,7 @@ const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-const kExpected = ["status of 412", "status of 422"]; // answers that the test wants
+const kExpected = ["status of 412", "status of 422"]; // answers that the test causes
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -71,7 +71,7 @@ test.beforeAll(async () => {
     where: "true",
     value: 1,
   });
-  // or curators are asked for it
+  // otherwise the page asks curators for it
   model = await server.json("PATCH", kBase, { scale_verified: true });
   id = model.id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
@@ -202,7 +202,7 @@ test("names are completed behind an @, by keys and by the mouse", async () => {
 test("pins are hidden behind the surface: on the far side, and inside where the wall stands before them", async () => {
   await bea.page.keyboard.press("Escape");
   await bea.page.keyboard.press("c");
-  await click_at(bea, 0.44, 0.42); // through the gap, the inside of the far wall
+  await click_at(bea, 0.44, 0.42); // through the gap, on the inside of the far wall
   await card(bea).getByRole("textbox", { name: words.comments.text }).fill("Inside");
   await bea.page.keyboard.press("Control+Enter");
   const inside = await comment_with("Inside");
@@ -211,7 +211,7 @@ test("pins are hidden behind the surface: on the far side, and inside where the 
   await bea.page.keyboard.press("2");
   await gone(pin(bea, first.id));
   await gone(pin(bea, inside.id));
-  await bea.page.keyboard.press("1"); // straight from the front, to which it still faces
+  await bea.page.keyboard.press("1"); // from the front, which it still faces
   await pin(bea, first.id).waitFor();
   await gone(pin(bea, inside.id));
   await server.request("DELETE", `/comments/${inside.id}`);
@@ -255,7 +255,7 @@ test("of two who change one text at once the later is told", async () => {
   await card(ada).getByRole("button", { name: words.save }).click();
   await card(ada)
     .getByRole("alert")
-    .getByText(/changed this since/i)
+    .getByText(/changed this after you read it/i)
     .waitFor();
   await ada.page.unroute(`**/comments/${first.id}`);
   assert.equal(
@@ -290,7 +290,7 @@ test("the list finds threads by words, state and person, and goes to them", asyn
   const height = model.bounds.max[2] - model.bounds.min[2];
   for (const [n, text] of ["Soot on the rim", "Old repair, see @bea", "Fingerprint"].entries()) {
     const [x, y, z] = first.position;
-    // so far that a finger tells them apart
+    // far enough apart for a finger
     const coords = encodeURIComponent(`POINT Z(${x} ${y} ${z + [-0.2, 0.18, -0.38][n] * height})`);
     const { position } = await server.json("GET", `${kBase}/position?coords=${coords}`);
     await server.json("POST", `${kBase}/comments`, { text, position });

@@ -1,6 +1,6 @@
-// A computed layer in the page: names are completed while one writes, what it holds for is told,
-// mistakes at their character; stale when something that it reads changes, computed again by a
-// button or by itself.
+// A computed layer in the page: completion of names, the result for the current expression, errors
+// with their position; the layer is stale after a change of its inputs, and is computed again by a
+// button or automatically.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { attach_log, ends_well, test } from "../support/js/cases.mjs";

@@ -1,7 +1,7 @@
-// Pictures of every screen and dialog of the page in the windows of a phone, a tablet and a desk,
-// on one sheet that a person can judge. No test: it finds nothing wrong by itself.
-// `scripts/contact_sheet` runs it; the first argument is the folder that it writes, `--language`
-// and `--theme` say how the page is shown, `--windows` in which windows: a wall's has 4K.
+// Puts pictures of every screen and dialog of the page, in the windows of a phone, a tablet and a
+// desk, on one sheet for a person to judge. This is not a test: it detects no faults.
+// `scripts/contact_sheet` runs it; the first argument is the folder for the output, `--language`
+// and `--theme` set the page's language and theme, `--windows` the windows: a wall's has 4K.
 import { mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -14,12 +14,12 @@ import { StrataServer } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
 const kSizes = { phone: [390, 844], tablet: [820, 1180], desk: [1440, 900], wall: [3840, 2160] };
-const kDesk = { width: 1280, height: 800 }; // from which screens are reached
-const kScale = 0.3; // of the shots on the sheet
-const kMostBytes = 2_000_000; // of the sheet as one picture
+const kDesk = { width: 1280, height: 800 }; // the window in which screens are reached
+const kScale = 0.3; // of the pictures on the sheet
+const kMostBytes = 2_000_000; // for the sheet as one picture
 const kQualities = [70, 60, 50, 40, 30, 20];
 const kLocales = { en: "en-GB", de: "de-DE", es: "es-ES" };
-const kFrame_ms = 20_000; // a picture that has not come by then is shown as it is
+const kFrame_ms = 20_000; // a picture that takes longer is shown in its current state
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -54,7 +54,7 @@ const { page } = viewer;
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 const file_of = (screen, window) => `shots/${screen.name.replaceAll(/\W+/g, "_")}_${window}.jpg`;
 
-/** In a window of another size the server draws the model anew. */
+/** After a change of the window's size, waits until the server has drawn the model again. */
 async function settled() {
   await page.evaluate(
     () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
@@ -101,7 +101,7 @@ function sheet_of(screens) {
   </style><h1>${screens.length} screens</h1><p>${sizes}; ${language}, ${theme}.</p><main>${screens.map(figure).join("\n")}</main>`;
 }
 
-/** The whole sheet as one picture, in the best quality that is small enough. */
+/** Returns the whole sheet as one picture, in the best quality below the size limit. */
 async function picture_of(sheet) {
   await page.setViewportSize({ width: 2530, height: 1000 });
   await page.goto(pathToFileURL(sheet).href);

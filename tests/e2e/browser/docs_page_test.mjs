@@ -1,5 +1,5 @@
-// The page of the contract: every operation is there, its menu leads to each, and nothing on it
-// breaks the content security policy or comes from another host.
+// The page of the contract: it has every operation, its menu leads to each, and it neither violates
+// the content security policy nor loads from another host.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -14,7 +14,7 @@ const contract = JSON.parse(
 const operations = Object.values(contract.paths)
   .flatMap((item) => Object.values(item))
   .filter((operation) => operation.operationId);
-// A heading begins with a link to itself, which has a name, too.
+// A heading begins with a link to itself, which also has a name.
 const heading = (page, name) => page.getByRole("heading", { level: 2, name });
 const summary_of = (id) => operations.find(({ operationId }) => operationId === id).summary;
 const foreign = [];

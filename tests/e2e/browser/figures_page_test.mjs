@@ -1,6 +1,6 @@
-// Measured figures on the page: chosen with the sheet before one's eyes, made and saved, of what
-// this person sees or of a kept view, also square to a face that is picked; given up, refused, and
-// left to themselves while they are made. Who may only look makes them, too.
+// Measured figures on the page: options with a preview of the sheet, files, with the person's
+// current view or a saved view, also perpendicular to a picked face; cancelled, refused, and left
+// running in the background. Viewers can also make them.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -13,7 +13,7 @@ const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-const kExpected = ["status of 404", "status of 422"]; // answers that the test wants
+const kExpected = ["status of 404", "status of 422"]; // answers that the test causes
 let id;
 
 const shot = async ({ page }, name) => {
@@ -32,7 +32,7 @@ const notice = ({ page }, text) => page.locator("strata-notices .notice", { hasT
 const closed = (who) => dialog(who).waitFor({ state: "detached" });
 const bar = (who) => dialog(who).getByRole("progressbar");
 
-/** Of the newest request of the kind that the page has sent. */
+/** The body of the page's newest request of each kind. */
 const asked = new Map(); // who → { preview, file }
 function listen(who) {
   asked.set(who, {});
@@ -45,8 +45,8 @@ function listen(who) {
 
 const state = (who) => dialog(who).locator("figure").getAttribute("data-state");
 /**
- * The sheet once it is drawn as it is chosen now: what kind of pixels it has, and a text that is
- * the same for the same picture.
+ * Returns the sheet that is drawn for the current options: the kinds of its pixels, and a text that
+ * is equal for equal pictures.
  */
 async function sheet(who) {
   await wait_for(async () => (await state(who)) === "drawn", "the sheet");
@@ -78,7 +78,7 @@ async function sheet(who) {
       };
     });
 }
-/** The sheet after a choice; it must be another than before. */
+/** Returns the sheet after a choice; it must differ from the one before. */
 async function sheet_after(who, before, choose) {
   await choose();
   return wait_for(async () => {
@@ -96,7 +96,7 @@ async function open_dialog(who) {
   await who.page.keyboard.press("f");
   await dialog(who).getByRole("dialog").waitFor();
 }
-/** The file that the action leads to: its name and bytes. */
+/** Returns the downloaded file of the action: its name and bytes. */
 async function download(who, act) {
   const [file] = await Promise.all([who.page.waitForEvent("download"), act()]);
   return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
@@ -258,7 +258,7 @@ test("square to a face: the dialog steps aside, Escape leads back as it was, a c
   await button(ada, words.figures.pick_again).click();
   await hint.waitFor();
   await sheet_after(ada, square, async () => {
-    await ada.page.keyboard.press("Enter"); // on the button for the middle, which has the focus
+    await ada.page.keyboard.press("Enter"); // on the button for the center, which has the focus
     await hint.waitFor({ state: "detached" });
   });
   assert.notDeepEqual(asked.get(ada).preview.center, center);
@@ -469,8 +469,8 @@ test("on a phone, by who may only look", async () => {
   const phone_hint = phone.page.locator("strata-face-hint section");
   await phone_hint.waitFor();
   await shot(phone, "phone_pick");
-  // The dialog that stepped aside left the stage of another shape: what is tapped is what is seen
-  // there then.
+  // The hidden dialog gave the stage another shape: wait until the picture has it, so that a tap
+  // meets the visible content.
   const fits = (canvas) =>
     Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
   await wait_for(

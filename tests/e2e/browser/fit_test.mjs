@@ -1,6 +1,6 @@
-// Nothing lies over or touches anything else: long names of layers, numbers with their units, the
-// filter beside a chosen record, the switch of the light. On a phone what is painted and undo stay
-// in sight. Controls are named by what is seen on them, and all of the page lies in landmarks.
+// No elements overlap or touch: long names of layers, numbers with their units, the filter next to
+// a chosen record, the switch of the light. On a phone the active layer and undo stay visible.
+// Controls have their visible text as name, and the whole page is in landmarks.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -28,7 +28,7 @@ if (output) mkdirSync(output, { recursive: true });
 const shoot = async (who, name) =>
   output && (await who.page.screenshot({ path: join(output, `fit_${name}.png`) }));
 const button = (name, who = desk) => who.page.getByRole("button", { name, exact: true });
-/** Where each element's words are, and where its own box ends. */
+/** Returns the boxes of the elements. */
 const boxes = (locator) =>
   locator.evaluateAll((all) => all.map((each) => each.getBoundingClientRect().toJSON()));
 const apart = (a, b) =>
@@ -36,7 +36,7 @@ const apart = (a, b) =>
   b.right <= a.left + 0.5 ||
   a.bottom <= b.top + 0.5 ||
   b.bottom <= a.top + 0.5;
-/** What is written in a field, as drawn, does not reach the unit beside it. */
+/** Returns the boxes of a field's drawn text and of its unit. */
 const number_box = (field) =>
   field.evaluate((all) => {
     const input = all.querySelector("input");
@@ -86,7 +86,7 @@ test.beforeAll(async () => {
     values: { urgency: "now", depth: 2.4 },
   });
   person = await server.add_person("ida", "curator");
-  // whose initials are not in what she is called
+  // her initials (IR) are not part of her names
   await server.json("PATCH", "/users/ida", { full_name: "Ida Roe" });
   await desk.sign_in(server, person);
   await page.goto(`${server.url}/models/${model}`);
@@ -241,7 +241,7 @@ test("controls are named by what is seen on them, and everything lies in a landm
   await page.reload();
   await desk.drawn();
   assert.deepEqual(await violations(page, kHeadRules), []);
-  // the chosen layer after a reload has no table
+  // the layer that is chosen after a reload has no table
   await button(words.layers.select("Stone observations")).click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");

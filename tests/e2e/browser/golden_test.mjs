@@ -1,6 +1,6 @@
-// The page and the streamed picture compared with checked-in pictures of tests/golden (generated
-// models only). STRATA_UPDATE_GOLDEN=1 writes them anew: look at what you check in. On failure the
-// picture and a difference image (red: what differs) lie in the build folder.
+// Compares the page and the streamed picture with the pictures of tests/golden (generated models
+// only). STRATA_UPDATE_GOLDEN=1 updates them: check the new pictures before you commit them. On
+// failure the picture and a difference image (red: differing pixels) are in the build folder.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -17,16 +17,16 @@ const kGolden = join(kRoot, "tests", "golden");
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-golden";
 const is_update = process.env.STRATA_UPDATE_GOLDEN === "1";
 
-// A pixel differs when a channel is off by more than `kStep`: less is what other versions of Mesa,
-// libjpeg and FreeType make of the same picture. `share` is how many may: edges of the pot move by
-// a pixel with another rasteriser, letters with another FreeType. `mean` holds the whole to
-// account: a wrong colour on a small patch is allowed by neither.
+// A pixel differs if a channel is off by more than `kStep`: other versions of Mesa, libjpeg and
+// FreeType cause smaller differences. `share` is the allowed share of such pixels: another
+// rasterizer moves the pot's edges by a pixel, another FreeType the letters. `mean` limits the
+// whole picture: neither limit allows a wrong color on a small patch.
 const kStep = 40;
 const kPageLimits = { share: 0.012, mean: 1.6 };
 const kPictureLimits = { share: 0.004, mean: 0.8 };
-// A small thing that is missing drowns in a whole page, so the details are looked at on their own.
-// The limits leave room for the edges of letters and lines; that none of the details may be missing
-// is tried with each of them.
+// A small missing element has little effect on a whole page, so details are compared separately.
+// The limits allow for the edges of letters and lines; the test checks that it detects each missing
+// detail.
 const kDetailLimits = { share: 0.05, mean: 7 };
 
 const failures = [];
@@ -48,7 +48,7 @@ function difference(now, golden, { x, y, width, height }) {
 const within = (found, limits) => found.share <= limits.share && found.mean <= limits.mean;
 const whole = ({ width, height }) => ({ x: 0, y: 0, width, height });
 
-/** Grey, and red where the pictures differ. */
+/** Gray, and red where the pictures differ. */
 function difference_picture(now, golden) {
   const picture = { ...now, data: new Uint8Array(now.data.length) };
   for (let at = 0; at < now.data.length; at += 4) {
@@ -59,7 +59,7 @@ function difference_picture(now, golden) {
   return encode_png(picture);
 }
 
-/** `details`: names and boxes of small parts, compared on their own. */
+/** `details`: names and boxes of small parts, compared separately. */
 function compare(name, shot, limits, details = {}) {
   mkdirSync(kOutput, { recursive: true });
   const file = join(kGolden, `${name}.png`);
@@ -94,7 +94,7 @@ function compare(name, shot, limits, details = {}) {
   writeFileSync(join(kOutput, `${name}.diff.png`), difference_picture(now, golden));
 }
 
-/** The page without a detail must not pass for the golden picture. */
+/** The page without a detail must not match the golden picture. */
 function assert_noticed(name, detail, box, without) {
   if (is_update) return;
   const found = difference(
@@ -109,7 +109,7 @@ function assert_noticed(name, detail, box, without) {
     failures.push(`${name}: the limits do not notice that ${detail} is missing`);
 }
 
-/** Where an element is, in whole pixels. */
+/** Returns an element's box in whole pixels. */
 async function box_of(locator) {
   const { x, y, width, height } = await locator.boundingBox();
   return {
@@ -122,7 +122,7 @@ async function box_of(locator) {
 
 /** The page's own screens, at the size of a laptop and of a phone. */
 async function compare_page(server) {
-  // the legend is seen below the brush
+  // tall enough to show the legend below the brush
   const laptop = await Browser.open({ viewport: { width: 1280, height: 900 } });
   try {
     const { page } = laptop;
@@ -196,7 +196,7 @@ const frame = async (server, request) =>
     await (await server.request("POST", "/models/demo-pot/frame", request)).arrayBuffer(),
   );
 
-/** Looks for one along a line across the pot. */
+/** Searches for one along a line across the pot. */
 async function point_at_open_crack(browser) {
   const card = browser.page.locator("strata-value-readout .card");
   let before = "";
@@ -210,7 +210,7 @@ async function point_at_open_crack(browser) {
   throw new Error("there is no open crack across the pot");
 }
 
-/** docs/public/demo.png: the page at work, a little nearer. */
+/** docs/public/demo.png: the page at work, slightly closer. */
 async function write_readme_picture(browser) {
   const { page } = browser;
   await page.keyboard.press("Escape");
@@ -218,19 +218,19 @@ async function write_readme_picture(browser) {
   await page.setViewportSize({ width: 1280, height: 800 });
   await browser.settled();
   const box = await browser.stage_box();
-  await page.mouse.click(box.x + 20, box.y + 20); // away from the button that opened the dialog
+  await page.mouse.click(box.x + 20, box.y + 20); // outside the button that opened the dialog
   await page.keyboard.press("+");
   await point_at_open_crack(browser);
   mkdirSync(join(kRoot, "docs", "public"), { recursive: true });
   const picture = decode_png(await browser.settled());
-  // a quarter smaller, looks the same
+  // fewer colors make the file a quarter smaller and look the same
   picture.data.forEach(
     (value, at) => (picture.data[at] = Math.min(254, Math.round(value / 2) * 2)),
   );
   writeFileSync(join(kRoot, "docs", "public", "demo.png"), encode_png(picture));
 }
 
-/** Distance of a point to a path of straight pieces. */
+/** Returns the distance of a point to a path of line segments. */
 function distance_to(path, x, y) {
   let least = Infinity;
   for (let i = 0; i + 1 < path.length; ++i) {
@@ -253,8 +253,8 @@ async function compare_seam(server) {
   ];
   const radius = 30;
   const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ff" }] };
-  // Finer than a pixel: a coarser texel on a surface seen edge-on may show a corner while its
-  // middle is hidden, and is not painted.
+  // Finer than a pixel: on a surface seen edge-on, a coarser texel may show a corner while its
+  // center is hidden and unpainted.
   await server.json("POST", "/models/demo-pot/layers", {
     name: "Seam",
     type: "u8",
@@ -270,7 +270,7 @@ async function compare_seam(server) {
   });
   assert.ok(edit.texels_changed > 10_000, JSON.stringify(edit));
 
-  // The stroke does cross seams: neighbours on the surface lie far apart in the texture.
+  // The stroke does cross seams: neighbors on the surface are far apart in the texture.
   let seams = 0;
   let last = null;
   for (let x = path[0][0]; x <= path.at(-1)[0]; x += 4) {
@@ -320,7 +320,7 @@ async function compare_seam(server) {
 
 /** the pot cut open, its inside painted; and its relief in raking light */
 async function compare_cut(server) {
-  // the half before the eye is cut away
+  // without the half nearer to the camera
   const camera = { ...pot_camera(960, 720, 0.3), section: [[0, 1, 0, 0]] };
   const palette = { mode: "categorical", points: [{ at: 1, color: "#00c8ff" }] };
   await server.json("POST", "/models/demo-pot/layers", {

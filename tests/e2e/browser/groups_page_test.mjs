@@ -1,6 +1,6 @@
-// Groups on the page: an administrator makes one, puts people into it, gives it a role in a
-// project; its people see the project and where their role comes from, until it is taken away under
-// their open pages.
+// Groups on the page: an administrator creates one, adds people and gives it a role in a project;
+// its people see the project and the origin of their role, until it ends while their pages are
+// open.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
@@ -10,7 +10,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-// What the browser says of answers that the test wants, and of sockets that the server ends.
+// Console messages about answers that the test causes, and about sockets that the server ends.
 const kExpected = [
   "status of 401",
   "status of 403",
@@ -73,7 +73,10 @@ test("a group is made with the keyboard; a name that is taken is told at its fie
   await leave_inner_dialog();
   await owner.page.getByLabel(words.groups.new_name).fill("STUDENTS");
   await owner.page.keyboard.press("Enter");
-  await owner.page.getByRole("alert").getByText("There is a group called `Students`.").waitFor();
+  await owner.page
+    .getByRole("alert")
+    .getByText("There is already a group with the name `Students`.")
+    .waitFor();
   assert.equal(
     await owner.page.getByLabel(words.groups.new_name).getAttribute("aria-invalid"),
     "true",

@@ -1,5 +1,5 @@
-// The histogram of a measurement: the colours' range is moved by keys and by the pointer, and is
-// everyone's then.
+// The histogram of a measurement: keys and the pointer move the colors' range, which then changes
+// for everyone.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { attach_log, ends_well, test } from "../support/js/cases.mjs";

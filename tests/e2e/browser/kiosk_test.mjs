@@ -1,10 +1,10 @@
-// A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without
-// its server and with it again, loaded anew from afar and revoked. The page's clock is the test's.
-// STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at;
-// STRATA_KIOSK_ALONE_MIN: minutes of that clock for which its tour plays alone after each;
-// STRATA_KIOSK_STEP_S: how much of it passes at once then, with one stop of the tour each time;
-// STRATA_KIOSK_TOURS: how often the tour is seen through before, with each way to a stop in its own
-// time. 205, 50, 75 and 0 are a week, in an hour; 24, 1, 5 and 10 are 480 ways, in 40 minutes.
+// A kiosk in a real browser: by its link alone, with fingers, left alone and used again, without
+// its server and with it again, reloaded remotely and revoked. The test controls the page's clock.
+// STRATA_KIOSK_ROUNDS: number of visits during which memory is measured; STRATA_KIOSK_ALONE_MIN:
+// minutes of that clock for which the tour plays alone after each visit; STRATA_KIOSK_STEP_S:
+// seconds that pass at once in that time, with one stop of the tour each; STRATA_KIOSK_TOURS:
+// number of complete tours before the visits, each with every camera movement at normal speed. 205,
+// 50, 75 and 0 are a week, in an hour; 24, 1, 5 and 10 are 480 movements, in 40 minutes.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -19,11 +19,11 @@ const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
 const kStep_s = Number(process.env.STRATA_KIOSK_STEP_S ?? 5);
 const kTours = Number(process.env.STRATA_KIOSK_TOURS ?? 1);
 const kUpright = { width: 1080, height: 1920 };
-// the last one is the test's own
+// the test itself uses the last one
 const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright];
 const kTarget_px = 57; // 15 mm
-// MB, and of the server below: what the allocators of both make of the same work, and no leak of a
-// picture a round
+// MB, for the page, and below for the server: allows for the allocators of both with the same work,
+// but not for a leak of a picture a round
 const kMostHeapGrowth = 1.5;
 const kMostServerGrowth = 48; // MB
 const kMostNodeGrowth = 60;
@@ -39,7 +39,7 @@ const live = () =>
     () => page.locator("strata-kiosk-stage canvas.live[data-still=true]").count(),
     "a live picture that is still",
   );
-/** A time that the page's timers see pass, in steps between which it hears what the server says. */
+/** Advances the page's clock in steps; between them the page handles messages of the server. */
 const pass = async (seconds, step_s = 5) => {
   for (let left = seconds; left > 0; left -= step_s) {
     await page.clock.fastForward(Math.min(step_s, left) * 1000);
@@ -53,7 +53,7 @@ const eye = ({ view }) =>
     (c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0),
   );
 const apart = (a, b) => Math.hypot(...a.map((each, index) => each - b[index]));
-/** Fingers along paths of equally many points, as a screen tells of them. */
+/** Moves fingers along paths with the same number of points, as a touch screen reports them. */
 async function touch(...paths) {
   const points = (at) => paths.map((path, id) => ({ id, x: path[at][0], y: path[at][1] }));
   await cdp.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(0) });
@@ -72,7 +72,8 @@ const middle = async (locator) => {
 };
 
 /**
- * On each screen, all that can be touched is large enough, in the lower half, and leads nowhere.
+ * On each screen, all controls are large enough, in the lower half, and no link leads to another
+ * page.
  */
 async function assert_within_reach(where) {
   for (const screen of kScreens) {
@@ -136,10 +137,10 @@ let browser,
 
 test.beforeAll(async () => {
   browser = await Browser.open({ viewport: kUpright, hasTouch: true });
-  // on a busy machine more threads have memory of their own, which looks like growth
+  // on a busy machine more threads have separate memory, which looks like growth
   server = new StrataServer({ demo: true, env: { MALLOC_ARENA_MAX: "2" } });
   ({ page } = browser);
-  // a kiosk needs none of WebCodecs
+  // a kiosk does not need WebCodecs
   await page.addInitScript(() =>
     ["VideoDecoder", "ImageDecoder", "VideoFrame", "EncodedVideoChunk"].forEach(
       (name) => delete globalThis[name],
@@ -183,9 +184,7 @@ test("at rest the server is asked for nothing; the picture comes nearer by itsel
       .evaluate((canvas) =>
         canvas.getAnimations().some(({ animationName }) => animationName === "come-near"),
       );
-  /**
-   * How often its camera was sent within a moment; null where the stop was another one at its end.
-   */
+  /** Returns how often the camera was sent within a moment; null if the stop changed during it. */
   const moves = async () => {
     const [title, seq] = [await page.locator("h1").textContent(), sent.camera.seq];
     await page.clock.runFor(1500);
@@ -347,7 +346,7 @@ test("a tap on a class says which it is, beside the place, until the object move
   await fits("second stop");
   const choose = (name) =>
     wait_for(async () => {
-      await button(name).tap(); // while the row of buttons slides, a tap may go beside
+      await button(name).tap(); // while the row of buttons slides, a tap may miss
       return (await button(name).getAttribute("aria-pressed")) === "true";
     }, `the layer ${name}`);
   await choose("pieces");
@@ -396,7 +395,7 @@ test("a tap tells of what is there, with its picture", async () => {
   const before_swipe = sent.layers;
   const on_card = await card.locator(".words").boundingBox();
   await touch(line([on_card.x + 700, on_card.y + 100], [on_card.x + 300, on_card.y + 110]));
-  // A browser takes the first tap after a fling for the end of it.
+  // A browser treats the first tap after a fling as the end of the fling.
   const close = card.getByRole("button", { name: "Close", exact: true });
   await wait_for(
     async () =>
@@ -410,14 +409,14 @@ test("a tap tells of what is there, with its picture", async () => {
 test("its words are in the visitor's language", async () => {
   await button("Deutsch").tap();
   await heading("Vierzehn Scherben").waitFor();
-  // of the last one nobody has written a German name
+  // the last one has no German name
   for (const name of ["Scherben", "Risse", "pieces"]) await button(name).waitFor();
   await button("Sherd 3").tap();
   await card.getByText("Wandstärke", { exact: true }).waitFor();
   await shot("german");
   await button("Schließen").tap();
   await button("Español").tap();
-  await heading("Fourteen sherds").waitFor(); // which nobody has translated
+  await heading("Fourteen sherds").waitFor(); // which has no translation
   await button("Siguiente").waitFor();
 });
 
@@ -562,7 +561,7 @@ test(`memory stays flat over ${kRounds} visitors`, async () => {
   const told = ({ heap_mb, nodes, listeners, server_mb: rss }) =>
     `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
   await cdp.send("Performance.enable");
-  // and how many cameras the way there has at least
+  // with the least number of cameras on the way to each
   const kStops = [
     ["The vessel from the well", 2],
     ["Fourteen sherds", 2],
@@ -592,11 +591,10 @@ test(`memory stays flat over ${kRounds} visitors`, async () => {
     await page.emulateMedia({ reducedMotion: "reduce" });
     await pass(kAlone_min * 60, kStep_s);
   };
-  // until all is loaded and compiled
+  // until everything is loaded and compiled
   for (let round = 0; round < 8; ++round) await visit(round === 0 ? kTours : 0);
   const first = await used();
-  // of many visitors, after half of them: allocators go on taking their fill for a while, and what
-  // leaks does not end
+  // the state after half of the visitors: allocators grow for a while, and leaks do not stop
   let settled = first;
   const clock = () => page.evaluate(() => performance.now());
   const from_ms = await clock();
@@ -630,7 +628,7 @@ test("revoked, it says so in plain words, and keeps nothing", async () => {
   await page.getByRole("heading", { name: "This screen no longer has a tour" }).waitFor();
   assert.equal(new URL(page.url()).pathname, "/kiosk/nothing");
 
-  // a server that stops says so, for as long as it still answers
+  // a stopping server reports this while it still answers
   browser.assert_no_complaints([...kOfLostServer, "status of 401", "status of 503"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

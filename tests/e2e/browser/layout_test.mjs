@@ -1,6 +1,6 @@
-// Where things stand in windows of phones, tablets, desks and walls: what is chosen comes into
-// sight, menus stay inside, rows that scroll say so, words are about the pointers that there are,
-// and on walls they can be read.
+// The layout in windows of phones, tablets, desks and walls: the chosen element becomes visible,
+// menus stay inside the window, scrolling rows indicate it, texts match the available pointers, and
+// are readable on walls.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";

@@ -1,5 +1,5 @@
-// A curator locks a layer while somebody paints on it: she sees it at once, nothing more of hers is
-// sent, and it goes on once it is unlocked.
+// A curator locks a layer while somebody paints on it: she sees it immediately, her page sends no
+// more edits, and painting continues after it is unlocked.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
@@ -9,7 +9,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-const kEnough = 150; // pixels of a stroke that is there
+const kEnough = 150; // pixels of a visible stroke
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -27,7 +27,7 @@ const told_in_panel = ({ page }) =>
   page.locator("strata-brush-panel").getByText(words.layers.locked_detail("Finds"));
 const lock_of = ({ page }, says) =>
   page.locator("strata-layer-panel").getByRole("img", { name: says });
-/** What this page sends from now on that would change something. */
+/** Collects the messages with changes that this page sends from now on. */
 function changes_sent({ page }) {
   const sent = [];
   page.on("websocket", (socket) =>

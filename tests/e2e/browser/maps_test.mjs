@@ -1,6 +1,6 @@
-// Maps from files in the page: a shapefile with names, a scanned map by its colours, a raster of
-// numbers, an orthophoto as a look, which is then renamed and moved. What the dialogs say of the
-// files, and what is refused.
+// Maps from files in the page: a shapefile with names, a scanned map by its colors, a raster of
+// numbers, an orthophoto as a surface image, which is then renamed and moved. Tests the dialogs'
+// texts about the files, and refusals.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -16,7 +16,7 @@ import { texts_of } from "../support/js/texts.mjs";
 const words = texts_of("en");
 
 const kSupport = join(dirname(fileURLToPath(import.meta.url)), "..", "support");
-const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
+const kMagenta = "#ff00ffff"; // no part of the pot has this hue
 const file = (name) => join(folder, name);
 
 const base = "/models/demo-pot";
@@ -46,7 +46,7 @@ async function paint() {
   await dialog.waitFor({ state: "detached" });
 }
 
-/** Files over the front of the model, seen along y: x and z. */
+/** Makes files over the front of the model, seen along y: x and z. */
 function make_files({ min, max }) {
   const [x, z, size] = [(min[0] + max[0]) / 2, (min[2] + max[2]) / 2, max[0] - min[0]];
   const code = `

@@ -1,6 +1,6 @@
-// Measuring on a surface whose shape is known: a ridge like a roof. Straight lengths, lengths along
-// the surface, heights, areas and the profile are those of the roof, by mouse, keys and fingers,
-// for people who may only look.
+// Measuring on a surface with a known shape: a ridge like a roof. Straight lengths, lengths along
+// the surface, heights, areas and the profile equal those of the roof, by mouse, keys and fingers,
+// also for viewers.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -16,11 +16,11 @@ const shot = async (name, of = page) => {
     await of.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `measure_${name}.png`) });
 };
 
-// A roof of 200 mm × 120 mm seen from above: it rises from y = 0 to a ridge of 45 mm along y = 60,
+// A roof of 200 mm × 120 mm, seen from above: it rises from y = 0 to a ridge of 45 mm along y = 60,
 // and falls to y = 120.
 const kRidge_mm = 45;
 const kSlope = kRidge_mm / 60;
-const kAlong = Math.hypot(1, kSlope); // of a way up the roof to its shadow
+const kAlong = Math.hypot(1, kSlope); // length up the roof divided by its projection
 const height_at = (y) => kRidge_mm - kSlope * Math.abs(y - 60);
 const roof = [
   "ply",
@@ -67,7 +67,7 @@ const of = (where) => {
   const panel = where.page.locator("strata-measure-panel");
   const button = (name) => panel.getByRole("button", { name, exact: true });
   const figure = (name) => panel.locator(`[data-figure="${name}"]`);
-  /** In millimetres, or square millimetres. */
+  /** In millimeters, or square millimeters. */
   const told = async (name) => {
     const text = await figure(name).innerText();
     const [, number, unit] =
@@ -101,8 +101,8 @@ const of = (where) => {
 };
 
 /**
- * Seen from above in parallel: what a place of the roof is on the page, by what the server sees at
- * two pixels of the page.
+ * In an orthographic view from above: returns the mapping from the roof to the page, from the
+ * server's positions of two pixels of the page.
  */
 async function from_above({ page: on }) {
   await on.locator("strata-stage .surface").focus();
@@ -219,7 +219,7 @@ test("who may only look has the tool, by its key, with no layer chosen", async (
   await browser.drawn();
   roof_from_above = await from_above(browser);
   ({ mm_per_px, click } = roof_from_above);
-  near = 2.5 * mm_per_px; // two ends, each within a pixel and a bit
+  near = 2.5 * mm_per_px; // two ends, each within somewhat more than a pixel
   await page.keyboard.press("m");
   assert.equal(
     await page
@@ -357,7 +357,7 @@ test("at one scale for both the roof is as steep as it is", async () => {
     const [[x0, y0], [x1, y1]] = [points[0], points[Math.floor(points.length * 0.4)]];
     return (y0 - y1) / (x1 - x0);
   };
-  const shown = kSlope / kAlong; // to the length of the slope
+  const shown = kSlope / kAlong; // relative to the length of the slope
   assert.ok(Math.abs((await slope()) / shown - 1) > 0.1, "blown up at first");
   await desk.panel.getByLabel(words.measure.equal).check();
   await wait_for(async () => Math.abs((await slope()) / shown - 1) < 0.03, "the true slope");
@@ -365,14 +365,14 @@ test("at one scale for both the roof is as steep as it is", async () => {
 });
 
 test("the curve of a layer has a gap where there is no value", async () => {
-  await plot.focus(); // keys that are pressed on a checkbox are its own
+  await plot.focus(); // a focused checkbox handles keys itself
   await page.keyboard.press("Escape");
   await desk.none();
   await click(10, 30);
   await click(190, 30);
   await desk.places(2);
   await page.keyboard.press("Enter");
-  await desk.panel.getByLabel(words.measure.shows).waitFor(); // with the profile, which the server answers
+  await desk.panel.getByLabel(words.measure.shows).waitFor(); // after the server's profile
   assert.deepEqual(
     await desk.panel.getByLabel(words.measure.shows).locator("option").allInnerTexts(),
     ["Height (z)", "Moisture (%)"],
@@ -403,7 +403,7 @@ test("the curve of a layer has a gap where there is no value", async () => {
     where: "x > 150",
     value: 2,
   });
-  await readout.getByText("Moisture 2 %").waitFor(); // what others paint meanwhile
+  await readout.getByText("Moisture 2 %").waitFor(); // another person's edit in the meantime
 });
 
 test("the profile is saved as the server's CSV and as a picture", async () => {
@@ -530,7 +530,7 @@ test("what lies on two sides is measured straight; a line through the object is 
   assert.equal(await desk.figure("along").count(), 0);
   await page.keyboard.press("Enter");
   await shot("through");
-  await page.keyboard.press("5"); // both are seen from above
+  await page.keyboard.press("5"); // both are visible from above
   await desk.panel.getByRole("radio", { name: words.measure.ways.seen }).click();
   await desk.is_about("along", 60 * kAlong, near * kAlong);
   assert.equal(await desk.panel.getByText(/The straight lines pass/).count(), 0);

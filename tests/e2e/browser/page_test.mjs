@@ -1,6 +1,5 @@
-// The page at work with one person: what the cursor promises is what is painted, keys and fingers
-// go where they belong, nothing is lost on the way to another page, and what somebody else changed
-// is not overwritten.
+// The page with one person: the cursor shows the area that is painted, keys and fingers have their
+// own functions, navigation loses nothing, and changes of others are not overwritten.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, has_hue, kOfLostServer, rgb } from "../support/js/browser.mjs";
@@ -10,8 +9,8 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
-const kEdge_px = 3; // of the footprint's edge: half a texel, and JPEG's blocks of colour
+const kMagenta = "#ff00ffff"; // no part of the pot has this hue
+const kEdge_px = 3; // around the edge: half a texel, and JPEG's blocks of color
 
 const base = "/models/demo-pot";
 const edits = async (layer) =>
@@ -28,13 +27,13 @@ const menu = async (layer, item) => {
   await page.getByRole("menuitem", { name: item }).click();
 };
 
-/** Magenta, even in the shade, where JPEG leaves little of the hue. */
+/** Whether it is magenta, even in the shade, where JPEG leaves little of the hue. */
 const may_be_magenta = (data, at) => {
   const least = Math.min(data[at], data[at + 2]);
   return least > 24 && data[at + 1] < 0.5 * least;
 };
 
-/** The circle that is drawn around the pointer, in CSS pixels of the stage. */
+/** Returns the circle around the pointer, in CSS pixels of the stage. */
 async function cursor() {
   const circle = page.locator("strata-stage svg.over circle").first();
   const [x, y, r] = await circle.evaluate((each) =>
@@ -43,10 +42,10 @@ async function cursor() {
   return { x, y, r };
 }
 
-/** Clicks once where the pointer is, and compares what is painted then with the circle. */
+/** Clicks once at the pointer, and compares the painted area with the circle. */
 async function compare_footprint(what) {
   await browser.point(0.5, 0.62);
-  // the depth under the pointer is known
+  // the depth under the pointer has arrived
   await page
     .locator("strata-value-readout")
     .getByText(/Position/)
@@ -56,7 +55,7 @@ async function compare_footprint(what) {
   await page.mouse.down();
   await page.mouse.up();
   await browser.saved();
-  // away: the cursor would hide what is painted
+  // the cursor would hide the painted area
   await page.mouse.move(box.x + box.width - 3, box.y + 3);
   await wait_for(
     async () => (await browser.count(rgb(kMagenta))) > circle.r * circle.r,
@@ -95,7 +94,7 @@ async function compare_footprint(what) {
   return circle.r;
 }
 
-/** A box, as a person drops it on the page. */
+/** Drops a box on the page as a person does. */
 async function drop_scan(name) {
   const corners = Array.from({ length: 8 }, (_, i) =>
     [i & 1, i & 2 ? 1 : 0, i & 4 ? 1 : 0].map((c) => c * 40).join(" "),
@@ -129,7 +128,7 @@ async function drop_scan(name) {
       dataTransfer.items.add(new File([body], file));
       const event = new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true });
       document.body.dispatchEvent(event);
-      return event.defaultPrevented; // else the browser leaves for the file
+      return event.defaultPrevented; // otherwise the browser opens the file
     },
     [name, text],
   );
@@ -150,7 +149,7 @@ test.beforeAll(async () => {
     palette,
   });
   await show_only("test");
-  cameras = []; // that left the page
+  cameras = []; // sent by the page
   page.on("websocket", (socket) =>
     socket.on("framesent", ({ payload }) => {
       const message = JSON.parse(payload);
@@ -268,7 +267,7 @@ test("somebody else changes the layer that is being edited", async () => {
     await page.getByLabel(words.layer_dialog.name, { exact: true }).inputValue(),
     "Test",
   );
-  await button(words.layer_dialog.class_add).click(); // a layer of one class gets its second one
+  await button(words.layer_dialog.class_add).click(); // adds a second class to a layer of one class
   await page.getByLabel(words.layer_dialog.class_label(2)).fill("Second");
   await button(words.save).click();
   await radio("Second").waitFor();
@@ -286,7 +285,7 @@ test("a layer of things with records", async () => {
   await button(words.layer_dialog.create).click();
   await page.getByLabel(words.brush.record).fill("70012");
   await page.keyboard.press("Enter");
-  await button(words.brush.make_record(70_012)).click(); // what has no record cannot be painted
+  await button(words.brush.make_record(70_012)).click(); // a key without a record cannot be painted
   await button(words.brush.make_record(70_012)).waitFor({ state: "detached" });
   const { table } = await server.json("GET", `${base}/layers/finds`);
   assert.deepEqual(
@@ -329,7 +328,7 @@ test("a scan that is dropped on a model's page is imported, and the person stays
   assert.equal(page.url(), here);
   await page.getByRole("link", { name: words.import.open, exact: true }).click();
   await page.getByRole("heading", { name: "dropped box", exact: true }).waitFor();
-  await browser.drawn(); // straight from one model to another
+  await browser.drawn(); // directly from one model to another
   await page.getByText(/Is this object .*\?/).waitFor();
 });
 

@@ -1,5 +1,5 @@
-// What a browser loads before it shows a page for the first time, in the coding that is larger
-// (gzip, which browsers take by plain http, too).
+// The bytes that a browser loads before it first shows a page, with the larger encoding (gzip,
+// which browsers also accept by plain http).
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
@@ -11,7 +11,7 @@ const list = join(dist, ".vite", "manifest.json");
 if (!existsSync(list)) missing("the page is not built");
 const manifest = JSON.parse(readFileSync(list, "utf8"));
 
-/** An entry with all that it cannot do without. */
+/** Returns an entry with all its imports. */
 function with_imports(key, found = new Set()) {
   if (found.has(key)) return found;
   assert.ok(manifest[key], `${key} is no piece of the page: ${Object.keys(manifest)}`);
@@ -33,7 +33,7 @@ function weight(...keys) {
   return bytes.reduce((sum, each) => sum + each, statSync(join(dist, "index.html")).size);
 }
 
-// others take from it, so it has no name of a source
+// other entries import it, so its name is not that of a source
 const kShell = [
   "index.html",
   Object.keys(manifest).find((key) => manifest[key].name === "strata-app"),
@@ -53,7 +53,7 @@ const kiosk = weight("index.html", "src/kiosk/main.ts");
 console.log(`a kiosk: ${kiosk} bytes`);
 assert.ok(kiosk <= kMost);
 
-// The coded files hold what the plain ones do, and every script has a source map.
+// Encoded files have the content of the plain ones, and every script has a source map.
 const { brotliDecompressSync, gunzipSync } = await import("node:zlib");
 for (const { file } of Object.values(manifest)) {
   const at = join(dist, file);

@@ -1,4 +1,4 @@
-// A pen on a tablet: it paints, while the hand that holds it rests on the glass; when it is away
+// A pen on a tablet: it paints while the hand that holds it rests on the screen; without the pen
 // two fingers move the model, and one turns it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -115,8 +115,7 @@ test("pressed half as hard the pen paints a narrower line, and as wide as ever w
 test("away with the pen: two fingers move the model, one turns it, and neither paints", async () => {
   await pen("mouseMoved", [-0.02, 0.5]); // over the tools
   painted = await edits();
-  // How long it counts as there is the page's affair: the fingers try again until they are listened
-  // to.
+  // The page decides how long the pen counts as present: the fingers repeat until the page reacts.
   const moves = (gesture) => async () => {
     const from = await camera();
     await gesture();

@@ -1,6 +1,6 @@
-// What one person hides and puts in another order is there again after a reload and in another
-// browser, and others see nothing of it; a computed layer arrives hidden for others, locked, and
-// marked once it is edited by hand; and a person has one colour and one name everywhere.
+// One person's hidden layers and order are kept after a reload and in another browser, and others
+// do not see them; a computed layer is at first hidden for others, locked, and marked after edits
+// by hand; and a person has one color and one name everywhere.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";

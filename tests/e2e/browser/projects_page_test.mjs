@@ -1,5 +1,5 @@
-// Projects on the page: administrators make, rename and delete them, by keyboard, mouse and touch;
-// what would be lost is said before; others are offered nothing.
+// Projects on the page: administrators create, rename and delete them, by keyboard, mouse and
+// touch; the page lists the content that would be lost; other people have no such controls.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -19,7 +19,7 @@ const shoot = async ({ page }, name) => {
   if (output) await page.screenshot({ path: join(output, `projects_${name}.png`) });
 };
 const dialog = ({ page }) => page.locator("dialog[open]");
-// what is slotted is no part of the dialog element itself
+// slotted content is not part of the dialog element itself
 const inside = ({ page }) => page.locator("strata-dialog");
 const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
 const box = ({ page }, name) => page.getByRole("textbox", { name, exact: true });
@@ -69,7 +69,7 @@ let ada, pia, nora, everybody, server, pot, curator, annotator;
 test.beforeAll(async () => {
   ada = await Browser.open(); // an administrator at a desk
   pia = await Browser.open({ ...kPhone, colorScheme: "dark" }); // another, with a phone
-  nora = await Browser.open(); // who may not
+  nora = await Browser.open(); // without the rights
   everybody = { ada, pia, nora };
   server = new StrataServer({ demo: true });
   await server.start();
@@ -261,7 +261,7 @@ test("with tables only, these are named, and its name is typed", async () => {
   await shoot(pia, "with_tables_phone_dark");
   await typed.fill("Villa Giulia, Rome");
   await remove.tap();
-  await heading(pia, words.home.title); // of the only one that is left
+  await heading(pia, words.home.title); // of the only remaining project
   assert.equal(new URL(pia.page.url()).pathname, "/");
   await pia.page.getByText("“Villa Giulia, Rome” was deleted.").waitFor();
   assert.equal(await status({ token: server.token }, "GET", "/projects/villa-giulia"), 404);
@@ -330,7 +330,7 @@ test("whose role changes while the dialog is open is told so there", async () =>
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   ada.assert_no_complaints(["412", "403", "401"]);
-  pia.assert_no_complaints(["409"]); // the table that another one names is tried first
+  pia.assert_no_complaints(["409"]); // deleting a referenced table is tried first
   nora.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

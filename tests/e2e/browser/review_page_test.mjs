@@ -1,5 +1,5 @@
-// A curator has the edits of a layer reviewed: what an annotator paints is hatched, listed,
-// accepted, rejected with a reason she reads, and put back.
+// A curator turns on the review of a layer's edits: an annotator's edits are hatched, listed,
+// accepted, rejected with a visible reason, and reopened.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
@@ -9,7 +9,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-const kEnough = 150; // pixels of a stroke that is there
+const kEnough = 150; // pixels of a visible stroke
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -17,7 +17,7 @@ async function shoot({ page }, name) {
 }
 const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
 const panel = ({ page }) => page.locator("strata-review-panel");
-/** Dark pixels of the stage, which lines of a hatch are. */
+/** Counts the dark pixels of the stage, such as the lines of a hatch. */
 async function dark(who) {
   const { data } = await who.picture(await who.stage_box());
   let count = 0;
@@ -161,7 +161,7 @@ test("the decision is taken back; once more by the notice, as long as it is ther
 
 test("what was accepted the annotator cannot take back", async () => {
   await ada.page.keyboard.press("Control+z");
-  await notice(ada, "what was accepted a curator can take back").waitFor();
+  await notice(ada, "Only a curator can undo accepted strokes").waitFor();
   assert.equal(await texels(), painted);
 });
 

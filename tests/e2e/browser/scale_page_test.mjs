@@ -1,6 +1,6 @@
-// The question about size and up direction, as after a drop of files: it begins with what the
-// server proposes and says why; the model shows what is chosen, is not dimmed and stays in reach;
-// "Decide later" keeps what the card said. On a desk and on a phone.
+// The question about size and up direction, as after dropping files: it shows the server's proposal
+// with its reason first; the model shows the choice, is not dimmed and can be used; "Decide later"
+// keeps the values of the card. On a desk and on a phone.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -17,8 +17,8 @@ const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile
 const kUps = ["+X", "+Y", "+Z", "−X", "−Y", "−Z"];
 
 /**
- * A bowl with a foot, that stands along `axis`, 80 units wide. Its wall is dented at one side: a
- * round one looks the same with +X and −X up.
+ * A bowl with a foot, upright along `axis`, 80 units wide. Its wall has a dent on one side: a round
+ * bowl looks the same with +X and −X up.
  */
 function bowl(axis, comment = "") {
   const rings = [
@@ -97,7 +97,7 @@ async function asked(who) {
   await card(who).waitFor();
   await who.drawn();
 }
-/** How bright the stage is where it shows no model: a veil makes it darker. */
+/** Returns the brightness of the stage outside the model: a dimmed stage is darker. */
 async function ground(who) {
   const box = await who.stage_box();
   const { data } = await who.picture({
@@ -132,7 +132,7 @@ test("a PLY whose header has the unit: the card says so, and the scale bar agree
   await asked(desk);
   assert.match(await reason(desk, "unit"), /From a comment in the file: “unit: mm”/);
   assert.match(await title(desk), /80 × 40 × 80 mm/);
-  assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);
+  assert.deepEqual(await chosen(desk), ["millimeters", "+Y"]);
   await bar_says(desk, "(mm|cm)");
   model = await model_of("bowl with unit");
   assert.deepEqual(
@@ -176,7 +176,7 @@ test("the picture is not dimmed, and the model can be turned while the question 
 });
 
 test("another choice turns the model and changes the scale bar at once, and nothing is kept", async () => {
-  await choose(desk, "metres");
+  await choose(desk, "meters");
   await bar_says(desk, "m");
   assert.match(await title(desk), /80 × 40 × 80 m\?/);
   await choose(desk, "−Y");
@@ -193,14 +193,14 @@ test("another choice turns the model and changes the scale bar at once, and noth
 
 test("decide later: what the card named is kept, marked, and asked again", async () => {
   await asks(desk)
-    .getByText(/“Decide later” keeps millimetres and \+Y up/)
+    .getByText(/“Decide later” keeps millimeters and \+Y up/)
     .waitFor();
   await asks(desk).getByRole("button", { name: words.scale.later }).click();
   await card(desk).waitFor({ state: "detached" });
   await bar_says(desk, "(mm|cm)");
   assert.match(await bar(desk), /Size not confirmed/);
   const without_card = await ground(desk);
-  // a veil takes 80; JPEG a few
+  // dimming subtracts 80; JPEG a few
   assert.ok(
     Math.abs(without_card - with_card) < 12,
     `the picture was dimmed while the card was open: ${with_card} of ${without_card}`,
@@ -225,7 +225,7 @@ test("without a unit in the file the size decides, and says that it is guessed; 
   await drop(phone, file_of("plain_bowl.ply", bowl("z")));
   await asked(phone);
   assert.match(await reason(phone, "unit"), /Guessed from the size/);
-  assert.deepEqual(await chosen(phone), ["millimetres", "+Z"]);
+  assert.deepEqual(await chosen(phone), ["millimeters", "+Z"]);
   await bar_says(phone, "(mm|cm)");
   model = await model_of("plain bowl");
   assert.deepEqual(
@@ -257,7 +257,7 @@ test("without a unit in the file the size decides, and says that it is guessed; 
     assert.match(await reason(desk, "unit"), /From a comment in the file: “unit: mm”/);
     assert.match(await title(desk), /49.6 × 80.3 × 49.8 mm/);
     await bar_says(desk, "(mm|cm)");
-    assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);
+    assert.deepEqual(await chosen(desk), ["millimeters", "+Y"]);
     await wait_for(
       async () => (await asks(desk).locator("strata-thumbnail canvas.drawn").count()) === 6,
       "six pictures",

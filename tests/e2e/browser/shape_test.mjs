@@ -1,4 +1,4 @@
-// Layers that are computed from the shape and layers brought over from another scan, as a person
+// Layers that are computed from the shape and layers transferred from another scan, as a person
 // makes them on the page.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
@@ -14,14 +14,14 @@ const pictures = process.env.STRATA_TEST_OUTPUT;
 const button = (name) => page.getByRole("button", { name, exact: true });
 const base = "/models/demo-pot";
 
-/** For people to look at; nothing compares them. */
+/** For people to check; the test does not compare them. */
 async function keep_picture(name) {
   if (!pictures) return;
   mkdirSync(pictures, { recursive: true });
   await page.screenshot({ path: join(pictures, `shape-${name}.png`) });
 }
 
-/** A hill of `cells` × `cells` squares, 100 mm wide, as a PLY with a number of its own. */
+/** Returns a hill of `cells` × `cells` squares, 100 mm wide, as a PLY with an additional number. */
 function hill(cells) {
   const at = Array.from({ length: cells + 1 }, (_, i) => (100 * i) / cells);
   const vertices = at.flatMap((y) =>
@@ -101,7 +101,7 @@ test("a layer is computed from the shape", async () => {
   await button(words.layers.select("Curvature")).waitFor();
   const layer = await server.json("GET", `${base}/layers/curvature`);
   assert.equal(layer.unit, "1/mm");
-  // its description: it is selected
+  // the description shows that it is selected
   await page
     .getByText(/Quadric|quadric that fits the surface within 4 mm/)
     .first()

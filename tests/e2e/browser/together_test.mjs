@@ -1,6 +1,6 @@
-// Two people look at one model: each sees who is there, where the other points and what they paint
-// while they paint it; one follows the other's view, asks the other to look along, and is told when
-// the other leaves.
+// Two people on one model: each sees the participants, the other's pointer and the other's strokes
+// while they are painted; one follows the other's view, invites the other to follow, and is
+// notified when the other leaves.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -13,8 +13,8 @@ import { texts_of } from "../support/js/texts.mjs";
 const words = texts_of("en");
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-together";
-const kMagenta = "#ff00ff"; // nothing on the pot has this hue
-const kEnough = 150; // pixels of a stroke that is there
+const kMagenta = "#ff00ff"; // no part of the pot has this hue
+const kEnough = 150; // pixels of a visible stroke
 const kPhone = { width: 390, height: 844 };
 const kDesk = { width: 1280, height: 800 };
 const kCrowd = [
@@ -34,7 +34,9 @@ const shot = async (who, name) =>
 const pose_of = ({ view, projection, width, height }) =>
   JSON.stringify([view, projection, width, height]);
 
-/** What a page and the server tell each other: `sent` and `heard` by op, newest only. */
+/**
+ * Records the messages between a page and the server: `sent` and `heard` by op, only the newest.
+ */
 function listen(who) {
   who.sent = {};
   who.heard = {};
@@ -44,7 +46,7 @@ function listen(who) {
       ({ payload }) => {
         if (typeof payload !== "string") return;
         const message = JSON.parse(payload);
-        // The same camera, sent again when it comes to rest, need not be drawn again.
+        // The same camera, sent again at rest, may not be drawn again.
         if (message.op === "camera")
           message.drawn_from =
             where.camera && pose_of(where.camera) === pose_of(message)
@@ -58,12 +60,12 @@ function listen(who) {
 }
 const bea_as_heard = () => anna.heard.presence?.users.find(({ name }) => name === "bea");
 
-/** Column-major matrices, as the protocol has them. */
+/** Column-major matrices, as in the protocol. */
 const times = (m, v) =>
   [0, 1, 2, 3].map((row) =>
     [0, 1, 2, 3].reduce((sum, column) => sum + m[4 * column + row] * v[column], 0),
   );
-/** The place in the window of a camera, by its matrices alone. */
+/** Returns a place's position in the window of a camera, from its matrices. */
 function projected({ view, projection, width, height }, place) {
   const [x, y, , w] = times(projection, times(view, [...place, 1]));
   return { x: (x / w / 2 + 0.5) * width, y: (0.5 - y / w / 2) * height };
@@ -81,7 +83,7 @@ const at_rest = (who) =>
     "a still picture of the newest camera",
     100,
   );
-/** Where Bea points on Anna's page: CSS pixels of the stage. */
+/** Returns Bea's pointer on Anna's page: CSS pixels of the stage. */
 const cursor_at = () =>
   cursor.evaluate((element) => {
     const [box, stage] = [
@@ -192,7 +194,7 @@ test("from the sixth on they are counted, and the menu lists all of them", async
   const folded = crowd.locator("strata-people-menu .faces .face");
   assert.deepEqual([await folded.count(), (await folded.last().textContent()).trim()], [6, "+3"]);
   await crowd.locator("strata-people-menu .faces").click();
-  // and one's own other window
+  // and the person's own other window
   assert.equal(
     await crowd
       .locator("strata-people-menu")
@@ -298,7 +300,7 @@ test("following: the other's view, in their colour, wherever they turn", async (
     await bea.page.keyboard.press(key);
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "Anna's camera to be Bea's");
   await Promise.all([at_rest(anna), at_rest(bea)]);
-  await bea.page.mouse.move(5, 5); // a pointer in the picture would be a difference
+  await bea.page.mouse.move(5, 5); // a pointer would make the pictures differ
   await cursor.waitFor({ state: "detached" });
   const [mine, hers] = await Promise.all(
     [anna, bea].map(async (who) => {
@@ -340,7 +342,7 @@ test("on a phone all that she sees is seen, from where she stands", async () => 
   eye(anna.sent.camera).forEach((value, index) =>
     assert.ok(Math.abs(value - eye(bea.sent.camera)[index]) < 1e-6, "another eye"),
   );
-  // Half the field of view across and along: tangents, of each camera.
+  // Half of the horizontal and vertical field of view: tangents, for each camera.
   const [own, other] = [anna.sent.camera, bea.sent.camera].map(({ projection }) => [
     1 / projection[0],
     1 / projection[5],

@@ -1,5 +1,5 @@
-// Shapes of the brush at work: made of a picture by file and by drop, chosen by mouse and by keys,
-// painted with, renamed, and deleted by somebody else; and the limit of the slant.
+// Brush shapes on the page: made from a picture by file and by drop, chosen by mouse and by keys,
+// used for painting, renamed, and deleted by another person; and the limit of the slant.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";

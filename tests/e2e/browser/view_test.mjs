@@ -1,5 +1,5 @@
-// The View panel at work: looks, light and section change the picture of this person alone, by
-// mouse and by keys, and a brush paints what the section leaves to be seen.
+// The View panel: surface images, light and section change only this person's picture, by mouse and
+// by keys, and a brush paints the part that the section leaves visible.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -13,7 +13,7 @@ const words = texts_of("en");
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-view";
 mkdirSync(kOutput, { recursive: true });
-const kCyan = [0, 200, 255]; // nothing on the pot has this hue
+const kCyan = [0, 200, 255]; // no part of the pot has this hue
 const radio = (name) => panel.getByRole("radio", { name, exact: true });
 const stage = async () => browser.picture(await browser.stage_box());
 const shot = async (name) =>
@@ -39,7 +39,7 @@ test.beforeAll(async () => {
   for (let at = 0; at < cyan.data.length; at += 4) cyan.data.set([...kCyan, 255], at);
 
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
-    // they would hide what lies below
+    // they would hide the content below
     await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false });
 
   await page.goto(server.link);
@@ -101,7 +101,7 @@ test("a section opens the pot, and the brush paints what is seen then", async ()
       if ([120, 92, 79].every((wanted, c) => Math.abs(data[at + c] - wanted) < 4)) ++count;
     return count;
   };
-  uncut = inside(await stage()); // some of the clay has that colour, too
+  uncut = inside(await stage()); // some of the clay also has that color
   await panel.getByLabel(words.view.cut_position).fill("500");
   await wait_for(
     async () => inside(await stage()) > 3 * uncut + 3000,

@@ -1,6 +1,6 @@
-// Named views on the page: kept, gone to and left again; by their link in somebody else's browser;
-// named, shown otherwise and deleted, which others see at once; by mouse, keyboard and finger. Who
-// may only look is not offered to change them.
+// Saved views on the page: created, opened and left again; by their link in another person's
+// browser; renamed, changed and deleted, which others see immediately; by mouse, keyboard and
+// finger. Viewers have no controls to change them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -12,7 +12,7 @@ const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-const kExpected = ["status of 412"]; // answers that the test wants
+const kExpected = ["status of 412"]; // answers that the test causes
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -40,7 +40,7 @@ const is_current = (who, name) =>
     async () => (await go(who, name).getAttribute("aria-current")) === "true",
     `${name} to be the view that is seen`,
   );
-/** The picture of the model once it no longer changes, without what lies over it. */
+/** Returns the picture of the model once it is stable, without overlays. */
 const picture = ({ page }) => {
   let last = null;
   return wait_for(
@@ -81,7 +81,7 @@ test.beforeAll(async () => {
   server = new StrataServer({ demo: true });
   await server.start();
   layers = (await server.json("GET", `${kBase}/layers`)).layers;
-  // or curators are asked for it
+  // otherwise the page asks curators for it
   id = (await server.json("PATCH", kBase, { scale_verified: true })).id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));

@@ -1,5 +1,5 @@
-// Who comes for the first time: the tour of the model's page, by keyboard and by touch, for who
-// paints and who looks; and projects to choose among.
+// First visits: the tour of the model's page, by keyboard and by touch, for annotators and viewers;
+// and a choice of projects.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -27,7 +27,7 @@ const is_gone = (who) => card_of(who).waitFor({ state: "detached" });
 const button = (who, name) => card_of(who).getByRole("button", { name, exact: true });
 const progress = (who) => card_of(who).locator(".head .hint").innerText();
 
-/** The card lies in the window, and beside what it marks. */
+/** The card is inside the window, next to the marked element. */
 async function lies_well(who, what) {
   const card = await card_of(who).boundingBox();
   const { width, height } = who.page.viewportSize();
@@ -58,10 +58,7 @@ async function open_model(who) {
   await who.drawn();
 }
 
-/**
- * It would have begun by then: what is asked of the server after the first picture has been
- * answered.
- */
+/** The tour would have begun by then: the requests after the first picture have been answered. */
 async function offers_nothing(who) {
   await who.page.getByRole("button", { name: words.model.help, exact: true }).click();
   await who.page
@@ -119,7 +116,7 @@ let nora, vic, tablet, everybody, server;
 
 test.beforeAll(async () => {
   nora = await Browser.open({ tour: true }); // an annotator at a desk
-  vic = await Browser.open({ tour: true, ...kPhone }); // who may look
+  vic = await Browser.open({ tour: true, ...kPhone }); // a viewer
   tablet = await Browser.open({ tour: true, ...kTablet });
   everybody = { nora, vic, tablet };
   server = new StrataServer({ demo: true });
@@ -274,7 +271,7 @@ test("with several a project is chosen first; the empty ones are last, and say s
   for (const who of [nora, vic, tablet]) {
     await who.page.goto(server.url);
     await who.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
-    // What is beneath the window's end is asked for when it comes into sight.
+    // Content below the window's edge is loaded when it becomes visible.
     for (const each of await who.page.locator("strata-project-card").all()) {
       await each.scrollIntoViewIfNeeded();
       await each.getByText(/changed (today|yesterday)/).waitFor();

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""People with cameras of their own paint one layer and are cut off at random: nothing is lost, nothing is doubled, and the texels
-are those of a serial replay of what was acknowledged, in the order of its sequence, on a fresh server.
+"""People with different cameras paint one layer and are cut off at random: no edit is lost or
+doubled, and the texels equal those of a serial replay of the acknowledged edits, in the order of
+their sequence, on a fresh server.
 
-    annotators_test.py [--seconds 600] [--seed N] [--people 8] [--turning 4] [--model pot|FILE] [--json FILE]
+annotators_test.py [--seconds 600] [--seed N] [--people 8] [--turning 4] [--model pot|FILE]
+[--json FILE]
 
-Each signs in, paints strokes, polygons, fills, takes back and puts back, over the live connection and over HTTP, sees a view of its own,
-and is cut off every few seconds to tens of seconds: an end, a reset, half a message, or a connection that hangs while the next is open.
-Then what is not known to be durable is sent again under the same ids, now and then what is durable, too. The times and seconds of
-processors that are printed and go into FILE are no part of the verdict."""
+Each signs in, paints strokes, polygons and fills, undoes and redoes, over the live connection and
+over HTTP, has a separate view, and is cut off every few seconds to tens of seconds: an end, a
+reset, half a message, or a connection that hangs while the next one is open. Then edits that are
+not known to be durable are sent again under the same ids, and sometimes durable ones, too. The
+printed times and processor seconds, also in FILE, do not affect the result."""
 import argparse
 import collections
 import datetime
@@ -33,7 +36,7 @@ from support.npy import Raster
 from support.strata_server import LONG_S, StrataServer, wait_for
 
 LAYER = "findings"
-LEAST_CUTS = 2  # of each person, however slow the machine is
+LEAST_CUTS = 2  # for each person, however slow the machine is
 LEAST_EDITS = 200
 SAMPLE_EVERY_S = 5
 
@@ -91,7 +94,7 @@ class Site:
         )
 
     def ask_and_go(self, browser, path, body, key):
-        """A request whose answer nobody waits for."""
+        """Sends a request without waiting for its answer."""
         link = http.client.HTTPConnection(self.server.host, self.server.port, timeout=LONG_S)
         content = json.dumps(body).encode() if body else b""
         link.request(
@@ -124,7 +127,8 @@ def check_faults(ledger):
 
 
 def paint(site, seconds, seed):
-    """All paint for so long, and until each was cut off and something was told twice. Gives the annotators and what was measured."""
+    """All paint for this time, and until each was cut off and some answer was repeated. Returns the
+    annotators and the measurements."""
     browsers = [site.sign_in(number) for number in range(site.people)]
     annotators = [
         Annotator(site, number, browser, f"{seed} {number}")
@@ -198,7 +202,8 @@ def paint(site, seconds, seed):
 
 
 def check_history(site):
-    """Each change that was told saved is there once, and nothing else is. Gives the changes in the order of their sequence."""
+    """Checks that the history has each saved change once, and no other. Returns the changes in the
+    order of their sequence."""
     ledger, rows = site.ledger, site.history()
     sequences = [row["sequence"] for row in rows]
     assert sequences == list(
@@ -207,8 +212,8 @@ def check_history(site):
     saved = ledger.saved()
     of_live = {change.id: change for change in saved if not change.by_http}
     of_http = {change.answer[0]: change for change in saved if change.by_http}
-    # There was nothing to undo, but a copy on a connection that hung was read later, when there
-    # was.
+    # There was nothing to undo at first, but a copy on a hanging connection was read later, when
+    # there was.
     of_copies = {
         change.id: change
         for change in ledger.changes.values()
@@ -246,7 +251,8 @@ def check_history(site):
 
 
 class Replay:
-    """The same edits one by one, each durable before the next is sent, by the same people on a fresh server."""
+    """Repeats the edits one by one, each durable before the next is sent, by the same people on a
+    fresh server."""
 
     def __init__(self, site):
         self.site, self.answers, self.begun = site, queue.Queue(), set()

@@ -1,7 +1,9 @@
-"""The server is killed in mid-load again and again, then its PostgreSQL is: whatever was reported saved is there, once and whole.
+"""The server is killed under load again and again, then its PostgreSQL is: every edit that was
+reported as saved is stored once and completely.
 
-The oracle is the server itself without faults: at the end all edits are painted anew, in their order, on fresh layers,
-and every texel must be equal. Meanwhile states at old sequences are read before and after each kill."""
+The oracle is the server itself without faults: at the end all edits are painted again, in their
+order, on fresh layers, and every texel must be equal. Before and after each kill, states at earlier
+sequences are read."""
 import os
 import random
 import signal
@@ -21,12 +23,12 @@ LAYERS = [
     ("depth", "f32", 2048, [0.0, 1.5, -2.25, 3e7]),
     ("shift", "i16", 2048, [-32768, -5, 12, 32767]),
 ]
-# What the log may say while PostgreSQL is being killed.
+# Messages that the log may contain while PostgreSQL is being killed.
 FAULT_WORDS = [
     "PostgreSQL stopped",
     "unexpected postmaster exit",
     "a commit failed and is tried again",
-    "took back",
+    "undid",
     "could not be loaded again",
     "could not be kept for repeats",
 ]
@@ -92,7 +94,7 @@ class Crashes:
         return found
 
     def remember(self):
-        """Digests of the texels at some acknowledged sequences, the newest among them."""
+        """Records digests of the texels at some acknowledged sequences, including the newest."""
         with self.book.lock:
             sequences = sorted(self.book.edits)
         for at in {sequences[-1], self.random.choice(sequences)}:
@@ -107,7 +109,7 @@ class Crashes:
             ), f"{layer} at {at} is not what it was before the kill"
 
     def check_repeats(self):
-        """Edits that were saved, sent again: the first answer, and nothing new in the history."""
+        """Sends saved edits again: they get their first answer, and the history does not change."""
         with self.book.lock:
             sample = self.random.sample(self.book.repeats, min(3, len(self.book.repeats)))
         for path, edit, key, first in sample:
@@ -134,10 +136,10 @@ class Crashes:
         return found
 
     def check_whole(self, sequence):
-        """One edit is in its layer wholly: the texels that it changed are as many as it said, and of its value."""
+        """Checks that an edit is complete: the number of changed texels, and their value."""
         layer, edit, answer = self.book.edits[sequence]
         changes = self.texels(layer, sequence).differences(self.texels(layer, sequence - 1))
-        # The raster holds the gutter, too, which the count leaves out.
+        # The raster also contains the gutter, which the count leaves out.
         assert len(changes) >= answer["texels_changed"], (sequence, len(changes), answer)
         assert bool(changes) == (answer["texels_changed"] > 0), sequence
         wanted = (0, False) if edit.get("erase") else (edit["value"], True)
@@ -156,7 +158,8 @@ class Crashes:
         )
 
     def survive(self, kill):
-        """Whatever is known before each of many kills is so after it, while people paint."""
+        """Checks that everything known before each of many kills is unchanged after it, while
+        people paint."""
         for _ in range(KILLS):
             self.book.wait_for_more(self.random.randint(8, 40))
             self.remember()
@@ -166,7 +169,8 @@ class Crashes:
             self.check_repeats()
 
     def compare_with_replay(self, newest):
-        """All edits anew and in order, on fresh layers and without faults: the same texels."""
+        """Paints all edits again in order, on fresh layers and without faults: the texels are
+        equal."""
         self.make_layers(" replayed")
         edits = [self.book.edits[sequence][:2] for sequence in sorted(self.book.edits)]
 
@@ -210,7 +214,7 @@ def crashes(server):
 
 @pytest.fixture(scope="module", autouse=True)
 def painters(crashes):
-    """They paint until their case asks them to stop."""
+    """They paint until their case stops them."""
     painters = crashes.painters()
     for painter in painters:
         painter.start()

@@ -1,4 +1,5 @@
-"""Hostile texts, names and files in every place of tables, records and attachments that takes them: refused, or kept as the text that they are."""
+"""Hostile texts, names and files in every place of tables, records and attachments that accepts
+them: refused, or stored as plain text."""
 import json
 import struct
 import urllib.parse
@@ -67,7 +68,7 @@ def quoted(text):
 
 
 class Site:
-    """What must be the same after every attempt."""
+    """The state that must be the same after every attempt."""
 
     def __init__(self, server):
         self.server = server
@@ -94,7 +95,7 @@ def site(server):
 
 
 def test_texts_as_names(server, site):
-    """As names of things they are names; what they name is found by its slug, which is made of letters."""
+    """As names they stay unchanged; requests use the slug, which has only letters."""
     for text in TEXTS:
         made = server.request(
             "POST",
@@ -269,7 +270,7 @@ def png_head(width, height):
 
 
 def test_hostile_files(server):
-    """None is shown in our origin as anything that runs, whatever it is called and whatever type the sender says."""
+    """In the server's origin no file runs as a script, with any name and any declared type."""
     for name, body, media_type in [
         ("photo.jpg", b"<html><script>fetch('/api/v1/projects')</script>", "text/html"),
         (

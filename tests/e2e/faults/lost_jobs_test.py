@@ -1,7 +1,8 @@
-"""Jobs that a restart of the server ends: whoever could see them reads what happened, nobody reads of success that was not, and nothing is left over.
+"""Jobs that a restart of the server ends: everybody who could see them reads the outcome, no failed
+job is reported as a success, and no data are left over.
 
-The server is killed, or asked to stop, while an import runs and another one waits; and again and again at any moment of an import, where the oracle is
-the list of models."""
+The server is killed, or asked to stop, while an import runs and another one waits; and again and
+again at any moment of an import, where the oracle is the list of models."""
 import os
 import urllib.parse
 
@@ -27,10 +28,10 @@ def check_lost(server, jobs, outsider):
     for job in jobs:
         answer = server.ok("GET", f"/jobs/{job}").json()
         assert answer["state"] == "failed", answer
-        assert answer["problem"]["title"] == "Server was restarted", answer
+        assert answer["problem"]["title"] == "Server restarted", answer
         assert (
-            "nothing of it was kept" in answer["problem"]["detail"]
-            and "Start it again" in answer["problem"]["detail"]
+            "kept nothing of it" in answer["problem"]["detail"]
+            and "Start the import again" in answer["problem"]["detail"]
         ), answer
         assert "model" not in answer, answer
         assert listed[job] == answer, (listed[job], answer)
@@ -47,7 +48,7 @@ def models(server):
 
 @pytest.fixture(scope="module")
 def outsider(server):
-    return Someone(server, "otto", "guest")  # a role in no project
+    return Someone(server, "otto", "guest")  # without a role in any project
 
 
 def test_a_job_that_ended_is_known_after_a_restart_with_what_it_made(server, story):
@@ -91,7 +92,7 @@ def test_what_runs_and_what_waits_is_lost(server, outsider, how):
 
 
 def test_a_job_is_done_exactly_where_its_model_is_there(server):
-    """Killed at any moment of an import."""
+    """Kills the server at any moment of an import."""
     for n in range(KILLS):
         job = begin(server, f"Model {n}")
         # A share of the work, not of the time: each round kills later than the one before.
@@ -109,7 +110,7 @@ def test_a_job_is_done_exactly_where_its_model_is_there(server):
 
 
 def test_what_was_lost_is_started_again_under_the_same_key(server):
-    """And new jobs get new ids."""
+    """New jobs also get new ids."""
     key = {"Idempotency-Key": "again-and-again"}
     job = server.ok("POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key).json()["id"]
     server.kill()

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""What somebody who means harm would try, really tried against real servers, with the answers as a table. Fails where an answer is another one, and where docs/reference/security.md tells something
-else than the answers; `--update-docs` writes it anew."""
+"""Attempts of an attacker, made against real servers, with the answers as a table.
+
+Fails if an answer differs from the expected one, or docs/reference/security.md from the answers;
+`--update-docs` writes the answers to that page."""
 import concurrent.futures
 import sys
 
@@ -48,7 +50,7 @@ def at_one_server(*attempted):
     return run
 
 
-# Each with servers of its own: most of the time of some is waiting.
+# Each group has its own servers: some mostly wait.
 GROUPS = {
     "people": at_one_server(coming_in, guessing),
     "owner": lambda table: owner_token.attempts(table, site),
@@ -63,7 +65,7 @@ GROUPS = {
 
 
 def begun():
-    """The table that each group will have made. All run at once: most of the time of some is waiting."""
+    """Starts all groups at once, because some mostly wait; returns the future tables."""
     hands = concurrent.futures.ThreadPoolExecutor(len(GROUPS))
 
     def made(attempts):
@@ -95,7 +97,7 @@ def test_the_page_tells_what_was_answered(tables):
 
 
 def main():
-    """Writes the page anew."""
+    """Writes the table to the page."""
     if sys.argv[1:] != ["--update-docs"]:
         sys.exit("security_attempts_test.py --update-docs; as a test it is run by pytest")
     joined(begun()).write()

@@ -1,6 +1,7 @@
-"""People who paint by script, each with an account, a view and a connection of their own that is cut off at random.
+"""People who paint by script, each with a separate account, view and connection that is cut off at
+random.
 
-What they send they send under the same id until the server says that it is durable."""
+They send each message under the same id until the server reports that it is durable."""
 import math
 import random
 import threading
@@ -22,7 +23,8 @@ def new_id():
 
 
 class Annotator(threading.Thread):
-    """Paints until `site.stopping`, then waits until all of it is durable (`drained`), then looks on until `site.leaving`."""
+    """Paints until `site.stopping`, waits until all edits are durable (`drained`), then watches
+    until `site.leaving`."""
 
     def __init__(self, site, number, browser, seed):
         super().__init__(daemon=True, name=f"painter{number}")
@@ -31,8 +33,8 @@ class Annotator(threading.Thread):
         self.turning = number < site.turning
         self.angle = 2 * math.pi * number / site.people
         self.line, self.lines, self.hanging = None, [], []
-        self.waiting, self.done = {}, []  # by id what is not known to be durable, in order; what is
-        self.again = False  # something was put off
+        self.waiting, self.done = {}, []  # messages by id, in order: not durable; durable
+        self.again = False  # the server refused a message temporarily
         self.cuts = dict.fromkeys(WAYS, 0)
         self.camera_seq, self.next_turn, self.cut_at, self.cut_way = 0, 0.0, 0.0, WAYS[0]
         self.drained = threading.Event()
@@ -95,7 +97,7 @@ class Annotator(threading.Thread):
         self.come_back()
 
     def come_back(self):
-        """A new connection, on which all is sent again that is not known to be durable."""
+        """Opens a new connection, and sends everything again that is not known to be durable."""
         while True:
             if not self.line.given_up:
                 self.ledger.dropped.append(self.line.code)
@@ -111,7 +113,8 @@ class Annotator(threading.Thread):
                 pass
 
     def take_up(self, welcome):
-        """As a page does: what the server says it has is not sent again, at least not always."""
+        """As a page does, does not send messages again that the server has, or sends only some of
+        them."""
         saved_through = {stroke["stroke"]: stroke["n"] for stroke in welcome["strokes"]}
         with self.ledger.lock:
             self.ledger.claims += list(saved_through.items())
@@ -122,7 +125,7 @@ class Annotator(threading.Thread):
                     ):
                         change.promised = True
                         del self.waiting[change.id]
-        if self.done and self.random.random() < 0.4:  # somebody whose answers were lost
+        if self.done and self.random.random() < 0.4:  # as if their answers were lost
             for change in self.random.sample(self.done[-50:], min(3, len(self.done[-50:]))):
                 self.transmit_all([change])
         self.transmit_waiting()
@@ -179,9 +182,9 @@ class Annotator(threading.Thread):
                 or (change.begin and message["status"] in (404, 409))
             )
         ):
-            self.put_off(change)  # also a batch whose predecessor was put off
+            self.put_off(change)  # also a batch after a refused predecessor
         elif change and not change.answer and not change.begin and message["status"] in (409, 422):
-            change.refused = message["title"]  # nothing to undo, a fill beside the model
+            change.refused = message["title"]  # nothing to undo, or a fill outside the model
             with self.ledger.lock:
                 self.waiting.pop(change.id, None)
         else:
@@ -193,10 +196,10 @@ class Annotator(threading.Thread):
         if len(change.lines) > MOST_ATTEMPTS:
             raise AssertionError(f"{change.kind} {change.id} was put off {len(change.lines)} times")
 
-    # --- what a person does
+    # --- actions of a person
 
     def pause(self, seconds):
-        """Time passes; the camera turns, and the connection may be cut off."""
+        """Waits while the camera turns; may cut off the connection."""
         end = time.monotonic() + seconds
         while True:
             now = time.monotonic()
@@ -228,18 +231,19 @@ class Annotator(threading.Thread):
         if change.by_http:
             return self.post(change)
         try:
-            if time.monotonic() >= self.cut_at:  # so no pause has cut it off
+            if time.monotonic() >= self.cut_at:  # so that no pause has cut it off
                 self.line.send_half(change.message)
                 return self.cut_off(self.cut_way)
             self.transmit(change)
             if self.random.random() < 0.03:
-                self.transmit(change)  # twice at once
+                self.transmit(change)  # sends it twice at once
         except AWAY:
             self.come_back()
         return None
 
     def post(self, change):
-        """Over HTTP until it is answered; now and then nobody waits for the answer, and all is asked again."""
+        """Sends over HTTP until there is an answer; sometimes abandons the answer and sends
+        everything again."""
         path = f"/models/{self.site.model['id']}/layers/{self.site.layer}/"
         path, body = (
             (path + "edits", change.message["edit"])
@@ -250,7 +254,7 @@ class Annotator(threading.Thread):
         for _ in range(MOST_ATTEMPTS):
             change.lines.append(None)
             try:
-                # not an undo: what it does depends on when it arrives
+                # not an undo: its effect depends on its order
                 if body and self.random.random() < 0.2:
                     self.site.ask_and_go(self.browser, path, body, change.id)
                 answer = self.browser.request("POST", path, body, **{"Idempotency-Key": change.id})
@@ -261,7 +265,7 @@ class Annotator(threading.Thread):
                 self.settle(change)
                 if self.random.random() < 0.8:
                     return None
-                continue  # though it was answered
+                continue  # in spite of an answer
             if answer and answer.status not in (429, 503):
                 if change.saved_at:
                     self.ledger.fault(f"{change.message} was saved, and then got {answer}")
@@ -289,7 +293,7 @@ class Annotator(threading.Thread):
             else {"op": "edit", "edit": getattr(self, kind)()},
         )
         if kind == "undo" and self.random.random() < 0.4:
-            self.change("redo", {"op": "redo"})  # before a new stroke leaves nothing to put back
+            self.change("redo", {"op": "redo"})  # before a new stroke removes the redo
         return None
 
     def change(self, kind, message):
@@ -342,7 +346,7 @@ class Annotator(threading.Thread):
         }
 
     def recolour(self):
-        """What it does depends on all edits before it."""
+        """Its effect depends on all edits before it."""
         return {
             "op": "fill",
             "mode": "where",

@@ -1,6 +1,8 @@
-"""What was tried against a server and how it answered, as a table: printed, and kept in docs/reference/security.md between two marks.
+"""The attempts on a server and its answers as a table: printed, and kept in
+docs/reference/security.md between two marks.
 
-An answer is what must be the same on every machine; what is measured beside it (seconds, megabytes, how many calls there are) is told, and not compared."""
+An answer must be the same on every machine. Measured values (seconds, megabytes, numbers of calls)
+are listed, but not compared."""
 import os
 import threading
 
@@ -10,11 +12,11 @@ BEGIN, END = (
     "<!-- attempts: written by tests/e2e/faults/security_attempts_test.py --update-docs -->",
     "<!-- end of attempts -->",
 )
-HEAD = "| attempt | answer | measured | what keeps it |\n|---|---|---|---|\n"
+HEAD = "| attempt | answer | measured | protection |\n|---|---|---|---|\n"
 
 
 def told(answer):
-    """401, or 401, 429 of several: each once."""
+    """Returns 401, or 401, 429 for several: each once."""
     if isinstance(answer, (set, list, tuple)):
         return ", ".join(str(each) for each in sorted(set(answer)))
     return str(answer)
@@ -25,7 +27,7 @@ class Section:
         self.title, self.rows = title, []
 
     def tried(self, attempt, answer, expected, keeps, measured=""):
-        """Fails where the answer is another one than expected."""
+        """Fails if the answer differs from the expected one."""
         assert told(answer) == told(
             expected
         ), f"{self.title}: {attempt}: {told(answer)}, not {told(expected)} {measured}"
@@ -43,7 +45,7 @@ class Section:
 
 
 class AttemptTable:
-    """Sections may be filled by threads of their own; they stand in the order in which they were asked for."""
+    """Different threads may fill the sections; they keep the order in which they were requested."""
 
     def __init__(self):
         self.sections, self.lock = [], threading.Lock()
@@ -62,7 +64,7 @@ class AttemptTable:
             file.write(page[0] + "\n" + self.markdown() + page[2])
 
     def check_page(self):
-        """The page tells what was answered."""
+        """Checks that the page has these answers."""
         kept, now = _compared(self._page()[1]), _compared(self.markdown())
         differing = [f"- {row}" for row in kept if row not in now] + [
             f"+ {row}" for row in now if row not in kept
@@ -82,6 +84,6 @@ class AttemptTable:
 
 
 def _compared(markdown):
-    """Lines without the third column of tables."""
+    """Returns the lines without the third column of tables."""
     lines = [line.replace("\\|", "\0").split(" | ") for line in markdown.strip().split("\n")]
     return [" | ".join(cells[:2] + cells[3:]) for cells in lines if cells != [""]]

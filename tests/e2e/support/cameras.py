@@ -1,4 +1,4 @@
-"""Cameras of the tests: the README's own helper, with a window of their own."""
+"""Cameras of the tests: from the helper of scripts/, with their own window."""
 import pathlib
 import sys
 

@@ -1,11 +1,11 @@
-"""Certificates that sign themselves, for servers that speak https."""
+"""Self-signed certificates, for servers with https."""
 import os
 import ssl
 import subprocess
 
 
 def make_certificate(folder, name, key_type="ec"):
-    """A certificate of 127.0.0.1 that signs itself: (chain, key)."""
+    """Makes a self-signed certificate of 127.0.0.1: (chain, key)."""
     chain, key = os.path.join(folder, name + ".pem"), os.path.join(folder, name + ".key")
     kind = ["ec", "-pkeyopt", "ec_paramgen_curve:P-256"] if key_type == "ec" else ["rsa:2048"]
     subprocess.run(

@@ -1,4 +1,5 @@
-"""Holds the server's answers against its own contract (openapi.json): status, and the JSON of the body, member by member."""
+"""Checks the server's answers with its own contract (openapi.json): status, and the JSON of the
+body, member by member."""
 import gzip
 import json
 import os
@@ -6,7 +7,7 @@ import re
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 
-FORBIDDEN_OF_ANY_CALL = (b"Not for kiosks", b'"field":"Origin"')
+FORBIDDEN_OF_ANY_CALL = (b"Not allowed for kiosks", b'"field":"Origin"')
 
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 
@@ -39,7 +40,7 @@ class Contract:
         return node
 
     def check(self, method, target, answer):
-        """Raises where the answer is not one that the contract has."""
+        """Raises if the contract does not have the answer."""
         path, method = target.split("?")[0], "GET" if method == "HEAD" else method
         operation = next(
             (
@@ -78,7 +79,7 @@ class Contract:
             )
 
     def faults(self, schema, value, where):
-        """What JSON Schema (as far as the contract uses it) says against the value."""
+        """Returns the faults of the value by JSON Schema, as far as the contract uses it."""
         schema = self._resolve(schema)
         for word, enough in (("oneOf", lambda n: n == 1), ("anyOf", lambda n: n >= 1)):
             if word in schema:

@@ -1,4 +1,4 @@
-"""Reads the server-sent events of a model as they come."""
+"""Reads the server-sent events of a model as they arrive."""
 import http.client
 import json
 import queue
@@ -8,7 +8,7 @@ from support.strata_server import LONG_S
 
 
 class EventReader:
-    """Reads server-sent events on a thread of its own."""
+    """Reads server-sent events on a separate thread."""
 
     def __init__(self, server, model, token=True, after=None):
         secret = server.token if token is True else token
@@ -42,12 +42,12 @@ class EventReader:
         self.ended.set()
 
     def listening(self):
-        """Who listens anew is told from where on."""
+        """Waits until the server has confirmed the start."""
         assert self.events.get(timeout=LONG_S) is None
         return self
 
     def until(self, wanted):
-        """The events up to the first that is as wanted."""
+        """Returns the events up to the first that fulfills the condition."""
         heard = []
         while not heard or not wanted(heard[-1]):
             event = self.events.get(timeout=LONG_S)

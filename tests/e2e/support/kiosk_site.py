@@ -1,4 +1,5 @@
-"""A site with a tour, the link of a kiosk that shows it, and the tries to do more with that link: every call of the contract."""
+"""A site with a tour, the link of a kiosk that shows it, and attempts to use that link for more:
+every call of the contract."""
 import re
 
 from support.addresses import query
@@ -61,7 +62,7 @@ def make_site(server):
     server.ok("POST", "/tables/finds/columns", {"name": "Hoard q8y", "visibility": "private"})
     server.ok("PATCH", "/tables/finds/records/1", {"values": {COLUMN: CELL}})
     server.ok("POST", M + "/layers", {"name": "Tomb q7x", "type": "f32", "visibility": "private"})
-    for name in ("Ledger", "Archive"):  # of no layer
+    for name in ("Ledger", "Archive"):  # without a layer
         server.ok(
             "POST", "/projects/default/tables", {"name": name, "columns": [{"name": "Price"}]}
         )
@@ -139,7 +140,7 @@ def make_kiosk(server, tour, name="Hall", **more):
 
 
 def is_open(path):
-    """What the contract lets a kiosk read of the model."""
+    """Whether the contract lets a kiosk read this path of the model."""
     return re.fullmatch(
         r"/api/v1/(kiosk|models/\{model\}(|/layers(|/\{layer\}(|/records/\{key\}(|/attachments)))|/looks(|/\{look\})|/views(|/\{view\}(|/picture))|/tours/\{tour\})"
         r"|tables/\{table\}(|/columns|/terms|/records/\{key\}(|/attachments))|attachments/\{attachment\})",
@@ -148,7 +149,8 @@ def is_open(path):
 
 
 def sweep(server, secret, tour, files, thread):
-    """Every call of the contract: what changes anything is refused, and what is read is of the one model. How many doors were open, and how many closed."""
+    """Makes every call of the contract: changes are refused, and reads return only content of the
+    one model. Returns how many operations were open, and how many closed."""
     words = {
         "model": "sheet",
         "layer": "finds",
@@ -203,7 +205,9 @@ def sweep(server, secret, tour, files, thread):
                 assert not found, (path, found, answer)
             else:
                 refused += 1
-                assert answer.status == 403 and answer.json()["title"] == "Not for kiosks", (
+                assert (
+                    answer.status == 403 and answer.json()["title"] == "Not allowed for kiosks"
+                ), (
                     method,
                     path,
                     answer,
@@ -213,7 +217,8 @@ def sweep(server, secret, tour, files, thread):
 
 
 def others_closed(server, secret, files):
-    """What is of the kiosk's model but not shown, of another model or of no tour is not there."""
+    """Checks that hidden content of the kiosk's model, and content of other models and outside
+    tours, does not exist."""
     for path, status in (
         ("/models/other", 404),
         ("/models/villa-wall", 404),

@@ -1,9 +1,10 @@
-"""From the sending of a stroke's message to what others see: from what a `Ledger` and the connections of annotators remember."""
+"""Times from sending a stroke's message to its visible effects, from the records of a `Ledger` and
+of the annotators' connections."""
 import bisect
 
 
 def summary(seconds):
-    """Nearest ranks, in milliseconds."""
+    """Returns nearest ranks, in milliseconds."""
     ordered = sorted(seconds)
     if not ordered:
         return {"count": 0}
@@ -18,7 +19,8 @@ def summary(seconds):
 
 
 def histogram(seconds, steps_a_doubling=4):
-    """Upper ends in milliseconds of steps that grow evenly, and how many lie in each."""
+    """Counts seconds in steps that grow evenly; returns their upper ends in milliseconds and their
+    counts."""
     ends = [2 ** (step / steps_a_doubling) for step in range(15 * steps_a_doubling)]
     counts = [0] * len(ends)
     for each in seconds:
@@ -49,7 +51,8 @@ class Sight:
         self.starts = [line[0] for line in self.lines]
 
     def after(self, sent, sequence):
-        """Seconds from `sent` to the first whole frame that shows the edit; None when nothing was looked at then, or the connection ended before."""
+        """Returns the seconds from `sent` to the first whole frame that shows the edit; None if
+        there was no view at that time, or the connection ended before."""
         at = bisect.bisect_right(self.starts, sent) - 1
         if at < 0 or (self.lines[at][1] is not None and self.lines[at][1] < sent):
             return None
@@ -59,7 +62,8 @@ class Sight:
 
 
 def latencies(ledger, annotators):
-    """Of batches of strokes that changed something and were sent once, on a connection that held."""
+    """For batches of strokes that changed something and were sent once, on a connection that was
+    not cut."""
     sights = {annotator.name: Sight(annotator) for annotator in annotators}
     found = {"applied": [], "saved": [], "still": [], "turning": [], "own": []}
     away = 0

@@ -1,9 +1,9 @@
-"""What scripts asked a server to change, and what it said of each."""
+"""Records the changes that scripts request from a server, and its answers."""
 import threading
 
 
 class Change:
-    """One message that changes something, and what the server said of it."""
+    """One message with a change, and the server's answers to it."""
 
     def __init__(self, annotator, kind, message, begin=None, by_http=False):
         self.user, self.kind, self.message, self.begin, self.by_http = (
@@ -15,20 +15,20 @@ class Change:
         )
         self.id = message["id"]
         self.first_sent = self.applied_at = self.saved_at = None
-        self.lines = []  # numbers of the connections that it was sent on, each time
+        self.lines = []  # numbers of the connections on which it was sent, for each time
         self.answer = None  # (sequence, texels_changed, area_m2)
-        self.promised = False  # a welcome said that it was saved
+        self.promised = False  # a welcome reported that it was saved
         self.refused = None
 
 
 class Ledger:
-    """All changes and what was said of each. Whatever does not fit together is a fault."""
+    """All changes and their answers. Any contradiction is a fault."""
 
     def __init__(self):
         self.lock = threading.RLock()
         self.changes = {}  # id -> change
         self.batches = {}  # (stroke, n) -> change
-        self.claims = []  # (stroke, n): a welcome said that all up to n is saved
+        self.claims = []  # (stroke, n): a welcome reported that all up to n is saved
         self.repeats = self.unsaved = self.put_off = 0
         self.dropped = []  # codes of connections that the server ended
         self.faults = []
@@ -47,7 +47,7 @@ class Ledger:
         )
 
     def told(self, change, message, now, saved):
-        """True when it is durable now and was not before."""
+        """Returns True if the change became durable with this message."""
         answer = (message["sequence"], message["texels_changed"], message["area_m2"])
         with self.lock:
             if change.answer is None:

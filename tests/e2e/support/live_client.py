@@ -1,4 +1,5 @@
-"""A small WebSocket client (RFC 6455) that speaks strata.v1: text messages as dicts, binary ones as frame headers."""
+"""A small WebSocket client (RFC 6455) for strata.v1: text messages as dicts, binary ones as frame
+headers."""
 import base64
 import http.client
 import json
@@ -22,14 +23,14 @@ class Refused(Exception):
 
 
 class Closed(Exception):
-    """The server closed the connection, by the code if it gave one."""
+    """The server closed the connection, with the code if it sent one."""
 
     def __init__(self, code=None):
         super().__init__(f"closed with {code}")
         self.code = code
 
 
-AWAY = (OSError, http.client.HTTPException, Closed)  # the server or the connection is
+AWAY = (OSError, http.client.HTTPException, Closed)  # the server or the connection is lost
 
 
 class LiveClient:
@@ -115,7 +116,7 @@ class LiveClient:
 
     @staticmethod
     def framed(opcode, payload):
-        """The bytes of a message on the wire."""
+        """Returns the bytes of a message on the wire."""
         size = len(payload)
         head = bytes([0x80 | opcode])
         if size < 126:
@@ -135,9 +136,9 @@ class LiveClient:
         self.send_raw(1, (message if isinstance(message, str) else json.dumps(message)).encode())
 
     def receive(self, end=None):
-        """The next message: a dict, or for a frame {"op": "frame", …its header…}."""
+        """Returns the next message: a dict, or for a frame {"op": "frame", …its header…}."""
         content = b""
-        kind = 0  # of the message whose first part came
+        kind = 0  # of the message whose first part arrived
         while True:
             if end and time.monotonic() > end:
                 raise AssertionError(f"waited {LONG_S} s for a message")
@@ -181,8 +182,8 @@ class LiveClient:
             }
 
     def receive_until(self, *ops):
-        """The next message of these kinds; frames that come meanwhile are acknowledged."""
-        # the server's pings keep the socket's own limit from passing
+        """Returns the next message of these kinds; acknowledges frames that come before it."""
+        # because of the server's pings the socket's own limit never passes
         end = time.monotonic() + LONG_S
         while True:
             message = self.receive(end)

@@ -1,4 +1,5 @@
-"""A live connection that is read beside what is sent, and that can be cut off in several ways."""
+"""A live connection that is read and written at the same time, and that can be cut off in several
+ways."""
 import json
 import random
 import socket
@@ -13,7 +14,7 @@ WAYS = ("close", "reset", "half a message", "hang")
 
 
 class Line:
-    """A connection that a thread of its own reads; frames are acknowledged as a page does."""
+    """A connection that a separate thread reads; acknowledges frames as a page does."""
 
     def __init__(self, live, hears, fault, number=0):
         self.live, self.hears, self.fault, self.number = live, hears, fault, number
@@ -59,12 +60,12 @@ class Line:
         self.send({"op": "ack", "view_id": frame["view_id"], "frame": frame["frame"]})
 
     def give_up(self, way):
-        """Ends it so that the server hears an end, a reset, or (hang) nothing at all."""
+        """Ends it so that the server gets an end, a reset, or (hang) nothing."""
         self.given_up = True
         try:
             self.live.socket.shutdown(socket.SHUT_RDWR if way == "close" else socket.SHUT_RD)
         except OSError:
-            pass  # the server was quicker
+            pass  # the server was faster
         self.reader.join(LONG_S)
         if way in ("reset", "half a message"):
             self.live.socket.setsockopt(

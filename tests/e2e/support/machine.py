@@ -1,4 +1,4 @@
-"""What a measurement says of the machine, and seconds of processors as /proc counts them."""
+"""A measurement's facts about the machine, and processor seconds from /proc."""
 import collections
 import os
 import subprocess
@@ -20,7 +20,7 @@ def machine():
 
 
 def gl_renderer(binary):
-    """As `strata doctor` names it."""
+    """Returns the name that `strata doctor` prints."""
     said = subprocess.run([binary, "doctor"], capture_output=True, text=True, check=False).stdout
     return next(
         (
@@ -33,32 +33,32 @@ def gl_renderer(binary):
 
 
 def _stat(path):
-    """Name, then what stands after it: state, parent, … (proc(5), from the third on)."""
+    """Returns the name and the fields after it: state, parent, … (proc(5), from the third on)."""
     with open(path, encoding="utf-8", errors="replace") as file:
         head, _, rest = file.read().rpartition(")")
     return head.partition("(")[2], rest.split()
 
 
 def processor_seconds(pid):
-    """Of a process with all of its threads, also those that have ended."""
+    """Seconds of a process with all its threads, also ended ones."""
     _, fields = _stat(f"/proc/{pid}/stat")
     return (int(fields[11]) + int(fields[12])) / _TICKS
 
 
 def thread_seconds(pid):
-    """Of the threads that there are, by name."""
+    """Seconds of the current threads, by name."""
     found = collections.Counter()
     for thread in os.listdir(f"/proc/{pid}/task"):
         try:
             name, fields = _stat(f"/proc/{pid}/task/{thread}/stat")
         except (FileNotFoundError, ProcessLookupError):
-            continue  # ended meanwhile
+            continue  # ended since the list was read
         found[name] += (int(fields[11]) + int(fields[12])) / _TICKS
     return found
 
 
 def family_seconds(pid):
-    """Of a process and all that it started, also those that have ended."""
+    """Seconds of a process and all that it started, also of ended ones."""
     parents, seconds = {}, {}
     for each in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -72,14 +72,14 @@ def family_seconds(pid):
 
 
 def machine_seconds():
-    """Of all processors, whatever they worked for."""
+    """Seconds of all processors, for any work."""
     with open("/proc/stat", encoding="ascii") as file:
         user, nice, system, _, _, irq, soft, *_ = map(int, file.readline().split()[1:])
     return (user + nice + system + irq + soft) / _TICKS
 
 
 class Watch:
-    """Seconds of processors and the load beside it, meanwhile."""
+    """Measures processor seconds and the load over a period."""
 
     def __init__(self, server):
         self.pid, self.loads = server.process.pid, []
@@ -99,7 +99,7 @@ class Watch:
         self.loads.append(os.getloadavg()[0])
 
     def end(self, people):
-        """Cores that were in use, and of them those of the server and its PostgreSQL for each viewer."""
+        """Returns the cores in use, and those of the server and its PostgreSQL for each viewer."""
         used, seconds = self._now(), time.monotonic() - self.began
         spent = {
             name: used[name] - self.at_start[name]

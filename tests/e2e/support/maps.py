@@ -10,7 +10,7 @@ def square(x, y, size):
 
 
 def shp(polygons):
-    """Each polygon a list of rings."""
+    """Each polygon is a list of rings."""
     body = b""
     for number, rings in enumerate(polygons):
         points = [point for ring in rings for point in ring]
@@ -56,7 +56,7 @@ def dbf(fields):
 
 
 def packed(**files):
-    """A zip; in names the last `_` is the dot."""
+    """Returns a zip; in names the last `_` is the dot."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
@@ -65,7 +65,7 @@ def packed(**files):
 
 
 def form(**files):
-    """(body, headers) of a form of files; in names the last `_` is the dot."""
+    """Returns (body, headers) of a form with files; in names the last `_` is the dot."""
     body = b"".join(
         b'--XyZ\r\nContent-Disposition: form-data; name="file"; filename="%s"\r\n\r\n%s\r\n'
         % (".".join(name.rsplit("_", 1)).encode(), content)
@@ -86,7 +86,8 @@ def tiff(
     epsg=None,
     deflated=False,
 ):
-    """Row by row from the top; `kind` is a struct letter, `value(x, y)` a number or as many as there are samples."""
+    """Row by row from the top; `kind` is a struct letter, `value(x, y)` a number, or a number for
+    each sample."""
     bits = 8 * struct.calcsize(kind)
     pixels = b""
     for y in range(height):

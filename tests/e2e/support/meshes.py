@@ -1,4 +1,4 @@
-"""Generated scans: PLY files made here, so that no test depends on a downloaded one."""
+"""Generated scans: PLY files, so that no test depends on a downloaded one."""
 import math
 import struct
 
@@ -25,7 +25,7 @@ def _grid_faces(rows, columns):
 
 
 def folded_grid(cells=20, size=100.0, fold=1.0):
-    """A sheet in folds that hide one another from the side; with a small `fold` it is nearly flat."""
+    """A sheet in folds that hide one another from the side; nearly flat with a small `fold`."""
     step = size / cells
     vertices = [
         (j * step, i * step, fold * (12 * math.sin(j * 0.9) + 4 * math.cos(i * 0.7)))

@@ -1,11 +1,11 @@
-"""What a test needs and is not on this machine."""
+"""Requirements of tests that this machine lacks."""
 import os
 
 import pytest
 
 
 def missing(what):
-    """A failure in CI, and a skip by hand."""
+    """Fails in CI, and skips the test by hand."""
     if os.environ.get("CI") == "true":
         pytest.fail(f"missing: {what}")
     pytest.skip(what, allow_module_level=True)

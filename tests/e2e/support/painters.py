@@ -1,4 +1,4 @@
-"""Painters that never give up: each edit is sent, under the same id, until the server says that it is durable."""
+"""Painters that repeat each edit under the same id until the server reports that it is durable."""
 import random
 import threading
 import time
@@ -9,7 +9,7 @@ from support.strata_server import LONG_S
 
 
 class Book:
-    """What was reported saved: by sequence the layer and the edit as an HTTP body."""
+    """The edits reported as saved: by sequence, the layer and the edit as an HTTP body."""
 
     def __init__(self):
         self.lock = threading.Condition()
@@ -113,7 +113,8 @@ class HttpPainter(Painter):
 
 
 class LivePainter(Painter):
-    """A stroke of several batches; after a lost connection it begins again and sends what was not saved."""
+    """Paints a stroke of several batches; after a lost connection begins it again and sends the
+    batches that were not saved."""
 
     def paint(self):
         layer, edit = self.stroke(2)

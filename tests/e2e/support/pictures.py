@@ -1,10 +1,10 @@
-"""PNG pictures, made and read; TGA and BMP pictures, made."""
+"""PNG pictures, written and read; TGA and BMP pictures, written."""
 import struct
 import zlib
 
 
 def png(width, height, color):
-    """A picture with the colour that `color(x, y)` gives: (r, g, b), (r, g, b, a) or (grey, a)."""
+    """Returns a picture with the colors of `color(x, y)`: (r, g, b), (r, g, b, a) or (gray, a)."""
     kind = {2: 4, 3: 2, 4: 6}[len(color(0, 0))]
     rows = b"".join(
         b"\0" + b"".join(bytes(color(x, y)) for x in range(width)) for y in range(height)
@@ -25,7 +25,7 @@ def png(width, height, color):
 
 
 def tga(width, height, color, packed=False):
-    """Of (r, g, b); `packed`: each pixel a run of its own."""
+    """With colors (r, g, b); `packed`: each pixel is a separate run."""
     kind = 10 if packed else 2
     body = b"".join(
         (b"\x80" if packed else b"") + bytes(reversed(color(x, y)))
@@ -36,7 +36,7 @@ def tga(width, height, color, packed=False):
 
 
 def bmp(width, height, color):
-    """Of (r, g, b)."""
+    """With colors (r, g, b)."""
     pad = bytes(-3 * width % 4)
     rows = b"".join(
         b"".join(bytes(reversed(color(x, y))) for x in range(width)) + pad
@@ -66,7 +66,7 @@ def bmp(width, height, color):
 
 
 def pixels(picture, shown=slice(0, 3)):
-    """Rows of (r, g, b) of a PNG that the server made, or of the channels that are asked for."""
+    """Returns rows of (r, g, b) of a PNG from the server, or of the given channels."""
     width, height, _, kind = struct.unpack(">IIBB", picture[16:26])
     channels = {2: 3, 6: 4}[kind]
     at, data = 8, b""

@@ -1,9 +1,9 @@
-"""PLY files that the server makes, read as other programs read them."""
+"""Reads PLY files of the server as other programs do."""
 import struct
 
 
 def read_ply(content):
-    """What programs see: vertices as dictionaries, faces as triples."""
+    """Returns vertices as dictionaries, and faces as triples."""
     head, _, body = content.partition(b"end_header\n")
     lines = head.decode("ascii").split("\n")
     assert lines[0] == "ply" and lines[1] == "format binary_little_endian 1.0"

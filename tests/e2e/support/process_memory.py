@@ -1,4 +1,4 @@
-"""Memory of a running server, in MB, and whether it works."""
+"""Memory of a running server, in MB, and its activity."""
 import os
 import time
 
@@ -19,21 +19,22 @@ def _processor_s(server):
 
 
 def rests(server, over_s=1.0):
-    """Whether it takes less than a tenth of a processor over that time: no bake is under way."""
+    """Whether it uses less than a tenth of a processor over that time: no surface map is being
+    made."""
     first = _processor_s(server)
     time.sleep(over_s)
     return _processor_s(server) - first < over_s / 10
 
 
 class PeakGrowth:
-    """How much more than at first was taken at any moment within: `mb`, known at the end."""
+    """Measures the largest growth over the memory at the start: `mb`, known at the end."""
 
     def __init__(self, server):
         self.server, self.mb = server, 0.0
 
     def __enter__(self):
         with open(f"/proc/{self.server.process.pid}/clear_refs", "w", encoding="ascii") as file:
-            file.write("5")  # the peak begins anew
+            file.write("5")  # restarts the measurement of the peak
         self.first = resident_mb(self.server)
         return self
 
@@ -42,9 +43,9 @@ class PeakGrowth:
         self.after_mb = resident_mb(self.server) - self.first
 
     def checked(self, most_mb):
-        """In words, once it was compared."""
+        """Returns the comparison in words."""
         assert self.mb <= most_mb, f"{self.mb:.0f} MB more, {most_mb} may be"
-        return f"server at most {_rounded(self.mb)} MB larger (held to {most_mb})"
+        return f"server at most {_rounded(self.mb)} MB larger (limit {most_mb})"
 
 
 def _rounded(mb):

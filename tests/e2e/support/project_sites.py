@@ -1,4 +1,5 @@
-"""Two projects with one of everything each, and the tries of a guest to see what is in one of them: every address of the contract."""
+"""Two projects with one thing of every kind each, and a guest's attempts to see one of them: every
+address of the contract."""
 import re
 import urllib.parse
 
@@ -11,7 +12,7 @@ OF_THE_SITE = ("user", "group", "session", "token", "tool")
 
 
 class Someone(Browser):
-    """A person who came in by an invitation."""
+    """A person who joined by an invitation."""
 
     def __init__(self, server, user, role):
         invitation = server.ok("POST", "/users", {"user": user, "role": role}).json()
@@ -29,7 +30,7 @@ class Someone(Browser):
 
 
 def make_sites(server):
-    """Two projects that have one of everything each."""
+    """Makes two projects with one thing of every kind each."""
     sites = {}
     for name in ("Villa", "Forum"):
         slug = name.lower()
@@ -104,7 +105,8 @@ PNG = bytes.fromhex(
 
 
 def doors(server, site):
-    """Every operation of the contract that leads into the project: method, address there, and the same of what is not there."""
+    """Returns every operation of the contract in the project: method, address, and the same address
+    of a missing thing."""
     for path, operations in server.contract.document["paths"].items():
         place = next((name for name in IN_PROJECTS if "{" + name + "}" in path), None)
         if place is None or path.endswith("/live"):
@@ -125,7 +127,7 @@ def doors(server, site):
 
 
 def nothing_is_seen(server, guest, site):
-    """What is there and not for them answers like what is not there."""
+    """Things that the person cannot see get the same answer as missing ones."""
     count = 0
     for method, there, nowhere, ref, ghost in doors(server, site):
         body = {} if method in ("POST", "PUT", "PATCH") else None

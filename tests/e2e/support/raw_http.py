@@ -1,4 +1,4 @@
-"""Bytes as somebody sends them who keeps to no protocol."""
+"""Sends bytes without regard to a protocol."""
 import socket
 
 

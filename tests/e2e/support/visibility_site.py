@@ -1,4 +1,5 @@
-"""A site where some things are private, and the tries to see them: every question and every address of the contract."""
+"""A site with private content, and attempts to see it: every query and every address of the
+contract."""
 import io
 import re
 import struct
@@ -36,14 +37,14 @@ MARKS = [
         str(VALUE),
     )
 ] + [struct.pack("<f", VALUE)]
-# as long, since messages count characters
+# of the same length, since messages count characters
 GHOSTS = {LAYER: "tomb-zzz", KEYS: "bones-zzz", COLUMN: "hoard-zzz"}
 PNG = png(8, 8, lambda x, y: (200, 100, 50))
 JSON_CHANGES = ("post", "put", "patch")
 
 
 def leaks(body):
-    """The marks of secrets in an answer; workbooks are looked into."""
+    """Returns the marks of secrets in an answer; also searches in workbooks."""
     if body.startswith(b"PK"):
         with zipfile.ZipFile(io.BytesIO(body)) as book:
             body = b"".join(book.read(name) for name in book.namelist())
@@ -77,14 +78,14 @@ def make_site(server):
         "POST", query("/tables/finds/records/1/attachments", name="plan.png"), PNG
     ).json()["attachments"][0]
     for layer, value in (("cracks", 3), ("finds", 1)):
-        # little, since every texel is told again and again
+        # small, because every texel is read again and again
         server.ok(
             "POST",
             f"{M}/layers/{layer}/edits",
             {"op": "fill", "mode": "where", "where": "x < 5", "value": value},
         )
     before = server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}).body
-    # Secrets, from their first moment.
+    # Secret from the start.
     secret = {"visibility": "private"}
     server.ok("POST", M + "/layers", {"name": "Tomb q7x", "type": "f32", **secret})
     server.ok(
@@ -144,7 +145,7 @@ def make_site(server):
 
 
 def words(server, public):
-    """What the parameters of paths stand for, public things alone."""
+    """Values for the parameters of paths, only of public things."""
     job = server.get("/jobs").json()["jobs"][0]["id"]
     look = server.get(M + "/looks").json()["looks"]
     return {
@@ -174,7 +175,7 @@ def words(server, public):
 
 
 def fillings(path, words_of):
-    """The path with each of the words in place of its parameters."""
+    """Returns the path with each of the words in place of its parameters."""
     parameter = re.search(r"\{(\w+)\}", path)
     if not parameter:
         return [path]
@@ -186,7 +187,7 @@ def fillings(path, words_of):
 
 
 def queries(server, path, operation):
-    """No query, then each parameter with each value that the contract tells of it."""
+    """No query, then each parameter with each value from the contract."""
     parameters = [
         server.contract._resolve(each)
         for each in operation.get("parameters", [])
@@ -224,7 +225,7 @@ def queries(server, path, operation):
 
 
 def reading_bodies(camera):
-    """Questions that have a body."""
+    """Queries with a body."""
     line = {"places": [[5, 5, 0], [95, 95, 0]], "step_mm": 5}
     return {
         "positions": [{"points": [[50, 50, 0]]}],
@@ -247,10 +248,11 @@ def reading_bodies(camera):
 
 
 def sweep(server, token, words_of, camera):
-    """Every question of the contract about what is public: how many were answered, and which told a secret."""
+    """Makes every query of the contract about public content; returns how many were answered, and
+    which contained a secret."""
     bodies, answered, told = reading_bodies(camera), 0, {}
     for path, operations in server.contract.document["paths"].items():
-        # without an end; events_test.py listens
+        # without an end; events_test.py reads it
         if not path.startswith("/api/v1") or path.endswith(("/live", "/events")):
             continue
         for method, operation in operations.items():
@@ -282,7 +284,7 @@ def sweep(server, token, words_of, camera):
 
 
 def same_answer(server, token, method, path, body, secret, ghost, headers=None):
-    """What is there and not for them answers like what is not there."""
+    """Things that the person cannot see get the same answer as missing ones."""
 
     def swapped(thing):
         return (
@@ -309,7 +311,7 @@ def same_answer(server, token, method, path, body, secret, ghost, headers=None):
 
 
 def doors_closed(server, token, words_of, hidden, thread):
-    """Every address that leads to a secret, and those that name one beside it."""
+    """Returns every address of a secret, and those that also contain one."""
     count = 0
     for path, operations in server.contract.document["paths"].items():
         for name, secret, ghost in (

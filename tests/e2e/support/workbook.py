@@ -1,4 +1,5 @@
-"""Reads an XLSX file with the standard library: what a spreadsheet would show, and what it would run."""
+"""Reads an XLSX file with the standard library: the content that a spreadsheet would show, and that
+it would run."""
 import datetime
 import io
 import re
@@ -24,7 +25,7 @@ class Workbook:
             int(f.get("numFmtId")): f.get("formatCode") for f in self.styles.iter(f"{_MAIN}numFmt")
         }
         self.formulas = list(self.sheet.iter(f"{_MAIN}f"))
-        self.width = len(next(self.sheet.iter(f"{_MAIN}row")))  # of the head, of at most 26 cells
+        self.width = len(next(self.sheet.iter(f"{_MAIN}row")))  # of the header, at most 26
         self.rows = [self._row(row) for row in self.sheet.iter(f"{_MAIN}row")]
 
     def _row(self, row):

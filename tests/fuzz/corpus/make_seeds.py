@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the fuzzers beside itself: one small file per feature of the formats."""
+"""Writes the seeds of the fuzzers to its own folder: one small file for each feature of the
+formats."""
 import base64
 import io
 import json
@@ -25,7 +26,7 @@ def ply(name, order, elements, rows):
     (HERE / "ply" / name).write_bytes(head.encode() + body)
 
 
-# 8 × 8 pixels: grey; and colours, 4:2:0, progressive.
+# 8 × 8 pixels: gray; and colors, 4:2:0, progressive.
 GREY_JPEG = (
     "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqmx5moq6T/"
     "wAALCAAIAAgBAREA/8QAFAABAAAAAAAAAAAAAAAAAAAAAf/EABkQAQEAAwEAAAAAAAAAAAAAAAECAAMRBf/aAAgBAQAAPwA8PXMSXaTMnVXgGf/Z"
@@ -39,7 +40,7 @@ PROGRESSIVE_JPEG = (
     "AAAAAQAh/9oACAEDAQE/ECG3/8QAGBEAAgMAAAAAAAAAAAAAAAAAAAERQZH/2gAIAQIBAT8QV04w/8QAGBABAAMBAAAAAAAAAAAAAAAAAQARIVH/2gAIAQEA"
     "AT8QV42jwJ//2Q=="
 )
-# The same size: WebP without loss and with, and inks.
+# The same size: WebP lossless and lossy, and inks.
 LOSSLESS_WEBP = (
     "UklGRjgAAABXRUJQVlA4TCsAAAAvB8ABEJkyRPQ/NhHR/zCYadsmSMof6K4x8HhMgkAgSXaqZScgK2oYwv0PAA=="
 )
@@ -144,7 +145,7 @@ for name, encoding in (("little_utf16.obj", "utf-16-le"), ("big_utf16.obj", "utf
 
 
 def planes(values, size):
-    """A column as the stored geometry has it: zigzag differences, byte plane by byte plane."""
+    """A column in the format of stored geometry: zigzag differences, byte plane by byte plane."""
     mask, before, codes = (1 << 8 * size) - 1, 0, []
     for value in values:
         step = (value - before) & mask
@@ -303,7 +304,8 @@ def instanced(d):
 
 
 def second_version(d):
-    """Eight vertices of 12 bytes, all zero but for a step: control modes 0 and 2, channels of bytes, shorts and words."""
+    """Eight vertices of 12 bytes, all zero except for a step: control modes 0 and 2, channels of
+    bytes, shorts and words."""
     d["accessors"][0]["count"] = 8
     d["bufferViews"][0] |= {
         "byteLength": 96,

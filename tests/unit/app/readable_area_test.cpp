@@ -1,4 +1,4 @@
-// Areas in the unit that suits their size.
+// Areas in a unit that suits their size.
 #include "app/records/readable_area.h"
 
 #include <gtest/gtest.h>

@@ -10,10 +10,10 @@ namespace {
 using Record = RecordEditLocks::Record;
 
 struct Editors : testing::Test {
-  // What somebody who hears all of it knows: by project and record, who is there.
+  // The editors by project and record, as known to a listener of all notifications.
   const RecordEditLocks::Tell tell = [this](ProjectId project,
                                             const std::vector<RecordEditLocks::Entry>& entries) {
-    ++told;
+    ++calls;
     for (const auto& [record, editor] : entries) {
       known.erase({project, record});
       if (editor) known[{project, record}] = editor->user;
@@ -27,7 +27,7 @@ struct Editors : testing::Test {
 
   RecordEditLocks book;
   std::map<std::pair<ProjectId, Record>, std::string> known;
-  int told = 0;
+  int calls = 0;
   const RecordEditLocks::Editor ada{random_uuid(), "ada"}, bea{random_uuid(), "bea"};
 };
 
@@ -38,7 +38,7 @@ TEST_F(Editors, the_first_one_has_the_record_until_it_is_left) {
   EXPECT_EQ(at({4, 7}), "ada");
   book.end({4, 7}, bea.session, tell);
   EXPECT_EQ(at({4, 7}), "ada") << "somebody else ended it";
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(calls, 1);
   book.end({4, 7}, ada.session, tell);
   EXPECT_EQ(at({4, 7}), "");
   EXPECT_TRUE(begin({4, 7}, bea));
@@ -49,10 +49,10 @@ TEST_F(Editors, what_is_said_again_is_not_told_again) {
   begin({4, 7}, ada);
   begin({4, 7}, ada);
   begin({4, 7}, ada, true);
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(calls, 1);
   book.end({4, 7}, ada.session, tell);
   book.end({4, 7}, ada.session, tell);
-  EXPECT_EQ(told, 2);
+  EXPECT_EQ(calls, 2);
 }
 
 TEST_F(Editors, who_takes_over_has_it_and_the_end_of_the_other_changes_nothing) {
@@ -62,7 +62,7 @@ TEST_F(Editors, who_takes_over_has_it_and_the_end_of_the_other_changes_nothing) 
   book.end({4, 7}, ada.session, tell);
   book.leave(ada.session, tell);
   EXPECT_EQ(at({4, 7}), "bea");
-  EXPECT_EQ(told, 2);
+  EXPECT_EQ(calls, 2);
 }
 
 TEST_F(Editors, two_windows_of_one_person_are_two_editors) {
@@ -78,13 +78,13 @@ TEST_F(Editors, who_leaves_leaves_all_of_them) {
   begin({4, 8}, ada);
   begin({9, 7}, ada, false, 2);
   begin({4, 9}, bea);
-  told = 0;
+  calls = 0;
   book.leave(ada.session, tell);
-  EXPECT_EQ(told, 2) << "once a project";
+  EXPECT_EQ(calls, 2) << "once a project";
   EXPECT_EQ(known.size(), 1u);
   EXPECT_EQ(at({4, 9}), "bea");
   book.leave(ada.session, tell);
-  EXPECT_EQ(told, 2);
+  EXPECT_EQ(calls, 2);
 }
 
 TEST_F(Editors, who_comes_hears_what_there_is_in_the_project) {
@@ -96,9 +96,9 @@ TEST_F(Editors, who_comes_hears_what_there_is_in_the_project) {
   EXPECT_EQ(known.size(), 2u);
   EXPECT_EQ(at({4, 7}), "ada");
   EXPECT_EQ(at({4, 8}), "bea");
-  told = 0;
+  calls = 0;
   book.list(3, tell);
-  EXPECT_EQ(told, 0);
+  EXPECT_EQ(calls, 0);
 }
 
 TEST_F(Editors, a_connection_has_so_many_records_and_no_more) {

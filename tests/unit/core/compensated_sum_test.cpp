@@ -1,4 +1,4 @@
-// Sums of many doubles keep their last digit.
+// Sums of many doubles are exact to the last digit.
 #include "core/compensated_sum.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(CompensatedSum, ten_million_tenths_are_a_million) {
   }
   EXPECT_EQ(sum.value(), 1e6);
   EXPECT_EQ(sum.value() / 10'000'000, 0.1);
-  EXPECT_NE(plain, 1e6);  // what it is for
+  EXPECT_NE(plain, 1e6);  // the reason for the class
 }
 
 TEST(CompensatedSum, small_numbers_between_large_ones_are_kept_in_any_order) {

@@ -62,7 +62,7 @@ TEST(Csv, a_problem_names_the_line) {
                                   "a\0",
                                   4),
                  "UTF-16");
-  expect_problem("sep=|\na|b\n", "separated by");
+  expect_problem("sep=|\na|b\n", "separator must be");
   expect_problem("a,b,c\n", "at most 2 cells", {10, 2});
   expect_problem("a\nb\nc\n", "at most 2 rows", {2, 10});
 }
@@ -108,7 +108,7 @@ TEST(Csv, a_part_that_another_separator_makes_a_cell_is_guarded) {
   EXPECT_EQ(guard_formula("a;=1+1"), "a;'=1+1");
   EXPECT_EQ(guard_formula("a;=1+1;b\t@x,-2"), "a;'=1+1;b\t'@x,'-2");
   EXPECT_EQ(guard_formula("a\n=1\r\n+2"), "a\n'=1\r\n'+2");
-  EXPECT_EQ(guard_formula("a;\"=1"), "a;'\"=1");  // a reader takes the quote away
+  EXPECT_EQ(guard_formula("a;\"=1"), "a;'\"=1");  // a reader removes the quote
   EXPECT_EQ(guard_formula("a;;b, -c; 'd'"), "a;;b, -c; 'd'");
 }
 
@@ -122,7 +122,7 @@ TEST(Csv, a_text_with_any_separator_is_quoted_and_a_number_is_not) {
   EXPECT_EQ(csv_line({"1,5"}, ','), "\"1,5\"\r\n");
 }
 
-// Splits as a reader does that takes `separator` and knows quotes only at the beginning of a cell.
+// Splits like a reader that uses `separator` and recognizes quotes only at the start of a cell.
 std::vector<std::string> cells_as_seen(const std::string& text, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false, at_begin = true;

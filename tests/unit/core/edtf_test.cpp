@@ -1,4 +1,4 @@
-// Periods: what EDTF texts mean in days, checked against the days counted one by one.
+// Periods: the days of EDTF texts, compared with days counted one by one.
 #include <gtest/gtest.h>
 
 #include "core/text/edtf.h"

@@ -1,4 +1,4 @@
-// Texts that stand for bytes, and what is made of them.
+// Encodings of bytes as text, and decoding.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -10,8 +10,9 @@
 namespace strata {
 namespace {
 
-// What the types are there for: none of this compiles. Nor does a number that is known only at run
-// time, which no trait can tell: the constructor that takes one without a word is consteval.
+// The purpose of the types: none of this compiles. A number that is known only at run time does not
+// compile either, which no trait can show: the constructor that accepts a plain number is
+// consteval.
 static_assert(!std::is_convertible_v<LayerId, TableId>);
 static_assert(!std::is_constructible_v<LayerId, TableId>);
 static_assert(!std::is_convertible_v<LayerId, std::int64_t>);

@@ -25,15 +25,15 @@ TEST(MemoryLedger, refuses_what_does_not_fit_and_names_the_option) {
 
 TEST(MemoryLedger, evicts_until_it_fits) {
   MemoryLedger ledger("main memory", "--memory", 100);
-  std::vector<MemoryLedger::Share> kept;
-  for (int i = 0; i < 4; ++i) kept.push_back(std::move(*ledger.reserve(25, "a map")));
+  std::vector<MemoryLedger::Share> shares;
+  for (int i = 0; i < 4; ++i) shares.push_back(std::move(*ledger.reserve(25, "a map")));
   ledger.set_evictor([&] {
-    if (kept.size() <= 1) return false;
-    kept.pop_back();
+    if (shares.size() <= 1) return false;
+    shares.pop_back();
     return true;
   });
   EXPECT_TRUE(ledger.reserve(60, "a large map"));
-  EXPECT_EQ(kept.size(), 1u);
+  EXPECT_EQ(shares.size(), 1u);
   EXPECT_FALSE(ledger.reserve(80, "a larger map"));
 }
 

@@ -7,7 +7,8 @@
 namespace strata {
 namespace {
 
-// "code=SU 1 n=2", or "" where the name is not of the pattern; with a mark where the code is known.
+// Returns "code=SU 1 n=2", or "" if the name does not match the pattern; with a mark if the code is
+// known.
 std::string read(const std::string& pattern, const std::string& name,
                  const std::set<std::string>& known = {}) {
   const auto parsed = NamePattern::parse(pattern, "pattern");
@@ -15,9 +16,9 @@ std::string read(const std::string& pattern, const std::string& name,
   const auto reading = parsed->read(
       name, "code", [&](std::string_view value) { return known.contains(std::string(value)); });
   if (!reading) return {};
-  std::string told = reading->is_known ? "!" : "";
-  for (const auto& [word, value] : reading->words) told += word + "=" + value + " ";
-  return told;
+  std::string text = reading->is_known ? "!" : "";
+  for (const auto& [word, value] : reading->words) text += word + "=" + value + " ";
+  return text;
 }
 
 TEST(NamePattern, words_are_what_stands_between_the_texts) {

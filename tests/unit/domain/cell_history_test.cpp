@@ -1,4 +1,4 @@
-// Undo of rows against an oracle that keeps, for every cell, the list of edits that wrote it.
+// Undo of rows, compared with an oracle that keeps the list of edits of every cell.
 #include <gtest/gtest.h>
 
 #include <map>

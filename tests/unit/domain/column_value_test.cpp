@@ -1,5 +1,5 @@
-// What a column of a table takes: values of each kind in JSON and as text, and columns that do not
-// fit together.
+// The values that a column of a table accepts: values of each kind in JSON and as text, and columns
+// with contradictory settings.
 #include <gtest/gtest.h>
 
 #include "domain/tables/column_value.h"
@@ -20,7 +20,7 @@ Column column(ColumnKind kind) {
   return made;
 }
 
-json kept(const Column& of, const json& value) {
+json stored(const Column& of, const json& value) {
   const auto checked = check_value(of, value, "values/column");
   EXPECT_TRUE(checked.has_value()) << value << ": " << (checked ? "" : checked.error().detail);
   return checked.value_or(json("refused"));
@@ -43,8 +43,8 @@ TEST(ColumnValue, names_of_kinds_are_read_back) {
 }
 
 TEST(ColumnValue, texts_are_utf8_and_blank_ones_are_none) {
-  EXPECT_EQ(kept(column(ColumnKind::text), "Größe ☃"), "Größe ☃");
-  EXPECT_EQ(kept(column(ColumnKind::text), " \n"), json());
+  EXPECT_EQ(stored(column(ColumnKind::text), "Größe ☃"), "Größe ☃");
+  EXPECT_EQ(stored(column(ColumnKind::text), " \n"), json());
   expect_refused(column(ColumnKind::text), 3);
   expect_refused(column(ColumnKind::text), "\xff");
   expect_refused(column(ColumnKind::text), std::string("a\0b", 3));
@@ -55,30 +55,30 @@ TEST(ColumnValue, numbers_keep_to_the_limits_of_their_column) {
   Column whole = column(ColumnKind::integer);
   whole.minimum = 0;
   whole.maximum = 10;
-  EXPECT_EQ(kept(whole, 10), 10);
-  EXPECT_EQ(kept(whole, 3.0).dump(), "3");
+  EXPECT_EQ(stored(whole, 10), 10);
+  EXPECT_EQ(stored(whole, 3.0).dump(), "3");
   for (const json& bad : {json(-1), json(11), json(2.5), json("3"), json(true), json::array({1})})
     expect_refused(whole, bad);
   expect_refused(column(ColumnKind::integer), 1e300);
   expect_refused(column(ColumnKind::integer), UINT64_MAX);
-  EXPECT_EQ(kept(column(ColumnKind::integer), kGreatestInteger), kGreatestInteger);
-  EXPECT_EQ(kept(column(ColumnKind::numeric), 0.1).dump(), "0.1");
-  EXPECT_EQ(kept(column(ColumnKind::numeric), -0.0).dump(), "0.0");
+  EXPECT_EQ(stored(column(ColumnKind::integer), kGreatestInteger), kGreatestInteger);
+  EXPECT_EQ(stored(column(ColumnKind::numeric), 0.1).dump(), "0.1");
+  EXPECT_EQ(stored(column(ColumnKind::numeric), -0.0).dump(), "0.0");
   expect_refused(column(ColumnKind::numeric), std::numeric_limits<double>::infinity());
   expect_refused(column(ColumnKind::numeric), std::numeric_limits<double>::quiet_NaN());
 }
 
 TEST(ColumnValue, dates_and_times_are_of_the_calendar) {
   const Column date = column(ColumnKind::date), time = column(ColumnKind::timestamp);
-  EXPECT_EQ(kept(date, "2024-02-29"), "2024-02-29");
+  EXPECT_EQ(stored(date, "2024-02-29"), "2024-02-29");
   for (const char* bad :
        {"2023-02-29", "2024-2-9", "0000-01-01", "2024-13-01", "2024-02-29T00:00:00Z", "29.2.2024"})
     expect_refused(date, bad);
-  EXPECT_EQ(kept(time, "2024-02-29T12:30:00Z"), "2024-02-29T12:30:00.000Z");
-  EXPECT_EQ(kept(time, "2024-02-29 23:30:15.1239-01:30"), "2024-03-01T01:00:15.123Z");
-  EXPECT_EQ(kept(time, "2024-03-01T00:30+01:00"), "2024-02-29T23:30:00.000Z");
-  EXPECT_EQ(kept(time, "1066-10-14"), "1066-10-14T00:00:00.000Z");
-  EXPECT_EQ(kept(time, "9999-12-31T23:59:59.999Z"), "9999-12-31T23:59:59.999Z");
+  EXPECT_EQ(stored(time, "2024-02-29T12:30:00Z"), "2024-02-29T12:30:00.000Z");
+  EXPECT_EQ(stored(time, "2024-02-29 23:30:15.1239-01:30"), "2024-03-01T01:00:15.123Z");
+  EXPECT_EQ(stored(time, "2024-03-01T00:30+01:00"), "2024-02-29T23:30:00.000Z");
+  EXPECT_EQ(stored(time, "1066-10-14"), "1066-10-14T00:00:00.000Z");
+  EXPECT_EQ(stored(time, "9999-12-31T23:59:59.999Z"), "9999-12-31T23:59:59.999Z");
   for (const char* bad :
        {"2024-02-29T24:00:00Z", "2024-02-29T12:60Z", "2024-02-29T12", "2024-02-29T12:00:00.Z",
         "0001-01-01T00:00:00+01:00", "9999-12-31T23:59:59-00:01", "2024-02-29T12:00:00 UTC", "now"})
@@ -86,22 +86,22 @@ TEST(ColumnValue, dates_and_times_are_of_the_calendar) {
 }
 
 TEST(ColumnValue, the_other_kinds_take_what_they_are_made_for) {
-  EXPECT_EQ(kept(column(ColumnKind::boolean), true), true);
+  EXPECT_EQ(stored(column(ColumnKind::boolean), true), true);
   expect_refused(column(ColumnKind::boolean), 1);
-  EXPECT_EQ(kept(column(ColumnKind::period), "1560~/.."), "1560~/..");
+  EXPECT_EQ(stored(column(ColumnKind::period), "1560~/.."), "1560~/..");
   expect_refused(column(ColumnKind::period), "circa 1560");
-  EXPECT_EQ(kept(column(ColumnKind::enumeration), "fair"), "fair");
+  EXPECT_EQ(stored(column(ColumnKind::enumeration), "fair"), "fair");
   expect_refused(column(ColumnKind::enumeration), "Fair");
-  EXPECT_EQ(kept(column(ColumnKind::url), "https://example.org/a?b=c#d"),
+  EXPECT_EQ(stored(column(ColumnKind::url), "https://example.org/a?b=c#d"),
             "https://example.org/a?b=c#d");
   for (const char* bad :
        {"javascript:alert(1)", "data:text/html,x", "https://", "http://a b", "example.org", "urn:"})
     expect_refused(column(ColumnKind::url), bad);
-  EXPECT_EQ(kept(column(ColumnKind::term), 4294967295), 4294967295);
+  EXPECT_EQ(stored(column(ColumnKind::term), 4294967295), 4294967295);
   for (const json& bad : {json(-1), json(4294967296), json(1.5), json("1")})
     expect_refused(column(ColumnKind::term), bad);
-  EXPECT_EQ(kept(column(ColumnKind::relation), {5, 1, 5}), json({1, 5}));
-  EXPECT_EQ(kept(column(ColumnKind::relation), json::array()), json());
+  EXPECT_EQ(stored(column(ColumnKind::relation), {5, 1, 5}), json({1, 5}));
+  EXPECT_EQ(stored(column(ColumnKind::relation), json::array()), json());
   expect_refused(column(ColumnKind::relation), 5);
   expect_refused(column(ColumnKind::relation), {"5"});
 }
@@ -109,7 +109,7 @@ TEST(ColumnValue, the_other_kinds_take_what_they_are_made_for) {
 TEST(ColumnValue, only_a_required_column_refuses_to_be_empty) {
   for (int i = 0; i <= static_cast<int>(ColumnKind::relation); ++i) {
     Column any = column(static_cast<ColumnKind>(i));
-    EXPECT_EQ(kept(any, json()), json());
+    EXPECT_EQ(stored(any, json()), json());
     any.required = true;
     expect_refused(any, json());
     EXPECT_FALSE(parse_value(any, " ", false, "cell").has_value());

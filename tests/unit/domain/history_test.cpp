@@ -1,4 +1,4 @@
-// Undo against an oracle that keeps, for every texel, the list of edits that wrote it.
+// Undo, compared with an oracle that keeps the list of edits of every texel.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ class OneTileLayer {
       ASSERT_EQ(tile_.bits(i), value) << "texel " << i;
     }
   }
-  // The newest write of the texel that is in force waits for review.
+  // The newest write of the texel in force waits for review.
   bool waits(int texel) const {
     bool found = false;
     if (auto writes = writes_.find(texel); writes != writes_.end())

@@ -38,7 +38,7 @@ Color lab(const Color& c) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// As people see it who lack the cones for green (Machado, Oliveira, Fernandes 2009).
+// The color as people without the cones for green see it (Machado, Oliveira, Fernandes 2009).
 Color without_green(const Color& c) {
   const auto part = [&](double r, double g, double b) {
     return std::clamp(r * c[0] + g * c[1] + b * c[2], 0.0, 1.0);

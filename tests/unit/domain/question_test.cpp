@@ -1,4 +1,4 @@
-// Questions: whether they go on, what they may cost, and whose turn it is.
+// Queries: when they stop, their limits, and their turns.
 #include "domain/people/question.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ namespace {
 
 const Error kGone{ErrorCode::cancelled, "Client gone", "", {}};
 
-std::shared_ptr<Question> asked(const std::string& who, QuestionLimits limits = {},
-                                std::shared_ptr<QuestionTurns> turns = nullptr) {
+std::shared_ptr<Question> question_of(const std::string& who, QuestionLimits limits = {},
+                                      std::shared_ptr<QuestionTurns> turns = nullptr) {
   return std::make_shared<Question>(who, limits, std::move(turns));
 }
 
@@ -34,7 +34,7 @@ void wait_until(const std::function<bool()>& holds) {
 }
 
 TEST(Question, goes_on_until_it_is_ended_and_the_first_reason_counts) {
-  const auto question = asked("ann");
+  const auto question = question_of("ann");
   EXPECT_EQ(end_of([&] { question->check(); }), std::nullopt);
   question->end(kGone);
   question->end({ErrorCode::unavailable, "Server stops", "", {}});
@@ -43,32 +43,32 @@ TEST(Question, goes_on_until_it_is_ended_and_the_first_reason_counts) {
 }
 
 TEST(Question, is_refused_before_it_takes_more_steps_or_memory_than_it_may) {
-  const auto question = asked("ann", {.steps = 1000, .bytes = 1000});
+  const auto question = question_of("ann", {.steps = 1000, .bytes = 1000});
   const Question::Scope scope(question);
   question->spend(600);
   { const QuestionMemory memory(900); }
-  { const QuestionMemory memory(900); }  // what was given back counts no more
+  { const QuestionMemory memory(900); }  // freed memory is no longer counted
   EXPECT_EQ(end_of([&] { question->spend(600); }), ErrorCode::invalid);
   EXPECT_TRUE(question->ended());
-  const auto other = asked("ann", {.bytes = 1000});
+  const auto other = question_of("ann", {.bytes = 1000});
   const Question::Scope inner(other);
   const QuestionMemory first(900);
   EXPECT_EQ(end_of([&] { const QuestionMemory second(200); }), ErrorCode::invalid);
 }
 
 TEST(Question, takes_no_longer_than_it_may_unless_its_answer_is_on_its_way) {
-  const auto question = asked("ann", {.time = std::chrono::milliseconds(1)});
+  const auto question = question_of("ann", {.time = std::chrono::milliseconds(1)});
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
   question->let_take_time();
   EXPECT_EQ(end_of([&] { question->check(); }), std::nullopt);
-  const auto other = asked("ann", {.time = std::chrono::milliseconds(1)});
+  const auto other = question_of("ann", {.time = std::chrono::milliseconds(1)});
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
   EXPECT_EQ(end_of([&] { other->check(); }), ErrorCode::timed_out);
 }
 
 TEST(Question, belongs_to_a_thread_while_its_scope_lasts) {
   EXPECT_EQ(Question::current(), nullptr);
-  const auto question = asked("ann");
+  const auto question = question_of("ann");
   {
     const Question::Scope scope(question);
     EXPECT_EQ(Question::current(), question.get());
@@ -83,7 +83,7 @@ TEST(Question, belongs_to_a_thread_while_its_scope_lasts) {
 
 TEST(Question, ends_the_work_of_all_threads_that_work_on_it) {
   for (const int threads : {1, 3}) {
-    const auto question = asked("ann");
+    const auto question = question_of("ann");
     const Question::Scope scope(question);
     std::atomic<int> done = 0;
     EXPECT_EQ(end_of([&] {
@@ -106,13 +106,13 @@ TEST(ParallelFor, throws_here_what_is_thrown_on_another_thread) {
                std::runtime_error);
 }
 
-// Questions that compute, one at a time, and the order in which they did.
+// Queries that compute, one at a time, and the order in which they did.
 class Turns : public testing::Test {
  protected:
-  // Begins to compute on a thread of its own; ends when `until` says so.
+  // Starts to compute on a separate thread; ends when `until` is true.
   void begin(const std::string& who, std::function<void(Question&)> work) {
     threads_.emplace_back([this, who, work = std::move(work)] {
-      const auto question = asked(who, {}, turns_);
+      const auto question = question_of(who, {}, turns_);
       const Question::Scope scope(question);
       const QuestionTurn turn;
       {
@@ -135,14 +135,14 @@ class Turns : public testing::Test {
 };
 
 TEST_F(Turns, one_who_asks_much_makes_way_for_one_who_asks_little) {
-  const auto long_one = asked("ann", {}, turns_);
+  const auto long_one = question_of("ann", {}, turns_);
   const Question::Scope scope(long_one);
   {
     const QuestionTurn turn;
     for (int i = 0; i < 5; ++i) begin("ann", [](Question&) {});
     begin("bob", [](Question&) {});
     wait_until([&] { return turns_->waiting() == 6; });
-    // Bob's only question is not behind Ann's: it goes before the rest of the one that runs.
+    // Bob's only query is not behind Ann's: it precedes the rest of the running one.
     turn.check();
     const std::lock_guard lock(mutex_);
     ASSERT_FALSE(order_.empty());
@@ -153,7 +153,7 @@ TEST_F(Turns, one_who_asks_much_makes_way_for_one_who_asks_little) {
 }
 
 TEST_F(Turns, one_s_own_questions_do_not_interrupt_each_other) {
-  const auto question = asked("ann", {}, turns_);
+  const auto question = question_of("ann", {}, turns_);
   const Question::Scope scope(question);
   {
     const QuestionTurn turn;
@@ -166,7 +166,7 @@ TEST_F(Turns, one_s_own_questions_do_not_interrupt_each_other) {
 }
 
 TEST_F(Turns, who_waits_is_let_go_when_the_question_is_over) {
-  const auto running = asked("ann", {}, turns_), waits = asked("bob", {}, turns_);
+  const auto running = question_of("ann", {}, turns_), waits = question_of("bob", {}, turns_);
   const Question::Scope scope(running);
   const QuestionTurn turn;
   std::optional<ErrorCode> end;
@@ -186,7 +186,7 @@ TEST_F(Turns, who_waits_is_let_go_when_the_question_is_over) {
 }
 
 TEST_F(Turns, what_others_wait_for_takes_no_turn) {
-  const auto running = asked("ann", {}, turns_), edit = asked("bob", {}, turns_);
+  const auto running = question_of("ann", {}, turns_), edit = question_of("bob", {}, turns_);
   edit->skip_turns();
   const Question::Scope scope(running);
   const QuestionTurn turn;

@@ -1,4 +1,4 @@
-// Cycles of relations against an oracle that follows every key.
+// Cycles of relations, compared with an oracle that follows every key.
 #include "domain/tables/relation_cycles.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(RelationCycles, random_relations_have_the_knots_that_following_every_key_fi
       follow(from);
       return found;
     };
-    std::set<std::int64_t> expected, got;  // the lowest key of each knot
+    std::set<std::int64_t> expected, got;  // the lowest key of each cycle
     for (std::int64_t key = 1; key <= keys; ++key) {
       const auto down = reached(key);
       if (!down.contains(key)) continue;

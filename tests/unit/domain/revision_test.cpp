@@ -57,7 +57,7 @@ TEST(Revision, damaged_bytes_are_a_problem_and_never_a_crash) {
   for (int i = 0; i < 300; ++i) {
     auto bad = good;
     bad[random() % bad.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
-    // may decode to other texels; must not crash or read outside
+    // may decode to other texels; must not crash or read out of bounds
     (void)decode_tile(ValueType::u16, bad);
   }
 }

@@ -1,4 +1,4 @@
-// Lines and points of records: what cells hold, and their text.
+// Lines and points of records: the content of cells, and its text.
 #include "domain/tables/surface_feature.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +77,7 @@ TEST(SurfaceFeature, what_is_none_is_refused) {
     EXPECT_EQ(checked.error().field, "values.crack");
   }
   EXPECT_EQ(check_value(column, json::array(), "f"), json()) << "a list of none is no value";
-  // Bounded: marks, and places of all of them.
+  // Limits: the number of marks, and of the places of all of them.
   std::vector<SurfaceFeature> many(kMaxFeatures + 1, {1, {{0, 0, 0}}});
   EXPECT_EQ(read_features(to_json(many), false), std::nullopt);
   many.resize(kMaxFeatures);

@@ -1,4 +1,4 @@
-// Which column says what a record is called.
+// The title column of a table.
 #include "domain/tables/table.h"
 
 #include <gtest/gtest.h>

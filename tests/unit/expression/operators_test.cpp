@@ -1,4 +1,4 @@
-// The table of operators, and that the parser reads every row of it.
+// The table of operators; the parser accepts each of its rows.
 #include "expression/operators.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using Form = Operator::Form;
 
 bool is_function(Form form) { return form >= Form::number_function; }
 
-// A text in which the operator stands as `name`.
+// Returns a text in which the operator is written as `name`.
 std::string formula(const Operator& row, std::string_view name) {
   const std::string written(name);
   switch (row.form) {

@@ -1,4 +1,4 @@
-// Drawings to scale: their axes, the parts in which they are rendered, and where places come to lie
+// Drawings to scale: their axes, the parts in which they are rendered, and the positions of places
 // on paper.
 #include "figure/drawing.h"
 
@@ -32,7 +32,8 @@ glm::dvec2 pixel_of(const Part& part, const glm::dvec3& world) {
           part.y - part.margin + (1 - clip.y / clip.w) / 2 * (part.height + 2 * part.margin)};
 }
 
-// Where a place is on the drawing by its scale alone: millimetres from its top left corner, y down.
+// Returns the position of a place on the drawing from its scale alone: millimeters from its top
+// left corner, y down.
 glm::dvec2 on_paper(const Drawing& drawing, const glm::dvec3& world) {
   const glm::dvec3 drawn = drawing.plane.of(world);
   const glm::dvec2 middle_mm = glm::dvec2(drawing.width, drawing.height) * (25.4 / drawing.dpi / 2);
@@ -54,7 +55,8 @@ TEST(Plane, AxesAreAFrameThatLooksAsItsNameSays) {
         EXPECT_EQ(plane.up, above);
       }
     }
-  // Upside down, turned about the drawing's right: the front shows what was the back, on its head.
+  // Upside down, rotated about the drawing's right axis: the front shows the former back, upside
+  // down.
   EXPECT_EQ(plane_from(Direction::front, "-z").into, glm::dvec3(0, -1, 0));
   EXPECT_EQ(plane_from(Direction::front, "-z").right, glm::dvec3(1, 0, 0));
   EXPECT_EQ(plane_from(Direction::top, "-y").into, glm::dvec3(0, 1, 0));
@@ -94,7 +96,7 @@ TEST(Extent, IsOfWhatTheSectionKeeps) {
   const Plane plan = plane_from(Direction::top, "z");
   const auto all = extent_of(points, plan, {});
   ASSERT_TRUE(all);
-  EXPECT_EQ(all->min, glm::dvec3(-1, 0, -2));  // into is downwards
+  EXPECT_EQ(all->min, glm::dvec3(-1, 0, -2));  // `into` points down
   EXPECT_EQ(all->max, glm::dvec3(4, 5, 3));
   const std::vector<glm::dvec4> right_half{{1, 0, 0, 0}};
   EXPECT_EQ(extent_of(points, plan, right_half)->min.x, 0);
@@ -104,11 +106,11 @@ TEST(Extent, IsOfWhatTheSectionKeeps) {
 
 TEST(Scale, IsTheLargestRoundOneThatFits) {
   EXPECT_EQ(fitting_scale({0.1, 0.05}, {200, 200}, 1), 1);  // 100 mm
-  EXPECT_EQ(fitting_scale({0.2, 0.05}, {200, 200}, 1), 1);  // just
+  EXPECT_EQ(fitting_scale({0.2, 0.05}, {200, 200}, 1), 1);  // fits exactly
   EXPECT_EQ(fitting_scale({0.201, 0.05}, {200, 200}, 1), 2);
   EXPECT_EQ(fitting_scale({0.05, 0.45}, {200, 200}, 1), 2.5);  // 450 mm by 2.5
   EXPECT_EQ(fitting_scale({4.9, 1}, {200, 200}, 1), 25);
-  EXPECT_EQ(fitting_scale({4.9, 1}, {200, 200}, 0.001), 1);  // millimetres: never larger than life
+  EXPECT_EQ(fitting_scale({4.9, 1}, {200, 200}, 0.001), 1);  // mm: no enlargement
   EXPECT_EQ(fitting_scale({99000, 1}, {200, 200}, 1), 500'000);
 }
 
@@ -122,8 +124,8 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
       EXPECT_TRUE(validate(part.camera));
       EXPECT_TRUE(is_orthographic(part.camera));
       EXPECT_EQ((part.width + 2 * part.margin) * kCameraDpi,
-                part.camera.width * drawing.dpi);  // whole pixels to the inch
-      // symbols reach so far from their places
+                part.camera.width * drawing.dpi);  // whole pixels per inch
+      // symbols extend that far from their places
       EXPECT_GE(part.margin * kCameraDpi, 8 * drawing.dpi);
       EXPECT_EQ(part.margin % 2, 0);
       for (int y = part.y; y < std::min(drawing.height, part.y + part.height); ++y)
@@ -131,14 +133,14 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
           ++covered[static_cast<std::size_t>(y) * drawing.width + x];
     }
     EXPECT_TRUE(std::ranges::all_of(covered, [](int n) { return n == 1; }));
-    // A place has the same pixel by each part's camera, and that is where the paper has it.
+    // A place has the same pixel in each part's camera, at its position on paper.
     const glm::dvec3 place = drawing.plane.in_world({2.1, -1.4, 3});
     for (const Part& part : parts) {
       const glm::dvec2 pixel = pixel_of(part, place),
                        paper = on_paper(drawing, place) / 25.4 * 300.0;
       EXPECT_LT(glm::distance(pixel, paper), 1e-6) << part.x << " " << part.y;
     }
-    // 20 mm of the world are one on paper: a unit is a centimetre.
+    // 20 mm of the world are one on paper: a unit is a centimeter.
     const glm::dvec2 moved =
         on_paper(drawing, place + 2.0 * drawing.plane.right) - on_paper(drawing, place);
     EXPECT_LT(glm::distance(moved, glm::dvec2(1, 0)), 1e-9);

@@ -1,4 +1,4 @@
-// Sheets: what has room on them, and the files that they become.
+// Sheets: the layout of their content, and their files.
 #include <gtest/gtest.h>
 #include <png.h>
 #include <tiffio.h>
@@ -24,7 +24,7 @@ std::vector<Legend> legends(int entries) {
   for (int i = 0; i < entries; ++i)
     classes.entries.push_back({"Class " + std::to_string(i), Rgba{200, std::uint8_t(i), 30, 255},
                                static_cast<Pattern>(i % 4), 30.0 * i});
-  classes.entries.push_back({"", Rgba{1, 2, 3, 255}});  // a class without words
+  classes.entries.push_back({"", Rgba{1, 2, 3, 255}});  // a class without a label
   Legend moisture{"Moisture [%]", {}, std::vector<Rgba>(64, Rgba{0, 0, 255, 255}), "0", "100"};
   return {classes, moisture};
 }
@@ -103,15 +103,15 @@ TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
                                 .finish(20, std::nullopt, {});
         const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
         ASSERT_NE(group, sheet.groups.end());
-        std::string title;  // in force where the next entry stands
-        int told = 0, titles = 0;
+        std::string title;  // in effect for the next entry
+        int counted = 0, titles = 0;
         std::set<std::string> shown;  // titles
         double column = 0, y = 0;
         for (const Item& item : group->items) {
           const auto* words = std::get_if<Words>(&item);
           if (!words) continue;
-          if (words->text.starts_with("… + ")) {  // what has no room is counted
-            told += std::stoi(words->text.substr(std::string_view("… + ").size()));
+          if (words->text.starts_with("… + ")) {  // the count of entries without room
+            counted += std::stoi(words->text.substr(std::string_view("… + ").size()));
             continue;
           }
           if (words->bold) {
@@ -126,11 +126,12 @@ TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
             EXPECT_NEAR(words->at.x - column, 8, 1e-9)
                 << words->text << " stands in a column without its title";
             EXPECT_GT(words->at.y, y);
-            ++told;
+            ++counted;
           }
           y = words->at.y;
         }
-        EXPECT_EQ(told + static_cast<int>(shown.size()), 3 + 8 + entries) << "titles are rows, too";
+        EXPECT_EQ(counted + static_cast<int>(shown.size()), 3 + 8 + entries)
+            << "titles are rows, too";
         EXPECT_TRUE(titles == 3 || entries > 9);
       }
 }
@@ -149,7 +150,7 @@ TEST(SheetLayout, ASwatchIsTintedAndHasABorderAsTheDrawing) {
         if (const auto* path = std::get_if<Path>(&item); path && path->fill) {
           for (const glm::dvec2& point : path->points)
             low = glm::min(low, point), high = glm::max(high, point);
-          tints += *path->fill == Rgba{239, 179, 209, 255};  // 30 % of the colour on white
+          tints += *path->fill == Rgba{239, 179, 209, 255};  // 30 % of the color on white
           inks += *path->fill == Rgba{200, 0, 100, 255};
         }
       EXPECT_EQ(tints, bare ? 0 : 1);
@@ -182,7 +183,7 @@ TEST(ScaleBar, IsRoundAndHasRoom) {
                                               : 0.001);
     EXPECT_NEAR(metres * 1000 / scale, bar.length_mm, 1e-6) << scale;
   }
-  const ScaleBar one = scale_bar(20, 50);  // a metre on 50 mm
+  const ScaleBar one = scale_bar(20, 50);  // one meter as 50 mm
   EXPECT_EQ(one.length_mm, 50);
   EXPECT_EQ(one.unit, "cm");
   EXPECT_EQ(one.step * one.steps, 100);
@@ -193,13 +194,13 @@ TEST(ScaleBar, IsRoundAndHasRoom) {
 }
 
 TEST(Labels, LieOverNoOtherAndWithinTheDrawing) {
-  std::vector<LabelWish> wishes;
+  std::vector<LabelRequest> requests;
   for (int i = 0; i < 300; ++i)
-    wishes.push_back(
+    requests.push_back(
         {"Unit " + std::to_string(i), {{5.0 + i % 17 * 6, 3.0 + i % 23 * 4}, {60, 50}}});
-  wishes.push_back({"", {{10, 90}}});
-  wishes.push_back({"outside", {{-3, 10}, {119, 99}}});
-  const auto labels = place_labels(wishes, {120, 100});
+  requests.push_back({"", {{10, 90}}});
+  requests.push_back({"outside", {{-3, 10}, {119, 99}}});
+  const auto labels = place_labels(requests, {120, 100});
   EXPECT_GT(labels.size(), 20u);
   EXPECT_LT(labels.size(), 300u);
   EXPECT_EQ(labels[0].text, "Unit 0");
@@ -279,7 +280,7 @@ TEST_F(Files, PngHasItsResolutionAndTheDrawingPixelByPixel) {
   ASSERT_TRUE(picture);
   EXPECT_EQ(picture->width, 1654);  // 210 mm
   EXPECT_EQ(picture->height, 1165);
-  // 7874 a metre
+  // 7874 pixels per meter
   EXPECT_NE(bytes.find(std::string("pHYs\0\0\x1e\xc2\0\0\x1e\xc2\x01", 13)), std::string::npos);
   const auto at = [&](double x_mm, double y_mm) {
     return &picture->rgba[4 * (std::size_t(y_mm / 25.4 * 200) * picture->width +
@@ -359,7 +360,7 @@ TEST_F(Files, ADiskThatTakesNothingIsSaid) {
   const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, {}, 100);
   for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf})
     for (const fs::path& file : {fs::path("/dev/full"), folder_ / "no" / "folder"}) {
-      if (format == Format::tiff && file == "/dev/full") continue;  // libtiff wants to seek
+      if (format == Format::tiff && file == "/dev/full") continue;  // libtiff needs to seek
       const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format,
                                         {}, file, progress_);
       ASSERT_FALSE(written) << file << " " << static_cast<int>(format);

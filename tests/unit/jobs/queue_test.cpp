@@ -199,7 +199,7 @@ TEST(JobsQueue, what_a_job_freed_in_small_pieces_is_given_back_to_the_system) {
 #endif
   using Pieces = std::vector<std::unique_ptr<std::array<char, 4000>>>;
   const double before = resident_mb();
-  // lies above all others: what is below it is not given back by itself
+  // above all other blocks: malloc does not give back the memory below it automatically
   const auto last = std::make_shared<Pieces>();
   double most = 0;
   JobQueue queue;

@@ -137,7 +137,7 @@ TEST(PictureFormats, a_tiff_that_is_no_picture_says_what_it_is) {
   EXPECT_THAT(says(many), HasSubstr("9 samples"));
   TiffSettings lying;
   lying.orientation = ORIENTATION_RIGHTTOP;
-  EXPECT_THAT(says(lying), HasSubstr("on its side"));
+  EXPECT_THAT(says(lying), HasSubstr("rotated by 90°"));
 }
 
 TEST(PictureFormats, a_webp_keeps_its_pixels) {
@@ -196,17 +196,17 @@ TEST(PictureFormats, every_format_that_is_cut_short_is_refused) {
       {"packed tga", test::tga_of(rgba, kWidth, kHeight, 24, true)},
       {"cmyk jpeg", test::cmyk_jpeg_of(rgba, kWidth, kHeight, Inks::adobe_ycck)}};
   for (const auto& [name, bytes] : files)
-    for (const std::size_t kept : {bytes.size() - 40, bytes.size() / 2, std::size_t{60}}) {
-      const auto cut = decode_picture(std::span(bytes).first(kept));
-      ASSERT_FALSE(cut) << name << ' ' << kept;
-      EXPECT_EQ(cut.error().code, ErrorCode::invalid) << name << ' ' << kept;
+    for (const std::size_t length : {bytes.size() - 40, bytes.size() / 2, std::size_t{60}}) {
+      const auto cut = decode_picture(std::span(bytes).first(length));
+      ASSERT_FALSE(cut) << name << ' ' << length;
+      EXPECT_EQ(cut.error().code, ErrorCode::invalid) << name << ' ' << length;
     }
 }
 
 TEST(PictureFormats, a_jpeg_whose_rest_was_cut_out_of_it_is_refused) {
   Bytes jpeg = encode_jpeg(gradient(200, 120), 200, 120, {90, true});
   jpeg.resize(jpeg.size() / 2);
-  jpeg.insert(jpeg.end(), {0xff, 0xd9});  // the mark of the end, which a repair may have put back
+  jpeg.insert(jpeg.end(), {0xff, 0xd9});  // the end marker, which a repair may have restored
   EXPECT_FALSE(decode_picture(jpeg));
 }
 
@@ -226,7 +226,7 @@ TEST(PictureFormats, formats_that_are_not_read_are_named) {
               HasSubstr("AVIF"));
   EXPECT_EQ(says("\xabKTX 20\xbb\r\n\x1a\n").code, ErrorCode::unsupported);
   const std::string text = says("newmtl a").detail;
-  EXPECT_THAT(text, HasSubstr("TIFF, WebP, BMP and TGA"));
+  EXPECT_THAT(text, HasSubstr("TIFF, WebP, BMP or TGA"));
 }
 
 TEST(PictureFormats, what_goes_with_a_mesh_is_not_taken_for_a_tga) {

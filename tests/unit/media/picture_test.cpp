@@ -106,9 +106,9 @@ TEST(Picture, what_is_no_picture_or_too_large_or_cut_short_is_refused) {
     EXPECT_EQ(decode_picture(bytes, 199).error().code, ErrorCode::invalid);
     EXPECT_EQ(inspect_picture(bytes, 199).error().code, ErrorCode::invalid);
     EXPECT_TRUE(decode_picture(bytes, 200));
-    for (const std::size_t kept : {bytes.size() / 2, std::size_t{30}, std::size_t{9}}) {
-      const auto cut = decode_picture(std::span(bytes).first(kept));
-      ASSERT_FALSE(cut) << kept;
+    for (const std::size_t length : {bytes.size() / 2, std::size_t{30}, std::size_t{9}}) {
+      const auto cut = decode_picture(std::span(bytes).first(length));
+      ASSERT_FALSE(cut) << length;
       EXPECT_EQ(cut.error().code, ErrorCode::invalid);
     }
   }

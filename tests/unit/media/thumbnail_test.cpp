@@ -13,7 +13,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// An APP1 segment with one entry, behind the start of the picture.
+// Inserts an APP1 segment with one entry after the start of the picture.
 Bytes with_orientation(const Bytes& jpeg, int orientation, bool little = true) {
   Bytes tiff = little ? Bytes{'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0, 0x12, 1, 3,
                               0,   1,   0,  0, 0, 0, 0, 0, 0, 0, 0,    0, 0}
@@ -27,8 +27,8 @@ Bytes with_orientation(const Bytes& jpeg, int orientation, bool little = true) {
   return out;
 }
 
-// Red left half and green right half in its upper part, blue and white below: each corner has a
-// colour of its own.
+// Red left half and green right half in the upper part, blue and white in the lower: each corner
+// has a different color.
 Bytes corners(int width, int height) {
   Bytes rgba;
   for (int y = 0; y < height; ++y)
@@ -138,7 +138,7 @@ TEST(JpegFacts, cut_and_damaged_ones_say_nothing) {
   const auto whole = with_orientation(encode_jpeg(test::gradient(16, 16), 16, 16, {}), 6);
   for (std::size_t cut = 0; cut < 60; ++cut) read_jpeg_facts(std::span(whole).first(cut));
   auto wild = whole;
-  wild[16] = 0xff;  // where the directory lies
+  wild[16] = 0xff;  // the offset of the directory
   wild[17] = 0xff;
   EXPECT_EQ(read_jpeg_facts(wild).orientation, 1);
   EXPECT_FALSE(read_jpeg_facts(whole).progressive);

@@ -20,8 +20,8 @@ namespace {
 
 constexpr int kLowest = 256;
 
-// How often each texel centre is covered: OpenGL's rule told again, texel by texel, with whole
-// numbers.
+// Counts how often each texel center is covered: OpenGL's rule implemented again, texel by texel,
+// with whole numbers.
 std::vector<int> owners_by_brute_force(const TriangleMesh& mesh, const Atlas& atlas,
                                        int resolution) {
   std::vector<int> owners(std::size_t(resolution) * resolution, 0);
@@ -83,7 +83,7 @@ class EveryMeshClass : public testing::TestWithParam<test::NamedMesh> {
     EXPECT_TRUE(atlas.has_value()) << (atlas ? "" : atlas.error().detail);
     return atlas ? *atlas : Atlas{};
   }
-  // For tests that only look at it: unwrapped once for all of them.
+  // For tests that only read it: unwrapped once for all of them.
   const Atlas& unwrapped() {
     static std::map<std::string, Atlas> atlases;
     const auto found = atlases.find(GetParam().name);
@@ -135,7 +135,7 @@ TEST_P(EveryMeshClass, keeps_two_empty_texels_between_charts) {
   const Atlas& atlas = unwrapped();
   const auto islands = islands_of(mesh(), atlas);
   EXPECT_EQ(atlas.report.charts, 1 + int(*std::max_element(islands.begin(), islands.end())));
-  // What the edges touch, which are what can come nearest to another chart.
+  // Texels that edges touch, which can be nearest to another chart.
   constexpr std::uint32_t kFree = 0xffffffffu;
   std::vector<std::uint32_t> touched(kLowest * kLowest, kFree);
   const auto touch = [&](glm::dvec2 p, std::uint32_t island) {
@@ -247,11 +247,11 @@ TEST(mesh_atlas, refuses_more_pieces_than_texels_can_hold_apart) {
   const auto atlas = make_atlas(test::separate_triangles(3000), 128, progress);
   ASSERT_FALSE(atlas);
   EXPECT_EQ(atlas.error().code, ErrorCode::invalid);
-  EXPECT_THAT(atlas.error().detail, testing::HasSubstr("higher lowest resolution"));
+  EXPECT_THAT(atlas.error().detail, testing::HasSubstr("higher minimum resolution"));
 }
 
 TEST(mesh_atlas, refuses_a_soup_of_faces_before_it_tries_to_pack_it) {
-  // Packing so many takes minutes; that even single texels do not fit is known at once.
+  // Packing so many takes minutes; the check that even single texels do not fit is immediate.
   Progress progress;
   const auto atlas = make_atlas(test::separate_triangles(200'000), 1024, progress);
   ASSERT_FALSE(atlas);

@@ -14,7 +14,7 @@ using namespace strata;
 using mesh::Material;
 using mesh::TriangleMesh;
 
-// A picture of one colour.
+// A picture of one color.
 mesh::Texture plain(const std::string& name, int size, glm::u8vec3 color,
                     PictureFormat format = PictureFormat::png) {
   std::vector<std::uint8_t> rgba;
@@ -23,8 +23,8 @@ mesh::Texture plain(const std::string& name, int size, glm::u8vec3 color,
                                              : encode_jpeg(rgba, size, size, {95, true})};
 }
 
-// Two squares side by side, each of two triangles that fill their texture's [0,1]²; in the atlas
-// the lower left and the upper right quarter.
+// Two adjacent squares, each of two triangles that fill their texture's [0,1]²; in the atlas the
+// lower left and the upper right quarter.
 struct Squares {
   TriangleMesh mesh;
   mesh::Atlas atlas;
@@ -73,7 +73,7 @@ TEST(BaseColor, several_textures_become_one_picture_of_their_density) {
     EXPECT_EQ(color_at(*picture, s, 0.499 - s + 0.001), glm::ivec3(200, 0, 0));
     EXPECT_EQ(color_at(*picture, 0.5 + s, 0.5 + s), glm::ivec3(0, 0, 200));
   }
-  // The gutter goes on with the surface beside it.
+  // The gutter continues the adjacent surface.
   EXPECT_EQ(color_at(*picture, 0.25, 0.5 + 5.0 / 2048), glm::ivec3(200, 0, 0));
   EXPECT_EQ(color_at(*picture, 0.75, 0.5 - 5.0 / 2048), glm::ivec3(0, 0, 200));
   EXPECT_TRUE(squares.mesh.textures[0].bytes.empty());
@@ -226,7 +226,7 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
   Squares squares;
   squares.mesh.materials[1].texture = 0;
   squares.atlas.report.source = "file";
-  // The texture is the atlas, but for the second triangle: the lower half of the picture is red,
+  // The texture is the atlas, except for the second triangle: the lower half of the picture is red,
   // the upper half blue.
   squares.mesh.corner_uvs = squares.atlas.corner_uvs;
   std::vector<std::uint8_t> rgba(512 * 512 * 4, 255);
@@ -252,8 +252,8 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
   for (std::size_t i = 0; i < rgba.size(); i += 4) changed += rgba[i] != picture->rgba[i];
   EXPECT_NEAR(double(changed), 512 * 512 * 0.045, 800) << "nothing else";
 
-  // Without coordinates it takes the colours that its corners have beside it: the first one is red
-  // there.
+  // Without coordinates it gets the colors that its corners have in adjacent triangles: the first
+  // one is red there.
   squares.mesh.textures[0].bytes = encode_png(rgba, 512, 512);
   const float none = NAN;
   own({{none, none}, {none, none}, {none, none}});

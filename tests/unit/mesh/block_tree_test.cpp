@@ -1,4 +1,4 @@
-// Which blocks lie where on the model.
+// The order of blocks by their place on the model.
 #include "mesh/surface/block_tree.h"
 
 #include <gtest/gtest.h>
@@ -111,8 +111,8 @@ TEST_P(TreeOfMany, holds_every_part_once_under_bounds_that_hold_it) {
 }
 INSTANTIATE_TEST_SUITE_P(Sizes, TreeOfMany, testing::Values(0, 1, 7, 8, 9, 64, 65, 513, 5000));
 
-// Of points in a cube of 16³ a run of eight neighbours fills about a cube of 2³, not a slice of the
-// whole.
+// With points in a cube of 16³, a run of eight neighbors fills about a cube of 2³, not a slice of
+// the whole.
 TEST(BlockTree, keeps_neighbours_in_space_together) {
   std::vector<BoundedPart> parts;
   for (std::uint32_t i = 0; i < 4096; ++i)

@@ -1,5 +1,5 @@
-// The half-edges of a mesh, and what repair makes of broken ones, against OpenMesh's own way to
-// build a mesh.
+// The half-edges of a mesh, and the repair of broken ones, compared with OpenMesh's construction of
+// a mesh.
 #include "mesh/surface/connectivity.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ mesh::TriangleMesh repaired(const mesh::TriangleMesh& mesh) {
   return loaded ? std::move(loaded->mesh) : mesh::TriangleMesh{};
 }
 
-// Few points and many triangles between them: edges of many triangles, fins, pieces that touch.
+// Few points with many triangles: edges of many triangles, fins, pieces that touch.
 mesh::TriangleMesh tangle(unsigned seed) {
   std::mt19937 random(seed);
   const auto number = [&](unsigned end) { return static_cast<std::uint32_t>(random() % end); };
@@ -120,7 +120,7 @@ TEST(Connectivity, is_what_openmesh_builds_face_by_face) {
 }
 
 TEST(Connectivity, many_triangles_around_one_vertex_take_no_longer_than_elsewhere) {
-  // In an order in which no two neighbours follow each other.
+  // In an order without adjacent neighbors.
   constexpr std::uint32_t kCount = 400'000, kStep = 7919;
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -144,7 +144,7 @@ TEST(BoundaryLoops, of_holes_are_counted_and_measured) {
   // A square of 20 × 20 cells, 1 wide, without one cell, and without a block of 3 × 2.
   constexpr int kCells = 20;
   mesh::TriangleMesh grid = test::open_grid(kCells, 0);
-  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> triangles;
   const auto is_hole = [](int x, int y) {
     return (x == 4 && y == 4) || (x >= 10 && x < 13 && y >= 9 && y < 11);
   };
@@ -154,9 +154,9 @@ TEST(BoundaryLoops, of_holes_are_counted_and_measured) {
     const glm::dvec3 low = grid.positions.front(), high = grid.positions.back();
     const glm::dvec3 cell = (middle - low) / (high - low) * double(kCells);
     if (is_hole(static_cast<int>(cell.x), static_cast<int>(cell.y))) continue;
-    kept.insert(kept.end(), &grid.triangles[i], &grid.triangles[i] + 3);
+    triangles.insert(triangles.end(), &grid.triangles[i], &grid.triangles[i] + 3);
   }
-  const Connectivity connectivity(kept, grid.positions.size());
+  const Connectivity connectivity(triangles, grid.positions.size());
   const double cell = (grid.positions.back().x - grid.positions.front().x) / kCells;
   std::vector<double> lengths;
   for (const auto& loop : mesh::boundary_loops(connectivity)) {

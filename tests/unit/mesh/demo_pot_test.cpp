@@ -29,7 +29,7 @@ TEST_P(DemoPot, is_closed_manifold_and_oriented_outward) {
     ASSERT_EQ(count, 1);
     ASSERT_TRUE(edges.contains({edge.second, edge.first}));
   }
-  // A sphere: V - E + F = 2, which with closed edges leaves no vertex where two sheets only touch.
+  // A sphere: V - E + F = 2. With closed edges, this excludes vertices where two sheets only touch.
   EXPECT_EQ(static_cast<long>(pot.positions.size()) - static_cast<long>(edges.size() / 2) +
                 static_cast<long>(pot.triangle_count()),
             2);

@@ -19,8 +19,8 @@ std::shared_ptr<const Geometry> geometry_of(const TriangleMesh& mesh) {
   return std::make_shared<const Geometry>(build_geometry(mesh, Atlas{}));
 }
 
-// Heights over a square of side 2 around the origin, as a grid that is not aligned with itself:
-// every vertex is moved a little within the square.
+// Heights over a square of side 2 around the origin, on an irregular grid: every vertex is moved a
+// little within the square.
 template <class Height>
 TriangleMesh height_field(int cells, Height height, double noise = 0) {
   TriangleMesh mesh = test::open_grid(cells, 0);
@@ -111,7 +111,7 @@ TEST(Curvature, of_a_torus_follows_the_formula_around_the_tube) {
 
 TEST(Curvature, does_not_depend_on_noise_that_is_finer_than_the_radius) {
   const auto bowl = [](double x, double y) { return (x * x + y * y) / 4; };
-  // Noise of a sixth of an edge, which turns single faces by some ten degrees.
+  // Noise of a sixth of an edge, which rotates single faces by some ten degrees.
   const Curvature c = curvature_near_origin(height_field(160, bowl, 0.002), 0.25f);
   EXPECT_NEAR(c.mean(), -0.5, 0.05);
 }
@@ -138,7 +138,7 @@ TEST(Curvature, is_none_where_a_strip_has_no_width) {
   EXPECT_FALSE(curvature_at(samples, {50, 0, 0}, {0, 0, 1}));
 }
 
-// Every sample that is near one of the points, once.
+// Finds every sample near one of the points, once.
 std::vector<std::array<float, 7>> samples_near(const SurfaceSamples& samples,
                                                const std::vector<glm::vec3>& points) {
   std::vector<std::array<float, 7>> all;
@@ -289,7 +289,7 @@ TEST(Boundary, distance_is_that_to_the_nearest_side_of_a_square) {
 }
 
 TEST(ModelDistance, of_two_balls_has_the_sign_of_the_side_and_the_unit_of_the_first) {
-  // 1 m there; here millimetres, elsewhere in the world by the same coordinates.
+  // In meters there; in millimeters here, at another place of the world by the same coordinates.
   const auto there = geometry_of(test::transformed(test::sphere(200), 1, {5, 0, 0}));
   const auto here = geometry_of(test::transformed(test::sphere(40), 1200, {5000, 0, 0}));
   const ModelDistance distance(here->origin, 0.001, there, 1, 400);

@@ -1,7 +1,7 @@
-// Every form in which a glTF may keep an attribute, against what the specification says that its
-// numbers mean: glTF 2.0, 3.6.2 and 3.7.2.1, KHR_mesh_quantization, KHR_draco_mesh_compression,
-// EXT_meshopt_compression and KHR_meshopt_compression. The expected values are worked out here, in
-// double, from the stored numbers.
+// Every format in which a glTF may store an attribute, compared with the specification's meaning of
+// its numbers: glTF 2.0, 3.6.2 and 3.7.2.1, KHR_mesh_quantization, KHR_draco_mesh_compression,
+// EXT_meshopt_compression and KHR_meshopt_compression. The test computes the expected values in
+// double from the stored numbers.
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 #include <gmock/gmock.h>
@@ -40,13 +40,13 @@ double largest(int type) {
     case kUnsignedByte: return 255;
     case kShort: return 32767;
     case kUnsignedShort: return 65535;
-    // the encoder of Draco has a table as long as the largest value
+    // Draco's encoder has a table as long as the largest value
     case kUnsignedInt: return 1 << 16;
     default: return 1;
   }
 }
 
-// One attribute: its numbers as they are stored, vertex by vertex.
+// One attribute: its numbers as stored, vertex by vertex.
 struct Attribute {
   std::string name;
   int type = kFloat, components = 3;
@@ -61,7 +61,7 @@ struct Attribute {
   }
   double meaning(int vertex, int k) const { return meaning(vertex, k, normalized); }
 
-  // Elements at this stride, zeros between them.
+  // Elements with this stride, and zeros between them.
   std::vector<std::uint8_t> bytes(int stride) const {
     std::vector<std::uint8_t> out(static_cast<std::size_t>(stride * kVertices));
     for (int i = 0; i < kVertices; ++i)
@@ -85,8 +85,8 @@ struct Attribute {
   std::string shape() const { return "VEC" + std::to_string(components); }
 };
 
-// Of shares 0…1: the whole range of the type, the lowest number of signed ones included, which is
-// normalised to −1 like the next.
+// For shares 0…1: the whole range of the type, including the lowest signed number, which is
+// normalized to −1 like the next one.
 Attribute attribute(const std::string& name, int type, int components, bool normalized) {
   static constexpr double kShares[kVertices][4] = {
       {0, 0, 0.2, 1}, {1, 0, 0.25, 0.5}, {0, 1, 0.5, 0.75}, {1, 1, 0.125, 0.25}, {0.5, 0.6, 1, 0}};
@@ -134,8 +134,8 @@ std::string name_of(Store store) {
 
 class File {
  public:
-  // Attributes of which the last is stored as told, the others plainly; with Draco all are in the
-  // stream, which contradicts their accessors about what is normalised.
+  // Attributes of which the last is stored in the given format, the others plainly; with Draco all
+  // are in the stream, which contradicts their accessors about normalization.
   File(const std::vector<Attribute>& attributes, Store store, int index_type,
        bool quantization_named) {
     json primitive = {{"attributes", json::object()}};
@@ -143,8 +143,8 @@ class File {
                                         [](const auto& a) { return a.name == "TEXCOORD_1"; });
     if (second_uvs) primitive["material"] = material();
     for (const Attribute& a : attributes) {
-      const bool told = is_draco(store) ? !a.beside_draco : &a == &attributes.back();
-      const Store how = told ? store : Store::plain;
+      const bool has_that_form = is_draco(store) ? !a.beside_draco : &a == &attributes.back();
+      const Store how = has_that_form ? store : Store::plain;
       primitive["attributes"][a.name] = add(a, how);
     }
     const bool last_is_indices =
@@ -190,7 +190,7 @@ class File {
     if (is_draco(store)) return add_accessor(accessor);
     Attribute base = a;
     if (is_sparse(store)) {
-      // Vertices 1 and 4 are wrong in the buffer view, and mended by sparse values.
+      // Vertices 1 and 4 are wrong in the buffer view, and corrected by sparse values.
       for (int k = 0; k < a.components; ++k)
         base.stored[static_cast<std::size_t>(a.components + k)] =
             base.stored[static_cast<std::size_t>(4 * a.components + k)] = 1;
@@ -210,7 +210,7 @@ class File {
           {"values", {{"bufferView", builder_.add_view(values.data(), values.size())}}}};
       if (zeros) return add_accessor(accessor);
     }
-    // meshopt has strides of whole words, and so have interleaved vertices.
+    // meshopt has strides of whole words, and so do interleaved vertices.
     const bool meshopt = store == Store::meshopt_ext || store == Store::meshopt_khr ||
                          store == Store::sparse_on_meshopt;
     const int stride = meshopt                       ? (a.size() + 3) / 4 * 4
@@ -238,7 +238,7 @@ class File {
                                       {"byteStride", stride},
                                       {"count", count},
                                       {"mode", mode}};
-    shown["buffer"] = 7;  // the uncompressed bytes, which are not there
+    shown["buffer"] = 7;  // the uncompressed bytes, which do not exist
     shown["byteOffset"] = 0;
     shown["byteLength"] = stride * count;
     return view;
@@ -329,8 +329,8 @@ int color_byte_of_light(double value) {
       255 * (value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055)));
 }
 
-// What a corner must have, in the order x y z, u v (with v counted from below), r g b a; NaN:
-// nothing is expected.
+// The expected values of a corner, in the order x y z, u v (with v counted from below), r g b a;
+// NaN: no expected value.
 using Corner = std::array<double, 9>;
 
 Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
@@ -344,8 +344,7 @@ Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
       corner[4] = 1 - a.meaning(vertex, 1);
     }
     if (a.name != "COLOR_0") continue;
-    // Whole numbers that do not say that they are normalised are forbidden, and taken as if they
-    // did.
+    // Whole numbers without the normalized flag are forbidden, and are read as if they had it.
     for (int k = 0; k < 3; ++k) corner[5 + k] = color_byte_of_light(a.meaning(vertex, k, true));
     corner[8] = a.components == 4 ? std::round(255 * a.meaning(vertex, 3, true)) : 255;
   }
@@ -355,14 +354,14 @@ Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
 bool alike(const Corner& expected, const Corner& found) {
   for (std::size_t k = 0; k < expected.size(); ++k) {
     if (std::isnan(expected[k])) continue;
-    // Single precision; colours may round the other way at a half.
+    // Single precision; colors may round in the other direction at a half.
     const double tolerance = k >= 5 ? 1 : 1.2e-7 * std::max(1.0, std::abs(expected[k]));
     if (!(std::abs(expected[k] - found[k]) <= tolerance)) return false;
   }
   return true;
 }
 
-// Encoders may turn triangles and change their order.
+// Encoders may rotate triangles and change their order.
 void expect_the_pyramid(const mesh::TriangleMesh& mesh, const std::vector<Attribute>& attributes) {
   ASSERT_EQ(mesh.triangle_count(), 4u);
   std::vector<std::array<Corner, 3>> found(4);
@@ -379,17 +378,17 @@ void expect_the_pyramid(const mesh::TriangleMesh& mesh, const std::vector<Attrib
       corner[5 + k] = mesh.vertex_colors[index] >> (8 * k) & 255;
   }
   for (std::size_t t = 0; t < 12; t += 3) {
-    std::array<Corner, 3> wanted;
+    std::array<Corner, 3> expected;
     for (std::size_t k = 0; k < 3; ++k)
-      wanted[k] = expected_corner(attributes, static_cast<int>(kTriangles[t + k]));
+      expected[k] = expected_corner(attributes, static_cast<int>(kTriangles[t + k]));
     bool is_there = false;
     for (const auto& triangle : found)
       for (std::size_t turn = 0; turn < 3; ++turn)
-        is_there |= alike(wanted[0], triangle[turn]) &&
-                    alike(wanted[1], triangle[(turn + 1) % 3]) &&
-                    alike(wanted[2], triangle[(turn + 2) % 3]);
+        is_there |= alike(expected[0], triangle[turn]) &&
+                    alike(expected[1], triangle[(turn + 1) % 3]) &&
+                    alike(expected[2], triangle[(turn + 2) % 3]);
     EXPECT_TRUE(is_there) << "triangle " << t / 3 << " begins at "
-                          << testing::PrintToString(wanted[0]) << "; the first found at "
+                          << testing::PrintToString(expected[0]) << "; the first found at "
                           << testing::PrintToString(found[0][0]);
   }
 }
@@ -424,7 +423,7 @@ TEST(MeshGltfForms, every_attribute_in_every_form_means_what_the_specification_s
                 with_positions(attribute(kind.name, type, kind.components, normalized));
             const auto loaded = File(attributes, store, 0, named).load();
             const bool is_color = kind.name == "COLOR_0";
-            // Forbidden, and without a plain meaning. Normals are never read: no form of them is
+            // Forbidden, and without a clear meaning. Normals are never read: no format of them is
             // refused.
             if (kind.name != "NORMAL" && (type == kUnsignedInt || (is_color && is_signed(type)))) {
               ++refused;
@@ -469,17 +468,17 @@ TEST(MeshGltfForms, indices_of_every_unsigned_type_are_read_and_others_refused) 
       // meshopt has no indices of one byte.
       EXPECT_THAT(loaded.error().detail,
                   HasSubstr(meshopt && size_of(type) == 1
-                                ? "elements of 1 bytes do not belong to the mode TRIANGLES"
+                                ? "elements of 1 bytes are not possible in the mode TRIANGLES"
                                 : "does not hold unsigned whole numbers"));
     }
 }
 
 TEST(MeshGltfForms, shapes_that_do_not_belong_to_an_attribute_are_refused) {
   const std::vector<std::pair<Kind, std::string>> wrong{
-      {{"POSITION", 2}, "(POSITION) has 2 numbers a vertex; 3 belong there"},
+      {{"POSITION", 2}, "(POSITION) has 2 numbers a vertex; 3 are required"},
       {{"POSITION", 4}, "(POSITION) has 4 numbers"},
-      {{"TEXCOORD_0", 3}, "(TEXCOORD_0) has 3 numbers a vertex; 2 belong there"},
-      {{"COLOR_0", 2}, "(COLOR_0) has 2 numbers a vertex; 3 or 4 belong there"}};
+      {{"TEXCOORD_0", 3}, "(TEXCOORD_0) has 3 numbers a vertex; 2 are required"},
+      {{"COLOR_0", 2}, "(COLOR_0) has 2 numbers a vertex; 3 or 4 are required"}};
   for (const auto& [kind, says] : wrong)
     for (const Store store : {Store::plain, Store::draco_sequential}) {
       const auto loaded = File(with_positions(attribute(kind.name, kFloat, kind.components, false)),
@@ -491,7 +490,7 @@ TEST(MeshGltfForms, shapes_that_do_not_belong_to_an_attribute_are_refused) {
 }
 
 TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the_accessor_says) {
-  // The stream holds bytes; the accessor says shorts, and then nothing.
+  // The stream has bytes; the accessor says shorts, and then has no type.
   const auto attributes = with_positions(attribute("TEXCOORD_0", kUnsignedByte, 2, true));
   File file(attributes, Store::draco_sequential, 0, false);
   file.document()["accessors"][1]["componentType"] = kUnsignedShort;
@@ -500,18 +499,18 @@ TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the
   Attribute as_shorts = attributes[1];
   as_shorts.type = kUnsignedShort;
   expect_the_pyramid(shorts->mesh, {attributes[0], as_shorts});
-  // Without an accessor the flag of the stream counts, which this one has not set.
+  // Without an accessor the flag of the stream decides, which this one has not set.
   file.document()["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
   const auto alone = file.load();
   ASSERT_TRUE(alone) << alone.error().detail;
   Attribute as_stored = attributes[1];
   as_stored.normalized = false;
   expect_the_pyramid(alone->mesh, {attributes[0], as_stored});
-  // Sparse values of its accessor belong to the uncompressed copy that a file may have beside the
-  // stream.
+  // Sparse values of its accessor belong to the uncompressed copy that a file may have in addition
+  // to the stream.
   file.document()["accessors"][0]["sparse"] = {{"count", 99}};
   EXPECT_TRUE(file.load());
-  // The components of the accessor and the stream must be the same.
+  // The accessor and the stream must have the same components.
   File other(attributes, Store::draco_sequential, 0, false);
   other.document()["accessors"][0]["type"] = "VEC3";
   other.document()["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]

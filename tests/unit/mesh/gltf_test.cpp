@@ -57,7 +57,8 @@ TEST(MeshGltf, data_may_lie_beside_the_file_or_in_a_uri) {
   EXPECT_EQ(beside->mesh.triangle_count(), 2u);
   const auto missing = load_texts({{"a.gltf", builder.gltf("a.bin")}});
   ASSERT_FALSE(missing);
-  EXPECT_THAT(missing.error().detail, HasSubstr("\"a.bin\", which is not among the files"));
+  EXPECT_THAT(missing.error().detail,
+              HasSubstr("\"a.bin\", but the upload does not contain this file"));
   const auto cut =
       load_texts({{"a.gltf", builder.gltf("a.bin")}, {"a.bin", builder.binary().substr(0, 30)}});
   ASSERT_FALSE(cut);
@@ -95,7 +96,7 @@ TEST(MeshGltf, transforms_of_nodes_are_applied_in_double) {
       {{"mesh", 0}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}, {"scale", {2, 1, 1}}}};
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
-  // (1, 0, 0) doubled along x, turned to y.
+  // (1, 0, 0) doubled along x, rotated to y.
   EXPECT_NEAR(loaded->mesh.positions[1].x, 433210.123456, 1e-9);
   EXPECT_NEAR(loaded->mesh.positions[1].y, 4581236.567891, 1e-9);
   EXPECT_EQ(loaded->mesh.positions[1].z, 612.25);
@@ -182,7 +183,7 @@ TEST(MeshGltf, a_material_chooses_its_texture_coordinates_and_transforms_them) {
   EXPECT_EQ(mesh.materials[0].wrap_u, mesh::Wrap::clamp);
   EXPECT_EQ(mesh.materials[0].wrap_v, mesh::Wrap::mirror);
   EXPECT_NEAR(mesh.materials[0].color.g, 0.7354, 1e-3) << "0.5 of the light, as pictures store it";
-  // u = 1: scaled to 2, turned a quarter counter-clockwise (where v points down: to v = −2), moved.
+  // u = 1: scaled to 2, rotated a quarter counter-clockwise (with v down: to v = −2), moved.
   EXPECT_NEAR(mesh.corner_uvs[1].x, 0.5, 1e-6);
   EXPECT_NEAR(mesh.corner_uvs[1].y, 1 - (0.25 - 2), 1e-6);
 }
@@ -223,7 +224,7 @@ TEST(MeshGltf, meshopt_views_are_decoded_and_need_no_fallback) {
         {"byteStride", stride},
         {"count", count},
         {"mode", mode}};
-    view["buffer"] = 77;  // the fallback that is not there
+    view["buffer"] = 77;  // the fallback that does not exist
   };
   compress(0, vertices, 12, 4, "ATTRIBUTES");
   compress(1, triangles, 2, 6, "TRIANGLES");
@@ -282,7 +283,7 @@ TEST(MeshGltf, instances_stand_where_their_translation_rotation_and_scale_say) {
   auto builder = square();
   const int translations =
       builder.add(std::vector<float>{10, 0, 0, 0, 20, 0, 0, 0, 30}, kFloat, "VEC3");
-  // None, a quarter about z, none; as normalised shorts, as the extension allows.
+  // No rotation, a quarter about z, no rotation; as normalized shorts, as the extension allows.
   const auto half = static_cast<std::int16_t>(std::lround(32767 * std::sqrt(0.5)));
   const int rotations =
       builder.add(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, half, half, 0, 0, 0, 32767}, 5122,
@@ -297,14 +298,14 @@ TEST(MeshGltf, instances_stand_where_their_translation_rotation_and_scale_say) {
   const auto corner = [&](std::size_t i) {
     return loaded->mesh.positions[loaded->mesh.triangles[i]];
   };
-  const auto expect_near = [](const glm::dvec3& found, const glm::dvec3& wanted) {
-    EXPECT_LT(glm::length(found - wanted - glm::dvec3(433210.123456, 0, 0)), 1e-4)
+  const auto expect_near = [](const glm::dvec3& found, const glm::dvec3& expected) {
+    EXPECT_LT(glm::length(found - expected - glm::dvec3(433210.123456, 0, 0)), 1e-4)
         << found.x << ' ' << found.y;
   };
   expect_near(corner(1), {11, 0, 0});
-  expect_near(corner(7), {0, 22, 0});  // (1, 0, 0), doubled along x, turned to y
+  expect_near(corner(7), {0, 22, 0});  // (1, 0, 0), doubled along x, rotated to y
   expect_near(corner(12), {0, 0, 30});
-  // The mirrored one turns its triangles.
+  // The mirrored instance reverses its triangles.
   EXPECT_GT(glm::cross(corner(13) - corner(12), corner(14) - corner(12)).z, 0);
   EXPECT_NEAR(mesh::surface_area(loaded->mesh), 4, 1e-4);
   EXPECT_TRUE(loaded->repairs.empty());
@@ -343,7 +344,7 @@ TEST(MeshGltf, instances_that_contradict_themselves_or_are_too_many_are_refused)
                 attributes(b)["ROTATION"] =
                     b.add(std::vector<std::uint8_t>(8, 1), kByte, "VEC4", true);
               }),
-              HasSubstr("does not hold 4 numbers of FLOAT, or of BYTE or SHORT"));
+              HasSubstr("does not hold 4 numbers of type FLOAT, or of normalized BYTE or SHORT"));
   EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = 99; }),
               HasSubstr("number 99 of its \"accessors\""));
   EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = "here"; }),
@@ -366,7 +367,7 @@ TEST(MeshGltf, more_triangles_than_are_taken_are_refused_before_they_are_made) {
   const auto more = mesh::parse_gltf(*files, progress, 5);
   ASSERT_FALSE(more);
   EXPECT_THAT(more.error().detail,
-              HasSubstr("repeats a mesh of 2 triangles 3 times, which makes more than 5"));
+              HasSubstr("repeats a mesh of 2 triangles 3 times. That is more than 5"));
 }
 
 struct BadGltf {
@@ -415,7 +416,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadGltf{"not_indices", [](auto& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; },
                 "unsigned whole"},
         BadGltf{"index_out_of_range", [](auto& j) { j["accessors"][0]["count"] = 3; },
-                "names vertex 3"},
+                "refers to vertex 3"},
         BadGltf{"points", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; },
                 "points or lines"},
         BadGltf{"no_such_mode", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; },
@@ -425,11 +426,11 @@ INSTANTIATE_TEST_SUITE_P(
                   j.erase("meshes");
                   j["nodes"][0].erase("mesh");
                 },
-                "holds no meshes"},
+                "contains no meshes"},
         BadGltf{"not_shown", [](auto& j) { j["nodes"][0].erase("mesh"); },
-                "no node of its scene shows one"},
+                "no node of its scene uses one"},
         BadGltf{"other_numbers", [](auto& j) { j["accessors"][0]["componentType"] = 5130; },
-                "numbers of type 5130, which glTF does not have"},
+                "numbers of type 5130, which glTF does not define"},
         BadGltf{"matrices", [](auto& j) { j["accessors"][0]["type"] = "MAT3"; }, "type \"MAT3\""},
         BadGltf{"counts_differ",
                 [](auto& j) {

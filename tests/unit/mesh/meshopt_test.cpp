@@ -1,6 +1,6 @@
 // Version 1 of the attribute stream and the COLOR filter of KHR_meshopt_compression, which the
-// library of this system cannot write: the streams below were made by meshoptimizer 1.3 from the
-// values that the tests work out.
+// installed library cannot write: meshoptimizer 1.3 made the streams below from the values that the
+// tests compute.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
@@ -22,7 +22,7 @@ Bytes decoded(const std::string& base64) {
   return mesh::decode_data_uri("data:;base64," + base64).value();
 }
 
-// Two blocks, with all modes of bytes (bits of 0 to 8, zeros, literals) and of channels (bytes,
+// Two blocks, with all modes of bytes (0 to 8 bits, zeros, literals) and of channels (bytes,
 // shorts, words by exclusive or).
 const std::string kStream =
     "oZk5GgBqqqqqqgZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZm"
@@ -118,14 +118,14 @@ TEST(MeshMeshopt, what_a_view_says_of_itself_must_fit) {
   const Bytes stream = decoded(kStream);
   const std::vector<std::pair<mesh::MeshoptShape, std::string>> wrong{
       {{"VERTICES", "", 3, 4}, "it has no mode \"VERTICES\""},
-      {{"ATTRIBUTES", "", 3, 6}, "elements of 6 bytes do not belong to the mode ATTRIBUTES"},
+      {{"ATTRIBUTES", "", 3, 6}, "elements of 6 bytes are not possible in the mode ATTRIBUTES"},
       {{"ATTRIBUTES", "", 3, 260}, "elements of 260 bytes"},
       {{"ATTRIBUTES", "", 3, 0}, "elements of 0 bytes"},
-      {{"INDICES", "", 3, 1}, "elements of 1 bytes do not belong to the mode INDICES"},
-      {{"TRIANGLES", "", 4, 2}, "its 4 indices are no whole triangles"},
+      {{"INDICES", "", 3, 1}, "elements of 1 bytes are not possible in the mode INDICES"},
+      {{"TRIANGLES", "", 4, 2}, "its 4 indices are not a multiple of three"},
       {{"TRIANGLES", "OCTAHEDRAL", 3, 4}, "the filter \"OCTAHEDRAL\" does not belong"},
       {{"ATTRIBUTES", "QUATERNION", 3, 4},
-       "the filter \"QUATERNION\" does not belong to elements of 4 bytes"},
+       "the filter \"QUATERNION\" is not possible for elements of 4 bytes"},
       {{"ATTRIBUTES", "COLOR", 3, 12}, "the filter \"COLOR\""},
       {{"ATTRIBUTES", "SEPIA", 3, 4}, "the filter \"SEPIA\""},
       {{"ATTRIBUTES", "", 400'000'000, 4}, "cannot hold 400000000 elements"},

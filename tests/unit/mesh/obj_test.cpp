@@ -72,7 +72,7 @@ TEST(MeshObj, numbers_may_carry_a_plus_and_an_exponent_and_stay_double) {
 }
 
 TEST(MeshObj, a_concave_polygon_keeps_its_area_and_winding) {
-  // An L, seen from above and from below; and a comb whose convex corners are not all ears.
+  // An L, from above and from below; and a comb whose convex corners are not all ears.
   for (const std::string face : {"f 1 2 3 4 5 6\n", "f 6 5 4 3 2 1\n", "f 3 4 5 6 1 2\n"}) {
     const auto loaded =
         load_text("v 0 0 5\nv 3 0 5\nv 3 1 5\nv 1 1 5\nv 1 3 5\nv 0 3 5\n" + face, "a.obj");
@@ -128,7 +128,7 @@ TEST(MeshObj,
       1u);
   EXPECT_EQ(count_of(loaded->repairs, "faces that name normals which the file does not have"), 1u);
   EXPECT_EQ(count_of(loaded->repairs, "triangles without texture coordinates"), 1u);
-  // None at all, counted from above as well.
+  // None of them exist, also with indices counted from the end.
   const auto none = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/-3/-3 -2/-2/-2 -1/-1/-1\n", "a.obj");
   ASSERT_TRUE(none) << none.error().detail;
   EXPECT_TRUE(none->mesh.corner_uvs.empty());
@@ -138,7 +138,7 @@ TEST(MeshObj,
   EXPECT_EQ(count_of(none->repairs, "faces that name normals which the file does not have"), 1u);
 }
 
-// UTF-16 with its byte order mark; characters of two units included.
+// UTF-16 with its byte order mark; including characters of two units.
 std::string utf16(const std::u16string& text, bool big_endian) {
   std::string bytes;
   for (const char16_t unit : u"\ufeff" + text) {
@@ -211,16 +211,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadObj{"empty", "", "empty"}, BadObj{"other", "hello\n", "neither vertices nor faces"},
         BadObj{"points", kThree, "point cloud"},
         BadObj{"index", kThree + "\nf 1 2 4\n",
-               "Line 5: the face names vertex 4, but the file has 3"},
+               "Line 5: the face refers to vertex 4, but the file has 3"},
         BadObj{"zero", kThree + "f 0 1 2\n", "vertex 0"},
         BadObj{"relative", "v 0 0 0\nf -1 -2 -3\nv 0 0 1\nv 1 1 1\n", "(1 above this line)"},
         BadObj{"lowest", kThree + "f -9223372036854775808 1 2\n", "Line 4"},
         BadObj{"beyond", kThree + "f 99999999999999999999 1 2\n", "Line 4"},
-        BadObj{"word", kThree + "f a b c\n", "\"a\" is no face corner"},
-        BadObj{"uv", kThree + "vt 0 0\nf 1/1 2/x 3/1\n", "\"2/x\" is no face corner"},
+        BadObj{"word", kThree + "f a b c\n", "\"a\" is not a corner of a face"},
+        BadObj{"uv", kThree + "vt 0 0\nf 1/1 2/x 3/1\n", "\"2/x\" is not a corner of a face"},
         BadObj{"cr", "v 0 0 0\rv 1 x 0\rv 0 1 0\rf 1 2 3\r", "Line 2"},
-        BadObj{"ply", "ply\nformat ascii 1.0\n", "The file is a PLY file by its content"},
-        BadObj{"web_page", "\n<!DOCTYPE html><p>v 1</p>", "The file is a web page by its content"},
+        BadObj{"ply", "ply\nformat ascii 1.0\n", "The content of the file is a PLY file"},
+        BadObj{"web_page", "\n<!DOCTYPE html><p>v 1</p>", "The content of the file is a web page"},
         BadObj{"number", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "Line 2"},
         BadObj{"after_continuation", "v 0 \\\n0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "Line 3"},
         BadObj{"two_numbers", "v 0 0\nf 1 1 1\n", "needs three numbers"},

@@ -11,7 +11,7 @@ namespace {
 
 using mesh::measure_open_edges;
 
-// Open strips of two triangles, one beside the other, of the given lengths and 1 wide.
+// Open strips of two triangles, next to each other, with the given lengths and 1 wide.
 mesh::Geometry strips(const std::vector<double>& lengths) {
   mesh::Geometry geometry;
   geometry.origin = {5, 5, 0};

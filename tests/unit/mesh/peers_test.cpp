@@ -1,5 +1,5 @@
-// Files of other projects' test suites on which a reader once failed, beside the source tree; each
-// with what must come out.
+// Files of other projects' test suites on which a reader once failed, next to the source tree, each
+// with its expected result.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -122,11 +122,11 @@ TEST_F(MeshPeers, khr_meshopt_needs_no_fallback) {
   EXPECT_NEAR(mesh::surface_area(loaded->mesh), 32.1248186, 1e-5) << "as another decoder has it";
 }
 
-// Its textures have no picture, which costs nothing; but it has no positions and no scene either.
+// Its textures have no picture, which is not an error; but it has no positions and no scene either.
 TEST_F(MeshPeers, a_file_without_any_positions_is_refused_for_that_and_not_for_its_textures) {
   const auto loaded = load({"texcoord-flip.gltf", "texcoord-flip.bin"});
   ASSERT_FALSE(loaded);
-  EXPECT_THAT(loaded.error().detail, HasSubstr("no node of its scene shows one"));
+  EXPECT_THAT(loaded.error().detail, HasSubstr("no node of its scene uses one"));
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST_P(PlyEncodings, a_file_cut_anywhere_is_refused_and_never_read_beyond_its_en
   ASSERT_TRUE(load_text(file.bytes(), "a.ply"));
   const std::size_t end = file.bytes().size() - (GetParam() == PlyWriter::Encoding::ascii ? 2 : 0);
   for (std::size_t size = 0; size < end; ++size) {
-    // A heap block of exactly this size, so that the sanitizer sees any read past it.
+    // A heap block of exactly this size, so that the sanitizer detects any read past it.
     const std::vector<std::uint8_t> cut(file.bytes().begin(),
                                         file.bytes().begin() + static_cast<std::ptrdiff_t>(size));
     Progress progress;
@@ -192,7 +192,7 @@ TEST(MeshPly, a_face_of_more_corners_than_are_taken_is_refused_before_they_are_r
   for (int i = 0; i < 4; ++i) file.put(1.0f * (i & 1)).put(1.0f * (i >> 1)).put(0.25f);
   const int corners = static_cast<int>(mesh::kMaxPolygonCorners) + 1;
   file.put(corners);
-  // no such vertex: not even looked at
+  // no such vertex: it is not even read
   for (int i = 0; i < corners; ++i) file.put(std::uint8_t{9});
   const auto loaded = load_text(file.bytes(), "a.ply");
   ASSERT_FALSE(loaded);
@@ -287,7 +287,7 @@ INSTANTIATE_TEST_SUITE_P(
     all, MalformedPly,
     testing::Values(
         BadPly{"empty", "", "empty"}, BadPly{"other_file", "hello\n", "not a PLY"},
-        BadPly{"stl", "solid stl\n", "an STL file by its content"},
+        BadPly{"stl", "solid stl\n", "The content of the file is an STL file"},
         BadPly{"no_end", "ply\nformat ascii 1.0\n", "end_header"},
         BadPly{"no_end_in_16_mb", "ply\ncomment " + std::string(17u << 20, 'x') + "\n",
                "in its first 16 MB"},
@@ -334,11 +334,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadPly{"not_a_number", ascii(kSquare + kFace, "0 0 0\n1 zero 0\n0 1 0\n1 1 0\n3 0 1 2\n"),
                "vertex 1 of 4 (line 11)"},
         BadPly{"negative_index", ascii(kSquare + kFace, kFour + "3 0 -1 2\n"),
-               "names vertex -1, but the file has 4"},
+               "refers to vertex -1, but the file has 4"},
         BadPly{"large_index", ascii(kSquare + kFace, kFour + "3 0 1 4\n"),
-               "Face 0 (line 14) names vertex 4"},
+               "Face 0 (line 14) refers to vertex 4"},
         BadPly{"faces_first_that_lie", ascii(kFace + kSquare, "3 0 1 4\n" + kFour),
-               "names vertex 4"},
+               "refers to vertex 4"},
         BadPly{"no_indices", ascii(kSquare + "element face 1\nproperty int x\n", kFour + "1\n"),
                "vertex_indices"},
         BadPly{"points_only",

@@ -1,6 +1,6 @@
-// Every scan beside the source tree through all of an import but the database, each in a process of
-// its own, so that what it takes at most is known; against figures measured by a reader that shares
-// no code with this one. Prints a table, which docs/reference/formats.md shows.
+// Imports every scan next to the source tree, except for the database, each in a separate process,
+// so that its peak memory is known; compares the result with figures of a reader that shares no
+// code with this one. Prints a table, which docs/reference/formats.md shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -34,7 +34,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool kMemoryIsReal = false;  // of the sanitizer, too
+constexpr bool kMemoryIsReal = false;  // includes the sanitizer's memory
 #else
 constexpr bool kMemoryIsReal = true;
 #endif
@@ -48,14 +48,14 @@ struct Scan {
 };
 
 struct Outcome {
-  json told;
-  double megabytes = 0;  // at most
+  json report;
+  double megabytes = 0;  // peak
   std::uint64_t bytes = 0;
 
-  bool imported() const { return told.contains("triangles"); }
+  bool imported() const { return report.contains("triangles"); }
   std::uint64_t count(const std::string& what) const {
     std::uint64_t sum = 0;
-    for (const auto& repair : told["repairs"])
+    for (const auto& repair : report["repairs"])
       if (repair["what"].get<std::string>().starts_with(what))
         sum += repair["count"].get<std::uint64_t>();
     return sum;
@@ -67,35 +67,36 @@ json import_in_child(const std::vector<mesh::InputFile>& files) {
   Progress progress;
   auto loaded = mesh::load_mesh(files, progress);
   if (!loaded) return {{"problem", loaded.error().detail}, {"code", name(loaded.error().code)}};
-  json told{
+  json report{
       {"triangles", loaded->mesh.triangle_count()}, {"positions", loaded->mesh.positions.size()},
       {"area", mesh::surface_area(loaded->mesh)},   {"colors", !loaded->mesh.vertex_colors.empty()},
       {"textures", loaded->mesh.textures.size()},   {"materials", loaded->mesh.materials.size()}};
   const auto& first = loaded->mesh.positions[0];
-  told["first"] = {first.x, first.y, first.z};
+  report["first"] = {first.x, first.y, first.z};
   if (loaded->mesh.triangle_count() < 400'000) {
     const auto faults = test::manifold_faults(loaded->mesh);
-    told["faults"] = faults.crowded_edges + faults.disagreements + faults.vertices_of_fans;
-    told["boundary"] = faults.boundary_edges;
+    report["faults"] = faults.crowded_edges + faults.disagreements + faults.vertices_of_fans;
+    report["boundary"] = faults.boundary_edges;
   }
-  told["refused_by_openmesh"] = test::OpenMeshOracle(loaded->mesh).refused.size();
+  report["refused_by_openmesh"] = test::OpenMeshOracle(loaded->mesh).refused.size();
   auto atlas = mesh::keep_uvs(loaded->mesh, kResolution, progress);
   if (!atlas) atlas = mesh::make_atlas(loaded->mesh, kResolution, progress);
   if (!atlas) return {{"problem", atlas.error().detail}, {"code", name(atlas.error().code)}};
-  told["atlas"] = atlas->report.source;
+  report["atlas"] = atlas->report.source;
   loaded->repairs.insert(loaded->repairs.end(), atlas->repairs.begin(), atlas->repairs.end());
   auto color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress);
   if (!color) return {{"problem", color.error().detail}, {"code", name(color.error().code)}};
   if (*color)
-    told["look"] = {{"width", (*color)->width},
-                    {"bytes", (*color)->bytes.size()},
-                    {"type", media_type((*color)->format)}};
-  told["vertices"] = mesh::build_geometry(loaded->mesh, *atlas).vertices.size();
-  told["repairs"] = json::array();
+    report["look"] = {{"width", (*color)->width},
+                      {"bytes", (*color)->bytes.size()},
+                      {"type", media_type((*color)->format)}};
+  report["vertices"] = mesh::build_geometry(loaded->mesh, *atlas).vertices.size();
+  report["repairs"] = json::array();
   for (const auto& repair : loaded->repairs)
-    told["repairs"].push_back({{"what", repair.what}, {"count", repair.count}});
-  told["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return told;
+    report["repairs"].push_back({{"what", repair.what}, {"count", repair.count}});
+  report["seconds"] =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
 }
 
 Outcome import_apart(const std::vector<mesh::InputFile>& files) {
@@ -132,7 +133,7 @@ class MeshScans : public testing::Test {
   static void SetUpTestSuite() {
     std::ifstream in(kData / "FACTS.json");
     std::string text{std::istreambuf_iterator<char>(in), {}};
-    // the area of n05
+    // for the area of n05
     for (std::size_t at; (at = text.find(": NaN")) != text.npos;) text.replace(at, 5, ": null");
     facts_ = json::parse(text, nullptr, false);
   }
@@ -141,7 +142,7 @@ class MeshScans : public testing::Test {
       GTEST_SKIP() << "NO SCANS in " << kData << ": nothing of real files is tested";
   }
 
-  // Compressed ones are unpacked first, as a person does.
+  // Unpacks compressed scans first, as a person does.
   static Outcome import(const Scan& scan) {
     std::vector<mesh::InputFile> files;
     for (const std::string& name : scan.companions) files.push_back({name, kData / name});
@@ -166,28 +167,28 @@ class MeshScans : public testing::Test {
   }
 
   static void print(const Scan& scan, const Outcome& outcome) {
-    const json& told = outcome.told;
+    const json& report = outcome.report;
     std::string text = "| `" + scan.file + "` | ";
     if (outcome.imported()) {
-      text += std::to_string(told["triangles"].get<std::size_t>()) + " | " +
-              std::to_string(told["positions"].get<std::size_t>()) + " | " +
-              told["atlas"].get<std::string>() + " | ";
-      if (told.contains("look"))
-        text += std::to_string(told["look"]["width"].get<int>()) + "² " +
-                told["look"]["type"].get<std::string>().substr(6);
+      text += std::to_string(report["triangles"].get<std::size_t>()) + " | " +
+              std::to_string(report["positions"].get<std::size_t>()) + " | " +
+              report["atlas"].get<std::string>() + " | ";
+      if (report.contains("look"))
+        text += std::to_string(report["look"]["width"].get<int>()) + "² " +
+                report["look"]["type"].get<std::string>().substr(6);
       else
-        text += told["colors"] ? "vertex colours" : "—";
+        text += report["colors"] ? "vertex colours" : "—";
       text += " | ";
       std::string repairs;
-      for (const auto& repair : told["repairs"])
+      for (const auto& repair : report["repairs"])
         repairs += (repairs.empty() ? "" : "; ") + repair["what"].get<std::string>() + ": " +
                    std::to_string(repair["count"].get<std::uint64_t>());
       text += repairs.empty() ? "—" : repairs;
     } else {
-      text += "refused | | | | " + told.value("problem", "died");
+      text += "refused | | | | " + report.value("problem", "died");
     }
     char numbers[64];
-    std::snprintf(numbers, sizeof numbers, " | %.2f | %.0f |", told.value("seconds", 0.0),
+    std::snprintf(numbers, sizeof numbers, " | %.2f | %.0f |", report.value("seconds", 0.0),
                   outcome.megabytes);
     std::printf("%s%s\n", text.c_str(), numbers);
   }
@@ -220,14 +221,14 @@ class MeshScans : public testing::Test {
         {"nasty/n05_nan_inf_vertices.ply",
          "2 vertices that triangles use have a coordinate that is not a finite number"},
         {"nasty/n10b_utm_float32_ruined.ply", "5312 of 5616 triangles have no area"},
-        {"nasty/n18_bad_truncated.ply", "cut short"},
+        {"nasty/n18_bad_truncated.ply", "incomplete"},
         {"nasty/n19_bad_header_lies.ply", "4000000000"},
-        {"nasty/n20_bad_index.obj", "names vertex 5001"},
+        {"nasty/n20_bad_index.obj", "refers to vertex 5001"},
         {"nasty/n21_empty.ply", "no triangle"},
         {"nasty/n22_points_only.ply", "2880 vertices but no triangle"},
         {"nasty/n23_bad_index.ply", "Face 5"},
         {"nasty/n24_zero_bytes.glb", "empty"},
-        {"nasty/n25_bad_glb_length.glb", "cut short"}};
+        {"nasty/n25_bad_glb_length.glb", "incomplete"}};
     return scans;
   }
 
@@ -239,7 +240,7 @@ TEST_F(MeshScans, good_files_have_the_measured_triangles_positions_and_area) {
     SCOPED_TRACE(scan.file);
     const Outcome outcome = import(scan);
     if (!outcome.imported()) {
-      ADD_FAILURE() << outcome.told.value("problem", "died");
+      ADD_FAILURE() << outcome.report.value("problem", "died");
       continue;
     }
     const json& fact = facts_[scan.file];
@@ -249,30 +250,31 @@ TEST_F(MeshScans, good_files_have_the_measured_triangles_positions_and_area) {
     EXPECT_EQ(outcome.count("dropped degenerate triangles"),
               measured.value("index_degenerate_faces", 0u));
     EXPECT_EQ(outcome.count("dropped duplicate triangles"), measured.value("duplicate_faces", 0u));
-    EXPECT_EQ(outcome.told["triangles"].get<std::uint64_t>() + outcome.count("dropped degenerate") +
-                  outcome.count("dropped duplicate") + outcome.count("dropped triangles") +
-                  outcome.count("dropped slivers"),
+    EXPECT_EQ(outcome.report["triangles"].get<std::uint64_t>() +
+                  outcome.count("dropped degenerate") + outcome.count("dropped duplicate") +
+                  outcome.count("dropped triangles") + outcome.count("dropped slivers"),
               fact["triangles"].get<std::uint64_t>());
-    // Both instances of n16 are measured with all vertices of both primitives, and each takes a
-    // half.
+    // Both instances of n16 are measured with all vertices of both primitives; each uses half of
+    // them.
     const std::uint64_t repeated = scan.file.find("n16") == scan.file.npos
                                        ? fact.value("duplicate_position_vertices", 0u)
                                        : 160;
     EXPECT_EQ(outcome.count("welded vertices at equal positions"), repeated);
     if (outcome.count("cut") == 0) {
-      EXPECT_EQ(
-          outcome.told["positions"].get<std::uint64_t>() + outcome.count("dropped unused vertices"),
-          fact["distinct_positions"].get<std::uint64_t>());
+      EXPECT_EQ(outcome.report["positions"].get<std::uint64_t>() +
+                    outcome.count("dropped unused vertices"),
+                fact["distinct_positions"].get<std::uint64_t>());
     }
-    EXPECT_EQ(outcome.told.value("faults", 0u), 0u) << "the mesh is a surface now";
-    EXPECT_EQ(outcome.told["refused_by_openmesh"], 0) << "the mesh is a surface now";
-    // Draco and quantised files were measured by another decoder.
+    EXPECT_EQ(outcome.report.value("faults", 0u), 0u) << "the mesh is a surface now";
+    EXPECT_EQ(outcome.report["refused_by_openmesh"], 0) << "the mesh is a surface now";
+    // Another decoder measured Draco and quantized files.
     const double tolerance = scan.file.ends_with(".glb") ? 1e-5 : 1e-9;
-    // Duplicates count twice there, and a fan over the concave pentagon of n09 folds over itself.
+    // The figures count duplicates twice, and a fan over the concave pentagon of n09 folds over
+    // itself.
     if (measured.value("duplicate_faces", 0) == 0 && scan.file.find("n09") == scan.file.npos &&
         !fact["surface_area"].is_null()) {
       const double area = fact["surface_area"];
-      EXPECT_NEAR(outcome.told["area"].get<double>(), area, area * tolerance);
+      EXPECT_NEAR(outcome.report["area"].get<double>(), area, area * tolerance);
     }
     EXPECT_EQ(outcome.count("texture n"), 0u) << "every picture is found and read";
   }
@@ -281,13 +283,13 @@ TEST_F(MeshScans, good_files_have_the_measured_triangles_positions_and_area) {
 TEST_F(MeshScans, bad_files_are_refused_and_the_fault_is_named) {
   for (const auto& [name, says] : refused()) {
     const Outcome outcome = import({name});
-    ASSERT_TRUE(outcome.told.contains("problem")) << name;
-    EXPECT_EQ(outcome.told["code"], "invalid") << name;
-    EXPECT_THAT(outcome.told["problem"].get<std::string>(), HasSubstr(says)) << name;
+    ASSERT_TRUE(outcome.report.contains("problem")) << name;
+    EXPECT_EQ(outcome.report["code"], "invalid") << name;
+    EXPECT_THAT(outcome.report["problem"].get<std::string>(), HasSubstr(says)) << name;
   }
   const Outcome alone = import({"mask_bali/mask.gltf"});
-  ASSERT_TRUE(alone.told.contains("problem"));
-  EXPECT_THAT(alone.told["problem"].get<std::string>(),
+  ASSERT_TRUE(alone.report.contains("problem"));
+  EXPECT_THAT(alone.report["problem"].get<std::string>(),
               HasSubstr("mask-gltf-2.0_separated-valid.bin\", which is not among"));
 }
 
@@ -296,11 +298,11 @@ TEST_F(MeshScans, the_repairs_of_known_defects_are_counted) {
   EXPECT_EQ(fins.count("cut edges of more than two triangles"), 3u);
   EXPECT_EQ(fins.count("cut vertices"), 7u);
   const Outcome flipped = import({"nasty/n03_flipped_degenerate_duplicate.ply"});
-  EXPECT_EQ(flipped.told["triangles"], 5616);
+  EXPECT_EQ(flipped.report["triangles"], 5616);
   EXPECT_EQ(flipped.count("dropped triangles without area") + flipped.count("dropped slivers"),
             20u);
   EXPECT_EQ(flipped.count("turned triangles"), 561u);
-  EXPECT_EQ(flipped.told["boundary"], 144);
+  EXPECT_EQ(flipped.report["boundary"], 144);
   EXPECT_EQ(import({"nasty/n04_holes_isolated_vertices.ply"}).count("dropped unused vertices"),
             177u);
   const Outcome dragon = import({"dragon_stanford_res4_11k_nonmanifold.ply.gz"});
@@ -323,8 +325,8 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
     double position, uv;  // largest differences
   };
   const auto all = good();
-  const Pair pairs[] = {{all[0], all[1], 1e-7, 1e-6},        // text of 9 digits
-                        {all[0], all[2], 2e-5, 1.0 / 2048},  // quantised to 14 and 12 bits
+  const Pair pairs[] = {{all[0], all[1], 1e-7, 1e-6},        // text with 9 digits
+                        {all[0], all[2], 2e-5, 1.0 / 2048},  // quantized to 14 and 12 bits
                         {all[2], all[3], 1e-12, 1e-12},
                         {{"whale_cranium.glb"}, {"whale_cranium_draco.glb"}, 5e-5, 1.0 / 1024}};
   for (const Pair& pair : pairs) {
@@ -336,7 +338,7 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
     if (!a.textures.empty() && !b.textures.empty()) {
       EXPECT_EQ(a.textures[0].bytes, b.textures[0].bytes);
     }
-    // Encoders reorder triangles: compared by where they lie.
+    // Encoders reorder triangles: compares them by their positions.
     const auto keys = [](const mesh::TriangleMesh& mesh) {
       std::vector<std::array<double, 5>> of_triangles;
       for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
@@ -351,7 +353,7 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
       return of_triangles;
     };
     const auto of_a = keys(a), of_b = keys(b);
-    // The nearest of a grid cell and those around it.
+    // Searches a grid cell and its neighbors for the nearest one.
     const double cell = std::max(pair.position * 20, 1e-4);
     std::multimap<std::array<long, 3>, std::size_t> grid;
     const auto cell_of = [&](const std::array<double, 5>& key) {
@@ -386,17 +388,17 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
 
 TEST_F(MeshScans, one_photograph_on_the_scans_own_coordinates_stays_as_it_is) {
   const Outcome outcome = import({"mask_bali/mask_meshopt.glb"});
-  ASSERT_TRUE(outcome.told.contains("look"));
-  EXPECT_EQ(outcome.told["atlas"], "file");
-  EXPECT_EQ(outcome.told["look"]["bytes"], 2321402) << "bit for bit";
-  EXPECT_EQ(outcome.told["look"]["width"], 4096);
+  ASSERT_TRUE(outcome.report.contains("look"));
+  EXPECT_EQ(outcome.report["atlas"], "file");
+  EXPECT_EQ(outcome.report["look"]["bytes"], 2321402) << "bit for bit";
+  EXPECT_EQ(outcome.report["look"]["width"], 4096);
 }
 
 TEST_F(MeshScans, utm_coordinates_stay_exact_to_the_micrometre) {
-  const json exact = import({"nasty/n10a_utm_double.ply"}).told["first"];
+  const json exact = import({"nasty/n10a_utm_double.ply"}).report["first"];
   EXPECT_GT(exact[1].get<double>(), 4581234.0);
   for (const char* name : {"nasty/n10c_utm.obj", "nasty/n10d_utm_node_translation.glb"}) {
-    const json first = import({name}).told["first"];
+    const json first = import({name}).report["first"];
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(first[k].get<double>(), exact[k].get<double>(), 1e-6) << name;
   }

@@ -24,8 +24,8 @@ std::array<glm::dvec3, 3> corners(const Geometry& geometry, std::size_t triangle
   return {at(0), at(1), at(2)};
 }
 
-// Nearest distance to a triangle by another way than the tree's: the plane if the foot is inside,
-// otherwise the three segments.
+// Returns the nearest distance to a triangle by another method than the tree's: the plane if the
+// foot is inside, otherwise the three segments.
 double oracle_distance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) {
   double best = 1e300;
   for (int k = 0; k < 3; ++k) {
@@ -41,7 +41,7 @@ double oracle_distance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) 
   return inside ? std::min(best, std::abs(glm::dot(p - t[0], n))) : best;
 }
 
-// Distance along the ray by Möller and Trumbore, or infinity.
+// Returns the distance along the ray by Möller and Trumbore, or infinity.
 double oracle_hit(const glm::dvec3& o, const glm::dvec3& d, const std::array<glm::dvec3, 3>& t) {
   const glm::dvec3 e1 = t[1] - t[0], e2 = t[2] - t[0], p = glm::cross(d, e2), s = o - t[0],
                    q = glm::cross(s, e1);
@@ -107,7 +107,7 @@ TEST_F(SearchTreeOracle, the_first_hit_of_a_ray_is_the_nearest_of_all_triangles)
 }
 
 TEST_F(SearchTreeOracle, no_ray_from_inside_a_closed_wall_escapes) {
-  // Aimed exactly at vertices and edges, where a careless test lets rays slip between triangles.
+  // Aimed exactly at vertices and edges, where an inexact test lets rays pass between triangles.
   const auto base = tree_.first_hit({0, 0, geometry_->box_min.z - 50}, {0, 0, 1});
   ASSERT_TRUE(base);
   const glm::vec3 inside = base->position + glm::vec3(0, 0, 2);

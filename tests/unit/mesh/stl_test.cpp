@@ -44,26 +44,26 @@ TEST(MeshStl, a_text_file_is_read_with_its_polygons_and_names) {
 }
 
 TEST(MeshStl, faults_are_refused_by_name) {
-  // a binary file would announce 538976288 triangles here
+  // a binary file would declare 538976288 triangles here
   std::string other_text = "v 0 0 0\nf 1 1 1\n";
   other_text.insert(0, 200, ' ');
   const std::pair<std::string, std::string> bad[] = {
-      {binary_stl("scanner", 3, 2), "announces 3 triangles, but has bytes for 2"},
+      {binary_stl("scanner", 3, 2), "declares 3 triangles, but contains only 2"},
       {binary_stl("scanner", 4'000'000'000u, 1), "4000000000"},
       {binary_stl("scanner", 0, 0), "no triangle"},
       {"short", "it is text without a facet"},
-      {std::string("sh\0rt", 5), "shorter than the header of a binary one"},
+      {std::string("sh\0rt", 5), "shorter than the header of a binary STL"},
       {"\xef\xbb\xbf", "it is text without a facet"},
       {"solid a\rfacet normal 0 0 1\router loop\rvertex 0 0 zero\r", "line 4"},
       {"solid a\r\nfacet\r\nvertex 0 0\r\n", "line 3"},
       {other_text, "it is text without a facet"},
-      {"<!DOCTYPE html>" + std::string(200, ' '), "The file is a web page by its content"},
+      {"<!DOCTYPE html>" + std::string(200, ' '), "The content of the file is a web page"},
       {"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "Git LFS"},
-      {"PK\3\4" + std::string(200, '\0'), "The file is a zip archive by its content"},
+      {"PK\3\4" + std::string(200, '\0'), "The content of the file is a zip archive"},
       {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "line 4"},
       {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0",
        "ends within a facet"},
-      {"solid a\nfacet\nvertex 0 0 0\nfacet\n", "does not end"},
+      {"solid a\nfacet\nvertex 0 0 0\nfacet\n", "has no end"},
       {"solid a\nendsolid a\n", "no triangle"}};
   for (const auto& [text, says] : bad) {
     const auto loaded = load_text(text, "a.stl");

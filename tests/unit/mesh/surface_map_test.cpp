@@ -1,4 +1,5 @@
 #include "mesh/texels/surface_map.h"
+#include "mesh/surface/geometry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ namespace {
 
 constexpr int kResolution = 256;
 
-// One texel at a time, as the header says it, with none of the product's code.
+// One texel at a time, by the definition in the header, without the product's code.
 class Oracle {
  public:
   explicit Oracle(const Geometry& geometry)
@@ -48,7 +49,7 @@ class Oracle {
     return x >= 0 && y >= 0 && x < kResolution && y < kResolution;
   }
 
-  // The nearest surface texel within the ring, or (-1, -1).
+  // Returns the nearest surface texel within the ring, or (-1, -1).
   glm::ivec2 gutter_owner(int x, int y) const {
     glm::ivec2 best(-1);
     int least = 100;
@@ -87,8 +88,8 @@ class Oracle {
     return std::abs(e.x * f.y - e.y * f.x) < 1e-6;
   }
 
-  // Surface area of triangle t over the square of one texel, by clipping the polygon at its four
-  // sides.
+  // Returns the surface area of triangle t over the square of one texel, by clipping the polygon at
+  // its four sides.
   double piece(std::size_t t, int x, int y) const {
     std::vector<glm::dvec2> polygon{uv(t, 0), uv(t, 1), uv(t, 2)};
     const auto size = [](const std::vector<glm::dvec2>& p) {
@@ -101,14 +102,14 @@ class Oracle {
     };
     const double whole = size(polygon);
     const auto clip = [&](auto&& depth) {
-      std::vector<glm::dvec2> kept;
+      std::vector<glm::dvec2> clipped;
       for (std::size_t i = 0; i < polygon.size(); ++i) {
         const auto a = polygon[i], b = polygon[(i + 1) % polygon.size()];
         const double da = depth(a), db = depth(b);
-        if (da >= 0) kept.push_back(a);
-        if ((da < 0) != (db < 0)) kept.push_back(a + (b - a) * (da / (da - db)));
+        if (da >= 0) clipped.push_back(a);
+        if ((da < 0) != (db < 0)) clipped.push_back(a + (b - a) * (da / (da - db)));
       }
-      polygon = kept;
+      polygon = clipped;
     };
     clip([&](glm::dvec2 p) { return p.x - x; });
     clip([&](glm::dvec2 p) { return x + 1 - p.x; });
@@ -197,7 +198,7 @@ std::vector<Case> cases() {
     own.corner_uvs = mesh.corner_uvs;
     all.push_back({name + "_own_uvs", build_geometry(mesh, own)});
   }
-  // Far denser than the texels: most triangles cover no centre.
+  // Far denser than the texels: most triangles cover no center.
   const auto dense = test::sphere(200, 0.01);
   all.push_back({"dense_sphere", build_geometry(dense, *make_atlas(dense, 128, progress))});
   return all;
@@ -236,8 +237,8 @@ TEST_P(EveryGeometry, places_surface_texels_on_their_triangle) {
       const auto [slot, index] = texel_at(map, x, y);
       const glm::dvec3 difference =
           glm::dvec3(map.position(slot, index)) - oracle.position(t, x + 0.5, y + 0.5);
-      // A texel whose position is borrowed by another block's gutter lies on that block's grid, at
-      // most 2^-20 of the model.
+      // A texel whose position another block's gutter uses is on that block's grid, at most 2^-20
+      // of the model.
       ASSERT_LT(glm::length(difference), 2e-6 * size) << x << " " << y;
     }
 }
@@ -290,7 +291,7 @@ TEST_P(EveryGeometry, credits_each_piece_to_the_texel_it_lies_on_inside_an_islan
   const Oracle oracle(geometry());
   const SurfaceMap map = bake(geometry());
   if (map.overlap_texels > 0) GTEST_SKIP() << "pieces of overlapping islands go elsewhere";
-  // Texels whose 8 neighbours are surface take nothing from beyond their island's rim.
+  // Texels whose 8 neighbors are surface get no area from outside their island's rim.
   std::vector<double> expected(kResolution * kResolution, 0);
   for (std::size_t t = 0; t < geometry().triangle_count(); ++t) {
     const auto [x0, x1] = std::minmax({oracle.uv(t, 0).x, oracle.uv(t, 1).x, oracle.uv(t, 2).x});
@@ -413,8 +414,7 @@ TEST_P(EveryGeometry, gutter_texels_get_the_bits_of_the_surface_texels_that_they
       if (is_surface(map, x, y)) {
         expected = (given[slot] >> index) & 1u;
       } else if (packed_at(map, x, y) != kNoPosition) {
-        // Ties are the bake's business: any of the nearest has the position that the gutter texel
-        // shows.
+        // The bake may resolve ties: any of the nearest has the position of the gutter texel.
         const auto position = map.position(slot, index);
         for (const TexelOffset o : kGutterRingOffsets) {
           const int ox = x + o.x, oy = y + o.y;
@@ -490,11 +490,12 @@ TEST(mesh_surface_map, of_real_scans_credits_their_whole_area_at_every_resolutio
     Progress progress;
     const auto scan = load_mesh(data / name, name, progress);
     ASSERT_TRUE(scan) << scan.error().detail;
-    const auto kept = keep_uvs(scan->mesh, 2048, progress);
-    const bool is_made = !kept;
+    const auto own_atlas = keep_uvs(scan->mesh, 2048, progress);
+    const bool is_made = !own_atlas;
     const auto* const made = is_made ? &test::scan_with_made_atlas(name) : nullptr;
     ASSERT_TRUE(!is_made || made->has_value()) << made->error().detail;
-    const Geometry geometry = build_geometry(scan->mesh, is_made ? made->value().atlas : *kept);
+    const Geometry geometry =
+        build_geometry(scan->mesh, is_made ? made->value().atlas : *own_atlas);
     for (const int resolution : {2048, 4096}) {
       const SurfaceMap map = bake(geometry, resolution);
       EXPECT_NEAR(area_sum(map) / surface_area(scan->mesh), 1, 1e-5) << name;

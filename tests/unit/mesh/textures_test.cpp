@@ -80,7 +80,7 @@ TEST(ObjMaterials, names_in_another_encoding_are_found_and_told_as_utf8) {
   const auto loaded = load_texts(
       {{"pot.obj", kVertices + kTwoFaces},
        {"pot.mtl", "newmtl left\nmap_Kd Gr\xfcn.png\nnewmtl right side\nmap_Kd Wei\xdf.png\n"},
-       {"Gr\ufffdn.png", kBlue}});  // as it came through a form
+       {"Gr\ufffdn.png", kBlue}});  // as received through a form
   ASSERT_TRUE(loaded) << loaded.error().detail;
   ASSERT_EQ(loaded->mesh.textures.size(), 1u);
   EXPECT_EQ(loaded->mesh.textures[0].name, "Gr\ufffdn.png");
@@ -147,7 +147,7 @@ TEST(Archive, what_is_no_single_scan_is_refused) {
       {test::zip_of({{"a.obj", obj}, {"b/c.ply", "ply"}}), "a.obj, b/c.ply"},
       {test::zip_of({{"a/mesh.obj", obj}, {"b/mesh.obj", obj}}), "a/mesh.obj, b/mesh.obj"},
       {test::zip_of({{"a.jpg", kRed}}), "In the zip: "},
-      {test::zip_of({{"readme.txt", "text"}}), "There is no file to import"},
+      {test::zip_of({{"readme.txt", "text"}}), "The upload contains no file to import"},
       {test::zip_of({{"inner.zip", zip}}), "another zip"},
       {"", "empty"},
       {"no zip at all", "cannot be opened"},

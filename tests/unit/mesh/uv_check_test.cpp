@@ -81,7 +81,7 @@ TEST(mesh_uv_check, refuses_charts_that_overlap) {
 
 TEST(mesh_uv_check, keeps_and_reports_a_little_overlap) {
   auto cube = test::cube_with_face_charts();
-  // The second face reaches over the rim of the first by one thousandth of a face.
+  // The second face overlaps the rim of the first by one thousandth of a face.
   for (int corner = 6; corner < 12; ++corner) cube.corner_uvs[corner].x -= 0.03f + 0.0006f;
   const auto atlas = keep(cube, 2048);
   ASSERT_TRUE(atlas) << atlas.error().detail;
@@ -97,8 +97,8 @@ TEST(mesh_uv_check, refuses_surface_without_area_in_the_texture) {
   EXPECT_THAT(atlas.error().detail, HasSubstr("have no area in the texture"));
 }
 
-// What a faulty face leads to: it alone is moved, at half the size of the rest or more, and all the
-// others stay where they are.
+// Expects that only the faulty face is moved, at half the size of the rest or more, and that all
+// others keep their place.
 void expect_one_moved(const TriangleMesh& mesh, std::uint32_t face, const std::string& why) {
   const auto atlas = keep(mesh, 1024);
   ASSERT_TRUE(atlas) << atlas.error().detail;
@@ -136,7 +136,7 @@ TEST(mesh_uv_check, one_faulty_face_is_moved_and_the_rest_stays) {
 
 TEST(mesh_uv_check, where_no_texel_is_free_the_rest_makes_room) {
   auto grid = test::open_grid(16);
-  for (auto& uv : grid.corner_uvs) uv = (uv - 0.05f) / 0.9f;  // all of the square
+  for (auto& uv : grid.corner_uvs) uv = (uv - 0.05f) / 0.9f;  // the whole square
   grid.positions.push_back({0.03, 0.03, 0.2});
   grid.triangles.insert(grid.triangles.end(),
                         {0, 1, static_cast<std::uint32_t>(grid.positions.size()) - 1});

@@ -5,6 +5,7 @@
 
 #include "mesh/atlas/atlas.h"
 #include "mesh/io/vertex_properties.h"
+#include "mesh/surface/geometry.h"
 #include "support/mesh_files.h"
 
 namespace strata::mesh {
@@ -23,7 +24,7 @@ const char* const kHeader =
     "property uchar red\nproperty ushort quality\nproperty float confidence\n"
     "element face 1\nproperty list uchar int vertex_indices\n";
 
-// Three corners of quality 10, 20, 30 and confidence 0.5, after an element that is none of ours.
+// Three corners of quality 10, 20, 30 and confidence 0.5, after an element that is not a vertex.
 std::string scan(Encoding encoding) {
   test::PlyWriter ply(encoding, kHeader);
   ply.put(std::uint8_t{2}).put(1.5f).put(2.5f).put(std::int32_t{7});
@@ -66,7 +67,7 @@ TEST(VertexProperties, of_a_file_that_ends_early_or_has_none_such_are_refused) {
     const std::string whole = scan(encoding);
     for (std::size_t length = 0; length + 16 < whole.size(); length += 3) {
       const auto cut = read_vertex_property(bytes_of(whole.substr(0, length)), "quality");
-      if (cut) continue;  // what is cut off comes after the vertices
+      if (cut) continue;  // the missing part follows the vertices
       EXPECT_EQ(cut.error().code, ErrorCode::invalid);
     }
     EXPECT_FALSE(

@@ -1,4 +1,5 @@
-// Content codings: what clients may ask for, and that every coded answer decodes to what it was.
+// Content encodings: the ones that clients may request, and every encoded answer decodes to the
+// original.
 #include "net/http/compression.h"
 
 #include <brotli/decode.h>

@@ -6,8 +6,8 @@
 namespace strata::net {
 namespace {
 
-Request asked(const std::string& target, const std::string& user = "ada",
-              Role role = Role::viewer) {
+Request request_to(const std::string& target, const std::string& user = "ada",
+                   Role role = Role::viewer) {
   Request request;
   EXPECT_TRUE(parse_target(target, request)) << target;
   request.principal = Principal{.user = user, .role = role};
@@ -25,20 +25,21 @@ TEST(EntityTags, are_named_one_by_one_weakly_or_all_at_once) {
 }
 
 TEST(EntityTags, of_a_state_are_of_who_asks_for_what_in_which_format) {
-  const std::string tag = tag_of_state(asked("/a/b?x=1"), "state");
-  EXPECT_EQ(tag, tag_of_state(asked("/a/b?x=1"), "state"));
+  const std::string tag = tag_of_state(request_to("/a/b?x=1"), "state");
+  EXPECT_EQ(tag, tag_of_state(request_to("/a/b?x=1"), "state"));
   EXPECT_EQ(tag.size(), 34u);
   for (const Request& other :
-       {asked("/a/b?x=2"), asked("/a/b"), asked("/ab?x=1"), asked("/a/b/?x=1"),
-        asked("/a/b?x=1&y="), asked("/a/b?x=1", "eve"), asked("/a/b?x=1", "ada", Role::curator)})
+       {request_to("/a/b?x=2"), request_to("/a/b"), request_to("/ab?x=1"), request_to("/a/b/?x=1"),
+        request_to("/a/b?x=1&y="), request_to("/a/b?x=1", "eve"),
+        request_to("/a/b?x=1", "ada", Role::curator)})
     EXPECT_NE(tag, tag_of_state(other, "state")) << other.target;
-  Request as_csv = asked("/a/b?x=1");
+  Request as_csv = request_to("/a/b?x=1");
   as_csv.headers = {{"accept", "text/csv"}};
   EXPECT_NE(tag, tag_of_state(as_csv, "state"));
-  Request of_kiosk = asked("/a/b?x=1");
+  Request of_kiosk = request_to("/a/b?x=1");
   of_kiosk.principal->kiosk = KioskPass{.id = 3};
   EXPECT_NE(tag, tag_of_state(of_kiosk, "state"));
-  EXPECT_NE(tag, tag_of_state(asked("/a/b?x=1"), "state2"));
+  EXPECT_NE(tag, tag_of_state(request_to("/a/b?x=1"), "state2"));
 }
 
 TEST(EntityTags, of_a_body_are_of_its_bytes_where_it_may_be_kept) {
@@ -71,7 +72,7 @@ TEST(EntityTags, what_did_not_change_has_no_body_and_says_nothing_of_one) {
 }
 
 TEST(EntityTags, a_client_that_knows_a_coding_is_told_the_tag_of_that) {
-  for (const auto& [known, told] :
+  for (const auto& [known, expected] :
        {std::pair("\"a-br\"", "\"a-br\""), std::pair("W/\"a-gzip\"", "\"a-gzip\""),
         std::pair("\"a\", \"a-br\"", "\"a\""), std::pair("*", "\"a\"")}) {
     Request request;
@@ -80,7 +81,7 @@ TEST(EntityTags, a_client_that_knows_a_coding_is_told_the_tag_of_that) {
     EXPECT_TRUE(names_tag(request.header("if-none-match"), "\"a\"")) << known;
     Response response = empty_response(304).with("ETag", "\"a\"");
     compress(response, "br", request.known_tags);
-    EXPECT_EQ(response.header("ETag"), told) << known;
+    EXPECT_EQ(response.header("ETag"), expected) << known;
     EXPECT_EQ(response.header("Vary"), "Accept-Encoding");
   }
 }

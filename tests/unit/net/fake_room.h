@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "query/sampling/profile.h"
+#include "query/sampling/texel_samples.h"
+#include "query/statistics/cross_table.h"
+#include "query/statistics/key_areas.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -12,6 +16,7 @@
 #include "room/selection.h"
 #include "room/surface_images.h"
 #include "room/view_settings.h"
+#include "store/content/trash.h"
 
 // A room for tests of live sessions, without a database and a renderer.
 namespace strata::net {
@@ -42,7 +47,7 @@ class FakeParticipant final : public room::Participant {
   Uuid session_;
 };
 
-// Hold every edit until the test answers it, and know one layer and one look.
+// These keep every edit until the test answers it, and have one layer and one surface image.
 class FakeLayers final : public room::Layers {
  public:
   FakeLayers() {
@@ -121,11 +126,11 @@ class FakeQueries final : public room::Queries {
     return found;
   }
   Result<query::Statistics> statistics(const std::string&, const room::Selection&,
-                                       room::StatisticsWanted) override {
+                                       room::StatisticsOptions) override {
     return query::Statistics{};
   }
   Result<room::SelectedArea> select(const room::Selection&, const std::vector<std::string>&,
-                                    room::StatisticsWanted) override {
+                                    room::StatisticsOptions) override {
     return room::SelectedArea{};
   }
   Result<query::Profile> profile(const room::ProfileLine&, const std::vector<std::string>&,

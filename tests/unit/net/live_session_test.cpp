@@ -67,7 +67,7 @@ struct Live : testing::Test {
                                             room::Portrait{"Anna Ost"}, std::nullopt, socket);
     shared->sockets->add(socket, session, "secret");
   }
-  // SurfaceImages for the record on a worker, where it begins.
+  // Searches for the record on a worker when editing begins.
   void edit_record(LiveSession& of, std::int64_t key, bool editing,
                    const json& more = json::object()) {
     json message{{"op", "record.edit"}, {"table", 4}, {"key", key}, {"editing", editing}};
@@ -177,7 +177,7 @@ TEST_F(Live, every_message_it_sends_keeps_the_contract) {
   }
   EXPECT_EQ(socket->of("presence").size(), 1u);
   for (const auto& message : socket->sent) {
-    // its model is made up and has no bounds worth checking
+    // its model is invented and has no valid bounds
     if (message["op"] == "welcome") continue;
     const auto parsed = protocol::parse_server_message(message.dump());
     EXPECT_TRUE(parsed) << message.dump() << "\n" << (parsed ? "" : parsed.error().detail);
@@ -259,9 +259,9 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
                                 {random_uuid(), "bea", "", "#112233"}};
   session->presence_changed();
   for (auto work = std::exchange(socket->later, {}); const auto& each : work) each();
-  const json told = socket->of("presence").back()["users"];
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0]["name"], "bea");
+  const json users = socket->of("presence").back()["users"];
+  ASSERT_EQ(users.size(), 1u);
+  EXPECT_EQ(users[0]["name"], "bea");
   screen->on_closed();
 }
 
@@ -290,7 +290,7 @@ TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {
   const json taken{{"table", 4}, {"key", 7}, {"session", others}, {"user", "bea"}};
   for (const auto& hears : {socket, others_socket})
     EXPECT_EQ(hears->of("record.editors").back()["records"], json::array({taken}));
-  edit_record(*session, 7, false);  // hers no more
+  edit_record(*session, 7, false);  // ends her edit
   EXPECT_EQ(socket->of("record.editors").back()["records"], json::array({taken}));
   edit_record(*session, 8, false);
   EXPECT_EQ(others_socket->of("record.editors").back()["records"],
@@ -554,7 +554,7 @@ TEST_F(Live, the_brush_in_hand_is_told_with_the_place_that_it_points_at) {
   camera["seq"] = 1;
   say(camera);
   say({{"op", "presence"}, {"pointer", {10, 20}}, {"radius", 2.5}});
-  shared->queries.reset();  // what was asked is answered
+  shared->queries.reset();  // answers the pending query
   ASSERT_EQ(room->participants_.newest->pointers.size(), 1u);
   ASSERT_TRUE(room->participants_.newest->pointers[0]);
   EXPECT_EQ(room->participants_.newest->pointers[0]->position, glm::dvec3(4, 5, 6));
@@ -577,7 +577,7 @@ TEST_F(Live, frames_are_counted_and_stop_with_the_socket) {
   session->on_closed();
   session.reset();
   socket.reset();
-  room->participants_.sends.at(0)({message});  // an encoder that was late
+  room->participants_.sends.at(0)({message});  // from a late encoder
 }
 
 TEST_F(Live, after_a_restart_the_batch_before_is_looked_up_off_the_socket_thread) {

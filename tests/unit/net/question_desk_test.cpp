@@ -1,4 +1,4 @@
-// Where questions wait: few of one person at once, in turns, up to a bound.
+// Waiting queries: few of one person at once, in turns, up to a limit.
 #include "net/http/question_desk.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Request from(const std::string& user, Role role = Role::viewer) {
 
 class Desk : public testing::Test {
  protected:
-  // What a question captured may go after this, not before.
+  // After this, the objects that a query captured may be destroyed, not before.
   void all_answered() {
     while (desk_.waiting() + desk_.under_way() > 0) std::this_thread::yield();
   }

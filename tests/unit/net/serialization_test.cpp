@@ -207,9 +207,9 @@ TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
 
 TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
   const auto shape = test::shape(test::in_flag);
-  std::string asked;
+  std::string requested;
   const app::FindTool find = [&](const std::string& ref) -> Result<app::FoundTool> {
-    asked = ref;
+    requested = ref;
     if (ref == "gone") return fail(ErrorCode::unavailable, "Database unavailable", "Wait.");
     if (ref != "flag" && ref != "12")
       return fail(ErrorCode::not_found, "Not found", "There is no such tool.");
@@ -234,12 +234,12 @@ TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
   EXPECT_EQ(with_shape("star").error().code, ErrorCode::invalid);
   EXPECT_EQ(with_shape("star").error().field, "shape");
   EXPECT_EQ(with_shape("gone").error().code, ErrorCode::unavailable);
-  asked.clear();
+  requested.clear();
   const auto square = with_shape("square");
   EXPECT_FALSE(names_tool(edit));
   EXPECT_EQ(std::get<room::StrokeEdit>(square->edit).batch.shape, ToolShape::square);
   EXPECT_EQ(square->record["shape"], "square");
-  EXPECT_EQ(asked, "");
+  EXPECT_EQ(requested, "");
 
   protocol::StrokeBegin begin;
   begin.camera = camera();

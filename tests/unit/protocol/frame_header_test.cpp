@@ -1,5 +1,4 @@
-// The rules are numbered in protocol/frame.md; the golden vectors are read by the web client's
-// tests, too.
+// protocol/frame.md numbers the rules; the web client's tests also read the golden vectors.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,5 +1,5 @@
-// The fixtures and golden vectors of protocol/ are read by the web client's tests, too: both
-// languages must agree.
+// The web client's tests also read the fixtures and golden vectors of protocol/: both languages
+// must agree.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -40,9 +40,9 @@ std::vector<Fixture> fixtures(const std::string& folder) {
   return found;
 }
 
-std::optional<Schema> schema_named(const std::string& wanted) {
+std::optional<Schema> schema_named(const std::string& schema_name) {
   for (int i = 0; i < kSchemaCount; ++i)
-    if (name(static_cast<Schema>(i)) == wanted) return static_cast<Schema>(i);
+    if (name(static_cast<Schema>(i)) == schema_name) return static_cast<Schema>(i);
   return std::nullopt;
 }
 
@@ -84,7 +84,7 @@ TEST(ProtocolMessages, every_client_message_has_a_valid_fixture_that_survives_re
     const auto again = parse_client_message(to_text(*message));
     ASSERT_TRUE(again) << f.name << ": " << to_text(*message) << again.error().detail;
     EXPECT_EQ(*message, *again) << f.name;
-    // Nothing that the client said is lost; what it left out appears at its default.
+    // All members of the client are kept; missing ones get their defaults.
     const json written = json::parse(to_text(*message));
     for (const auto& [member, value] : f.content["json"].items())
       if (!value.is_null() && member != "camera" && member != "edit") {
@@ -161,8 +161,8 @@ TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
 }
 
 TEST(ProtocolMessages, a_problem_keeps_its_bounds_whatever_was_sent) {
-  // What was sent stands in the detail and in the field; every cut of it falls within a character
-  // of three bytes.
+  // The text of the client is in the detail and in the field; each cut is within a character of
+  // three bytes.
   for (const std::size_t before : {0, 1, 2}) {
     std::string sent(before, 'x');
     for (int i = 0; i < 5000; ++i) sent += "語";
@@ -171,10 +171,10 @@ TEST(ProtocolMessages, a_problem_keeps_its_bounds_whatever_was_sent) {
     const json body = problem_body(problem), message = to_json(problem_message(problem));
     EXPECT_TRUE(validate(Schema::Problem, body));
     EXPECT_TRUE(validate(Schema::ProblemMessage, message));
-    for (const json& told : {body, message}) {
-      EXPECT_NO_THROW(static_cast<void>(told.dump())) << "not UTF-8";
-      EXPECT_TRUE(told["field"].get<std::string>().starts_with("title." + sent.substr(0, 400)));
-      EXPECT_TRUE(told["detail"].get<std::string>().ends_with("語…"));
+    for (const json& reply : {body, message}) {
+      EXPECT_NO_THROW(static_cast<void>(reply.dump())) << "not UTF-8";
+      EXPECT_TRUE(reply["field"].get<std::string>().starts_with("title." + sent.substr(0, 400)));
+      EXPECT_TRUE(reply["detail"].get<std::string>().ends_with("語…"));
     }
   }
 }
@@ -233,7 +233,7 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
     EXPECT_FALSE(read);
     return read ? Error{} : read.error();
   };
-  const std::string bom = "\xEF\xBB\xBF";  // which the careful reader alone takes
+  const std::string bom = "\xEF\xBB\xBF";  // which only the careful reader accepts
   const Error expected =
       from_json<PositionsRequest>(json{{"points", json(100'001, {1, 2, 3})}}).error();
   for (const std::string& before : {std::string(), bom}) {
@@ -244,8 +244,8 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
     EXPECT_EQ(problem.detail, expected.detail);
     EXPECT_EQ(problem_of(before + R"({"points":[[1,2,3],[1,2,3,4]]})").field, "points[1]");
   }
-  // What follows is not built, so it is not seen either: of the careful reader not even that it is
-  // no JSON.
+  // Neither reader builds the rest, so it is not checked; with the careful reader the rest need not
+  // even be JSON.
   EXPECT_EQ(problem_of(bom + R"({"points":[)" + points + "no JSON").field, "points");
   const auto within = parse<PositionsRequest>(R"({"points":[[1,2,3]],"layers":["a","b"]})");
   ASSERT_TRUE(within) << within.error().detail;
@@ -312,8 +312,8 @@ TEST(ProtocolMessages, the_fast_reader_leaves_what_is_wrong_to_the_careful_one) 
   EXPECT_NE(problem.error().detail.find("byte 9"), std::string::npos) << problem.error().detail;
 }
 
-// Bytes of the fixtures are changed at random: what the fast reader takes is JSON, and the value
-// that nlohmann-json reads.
+// Random changes of the fixtures' bytes: everything that the fast reader accepts is JSON, with the
+// value that nlohmann-json reads.
 TEST(ProtocolMessages, the_fast_reader_reads_what_the_careful_one_would) {
   std::vector<std::string> texts{
       "[0,-0,-0.0,1,-1,18446744073709551615,9223372036854775808,-9223372036854775808,1.5e-310,0.1,"
@@ -345,7 +345,7 @@ TEST(ProtocolMessages, every_schema_can_be_built) {
   for (int i = 0; i < kSchemaCount; ++i) {
     const auto schema = static_cast<Schema>(i);
     EXPECT_FALSE(name(schema).empty());
-    // Null is a value of one only: that of a cell without a value.
+    // Null is valid for only one schema: that of a cell without a value.
     EXPECT_EQ(validate(schema, json(nullptr)).has_value(), schema == Schema::CellValue)
         << name(schema);
   }

@@ -1,4 +1,4 @@
-// The language of formulas over layers, and what they hold for.
+// The language of formulas over layers, and the texels for which they are true.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSide = 256;
 
-// Every texel but one in five is surface; the others are gutter.
+// Four of five texels are surface; the others are gutter.
 mesh::SurfaceMap full_map() {
   mesh::SurfaceMap map;
   map.resolution = kSide;
@@ -93,7 +93,7 @@ const TestLayer& fine() {
 
 std::vector<LayerView> views() { return {wet().view, crack().view, coarse().view, fine().view}; }
 
-// What the layers hold at a texel; nothing where they have no finite value.
+// The values of the layers at a texel; nothing if they have no finite value.
 struct At {
   Value wet, crack, coarse;
   double fine;
@@ -212,7 +212,7 @@ TEST(Expression, layers_of_every_type_and_resolution_read_alike) {
     const auto value = [&](int x, int y) -> Value {
       return (x + 2 * y) % 5 == 0 ? Value() : Value((7 * x + y) % 120 + low);
     };
-    // The same content at the map's own resolution and at half of it, four texels for one.
+    // The same content at the map's own resolution and at half of it, where one texel covers four.
     const auto own = layer("own", type, kSide, [&](int x, int y) { return value(x / 2, y / 2); }),
                half = layer("half", type, kSide / 2, value);
     const auto selection = [&](const char* text) {
@@ -374,7 +374,7 @@ TEST(Expression, a_computed_layer_holds_what_the_formula_is_at_each_texel) {
       {"if(valid(roof-crack), 1, fine)", [](const At& a) { return Value(a.crack ? 1 : a.fine); }},
       {"1 / roof-crack",
        [](const At& a) { return a.crack && *a.crack != 0 ? Value(1 / *a.crack) : Value(); }},
-      // Where a condition does not hold, or is not known, nothing is painted.
+      // No texel is painted where a condition is false or unknown.
       {"wet > 0.5 and not valid(roof-crack)",
        [](const At& a) { return a.wet && *a.wet > 0.5 && !a.crack ? Value(1) : Value(); }},
       {"not (wet > 0.5)", [](const At& a) { return a.wet && *a.wet <= 0.5 ? Value(1) : Value(); }},
@@ -396,13 +396,14 @@ TEST(Expression, a_computed_layer_holds_what_the_formula_is_at_each_texel) {
                                          static_cast<std::uint16_t>(y / kTileSize)});
           const int texel = y % kTileSize * kTileSize + x % kTileSize;
           const bool is = tile != tiles->end() && tile->second->valid.test(texel);
-          Value wished = surface ? expected(at(x, y)) : Value();
-          if (wished)
-            wished = type == ValueType::f32 ? static_cast<double>(static_cast<float>(*wished))
-                                            : std::round(*wished);
+          Value expected_value = surface ? expected(at(x, y)) : Value();
+          if (expected_value)
+            expected_value = type == ValueType::f32
+                                 ? static_cast<double>(static_cast<float>(*expected_value))
+                                 : std::round(*expected_value);
           valid += is;
-          wrong += is != wished.has_value() ||
-                   (is && decode_value(type, tile->second->bits(texel)) != *wished);
+          wrong += is != expected_value.has_value() ||
+                   (is && decode_value(type, tile->second->bits(texel)) != *expected_value);
         }
       EXPECT_EQ(wrong, 0);
       EXPECT_GT(valid, 1000);
@@ -426,7 +427,7 @@ TEST(Expression, parts_over_records_are_looked_up_by_key) {
        [](int, int, const At& a) {
          return a.crack && *a.crack >= 0 && *a.crack != 2 && a.wet && *a.wet > 0;
        }},
-      // nothing is known of other keys
+      // other keys have unknown values
       {"roof-crack.width is null", [](int, int, const At&) { return false; }},
   };
   for (const auto& [text, expected] : cases) {
@@ -450,7 +451,7 @@ TEST(Expression, parts_over_records_are_looked_up_by_key) {
                  text_of_part.parts[0].op == Expression::Op::holds)
           numbers.push_back({key, found.wet ? 0.0 : 1.0});
         else
-          numbers.push_back({key, 0.0});  // width is null: never, of a record
+          numbers.push_back({key, 0.0});  // "width is null" is never true for a record
       }
       bound.records.emplace_back(numbers);
     }
@@ -483,7 +484,7 @@ TEST(Expression, the_largest_parts_that_read_one_record_are_answered_once_a_reco
   EXPECT_EQ(split("not (a.b = 'x' or a.c > 1) and wet > 0").parts.size(), 1u);
   EXPECT_EQ(split("a.c + 1 > a.d * 2").parts.size(), 1u);
   EXPECT_EQ(split("a.c > b.c").parts.size(), 2u);
-  // once, though it is named twice
+  // once, although named twice
   EXPECT_EQ(split("a.c > wet or a.c < 0 - wet").parts.size(), 1u);
   EXPECT_EQ(split("wet > 1").parts.size(), 0u);
   EXPECT_EQ(split("a.material.code = 'x'").parts[0].expression.parts[0].path,
@@ -533,44 +534,45 @@ std::string repeated(const std::string& text, int times) {
 INSTANTIATE_TEST_SUITE_P(
     All, BadExpression,
     testing::Values(
-        Bad{"", "the end"}, Bad{"   ", "the end"}, Bad{"wet", "condition is wanted"},
-        Bad{"1 + 2", "condition is wanted"}, Bad{"wet >", "instead of 'the end' (at character 6)"},
+        Bad{"", "the end"}, Bad{"   ", "the end"}, Bad{"wet", "Expected a condition"},
+        Bad{"1 + 2", "Expected a condition"}, Bad{"wet >", "instead of 'the end' (at character 6)"},
         Bad{"wet > 1 wet", "'wet' was not expected here (at character 9)"},
         Bad{"(wet > 1", "Expected ')'"}, Bad{"wet > 1)", "')' was not expected"},
-        Bad{"wet > (1 > 2)", "number is wanted"}, Bad{"true > 1", "number is wanted"},
-        Bad{"not wet", "condition is wanted"}, Bad{"wet and true", "condition is wanted"},
-        Bad{"1 < wet < 2", "two values"},
+        Bad{"wet > (1 > 2)", "Expected a number"}, Bad{"true > 1", "Expected a number"},
+        Bad{"not wet", "Expected a condition"}, Bad{"wet and true", "Expected a condition"},
+        Bad{"1 < wet < 2", "two sides"},
         Bad{"root(wet) > 1",
-            "no function 'root'; there are valid, if, reclass, min, max, abs, sqrt"},
-        Bad{"2 ^ 3 ^ 4 > 1", "need parentheses"}, Bad{"wet in ()", "instead of ')'"},
+            "no function 'root'. Available are valid, if, reclass, min, max, abs, sqrt"},
+        Bad{"2 ^ 3 ^ 4 > 1", "Write parentheses"}, Bad{"wet in ()", "instead of ')'"},
         Bad{"wet in (1", "Expected ')'"}, Bad{"wet between 1", "Expected 'and'"},
         Bad{"wet is 1", "Expected 'null'"}, Bad{"wet not 1", "'between', 'in' or 'like'"},
         Bad{"case wet end > 1", "Expected 'when'"},
-        Bad{"case when wet > 1 then 2 > 1", "number is wanted"},
+        Bad{"case when wet > 1 then 2 > 1", "Expected a number"},
         Bad{"case when wet > 1 then 2", "Expected 'end'"},
         Bad{"reclass(wet, 1) > 0", "limit and the value"},
         Bad{"reclass(wet, 1, 2) > 0", "Expected ','"},
-        Bad{"reclass(wet > 1, 1, 2, 3) > 0", "number is wanted"},
-        Bad{"(wet > 1) in (1)", "number is wanted"}, Bad{"valid(1)", "name of a layer"},
+        Bad{"reclass(wet > 1, 1, 2, 3) > 0", "Expected a number"},
+        Bad{"(wet > 1) in (1)", "Expected a number"}, Bad{"valid(1)", "name of a layer"},
         Bad{"valid(wet", "Expected ')'"}, Bad{"valid wet", "'wet' was not expected"},
-        Bad{"min(1) > 0", "At least two"}, Bad{"if(wet > 1, 2) > 0", "Expected ','"},
-        Bad{"if(wet, 1, 2) > 0", "condition is wanted"}, Bad{"and > 1", "instead of 'and'"},
+        Bad{"min(1) > 0", "at least two"}, Bad{"if(wet > 1, 2) > 0", "Expected ','"},
+        Bad{"if(wet, 1, 2) > 0", "Expected a condition"}, Bad{"and > 1", "instead of 'and'"},
         Bad{"valid(and)", "double quotes"}, Bad{"wet > 1 ; drop", "no meaning"},
-        Bad{"wet > '1'", "compared with a column of texts, not with a number (at character 7)"},
-        Bad{"a.b = 'x", "quote is never closed"},
-        Bad{"a.b = 'x' + 1", "number is wanted here, not a text"}, Bad{"a.", "name of a column"},
-        Bad{"a.1 = 2", "was not expected"}, Bad{"a.b like 1", "stands in single quotes"},
-        Bad{"1 like 'x'", "Only texts"}, Bad{"a.b like 'x\\'", "nothing behind it"},
-        Bad{"casei(1) = 'x'", "text or a column is wanted"},
-        Bad{"date(1) = a.b", "stands in single quotes"}, Bad{"a.b > date('spring')", "is no date"},
+        Bad{"wet > '1'",
+            "compared with a column of texts only, not with a number (at character 7)"},
+        Bad{"a.b = 'x", "closing quote is missing"},
+        Bad{"a.b = 'x' + 1", "Expected a number here, not a text"}, Bad{"a.", "name of a column"},
+        Bad{"a.1 = 2", "was not expected"}, Bad{"a.b like 1", "in single quotes"},
+        Bad{"1 like 'x'", "texts only"}, Bad{"a.b like 'x\\'", "must follow"},
+        Bad{"casei(1) = 'x'", "Expected a text or a column"},
+        Bad{"date(1) = a.b", "in single quotes"}, Bad{"a.b > date('spring')", "is not a date"},
         Bad{"t_before(a.b, interval('2', '1'))", "is no"}, Bad{"t_before(a.b)", "Expected ','"},
         Bad{"a_contains(a, (1))", "column of keys"}, Bad{"a_contains(a.b, 1)", "Expected '('"},
-        Bad{"valid(a.b)", "is not null"}, Bad{"a.b = 'w\xff'", "not UTF-8"},
+        Bad{"valid(a.b)", "is not null"}, Bad{"a.b = 'w\xff'", "not encoded as UTF-8"},
         Bad{"a.k = '\xc3\xa4\xc3\xb6' and ? = 1", "(at character 16)"},
         Bad{repeated("if(", 14) + "wet between 0 and 1" + repeated(", 1, 0) between 0 and 1", 14),
-            "too much at once"},
+            "too many parts"},
         Bad{"wet > 1.2.3", "A number ends here"}, Bad{"3d > 1", "double quotes"},
-        Bad{"wet > 1e999", "too large"}, Bad{"\"wet > 1", "never closed"},
+        Bad{"wet > 1e999", "too large"}, Bad{"\"wet > 1", "double quote is missing"},
         Bad{"\"\" > 1", "name is missing"}, Bad{"wet > 1 or", "the end"},
         Bad{"wet ! 1", "no meaning"}, Bad{"w\xc3\xa4nde > 1", "no meaning"},
         Bad{repeated("(", 2000) + "true", "nested too deeply"},

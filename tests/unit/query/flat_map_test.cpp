@@ -61,12 +61,12 @@ TEST(FlatMap, that_cannot_be_read_is_refused_with_the_place) {
     std::string text, field, says;
   };
   const std::vector<Case> cases{
-      {"", "body", "no JSON"},
-      {"{", "body", "no JSON"},
+      {"", "body", "not JSON"},
+      {"{", "body", "not JSON"},
       {"[]", "body", "`type`"},
       {"{}", "body", "`type`"},
       {R"({"type":7})", "body", "`type`"},
-      {R"({"type":"Topology"})", "body", "Only Polygon"},
+      {R"({"type":"Topology"})", "body", "Polygon and MultiPolygon only"},
       {R"({"type":"FeatureCollection"})", "body", "`features`"},
       {collection("7"), "body.features[0]", "`type`"},
       {R"({"type":"FeatureCollection","features":[{"type":"Feature","geometry":null,"properties":{"v":1}}]})",
@@ -75,8 +75,8 @@ TEST(FlatMap, that_cannot_be_read_is_refused_with_the_place) {
       {collection(feature(kSquare, "null")), "attribute", "no attribute 'v'; it has none"},
       {collection(feature(kSquare, R"({"w":3})")), "attribute", "it has w"},
       {collection(feature(kSquare, R"({"v":null})")), "body",
-       "body.features[0]: the attribute 'v' holds no number"},
-      {collection(feature(kSquare, R"({"v":"3"})")), "body", "no number but"},
+       "body.features[0]: the attribute 'v' does not contain a number"},
+      {collection(feature(kSquare, R"({"v":"3"})")), "body", "instead of a number"},
       {collection(feature(R"({"type":"Point","coordinates":[1,2]})", R"({"v":1})")),
        "body.features[0].geometry", "not Point"},
       {R"({"type":"Polygon"})", "body.coordinates", "list of rings"},
@@ -152,7 +152,7 @@ TEST(FlatMap, a_picture_stands_where_its_world_file_says) {
     const std::uint8_t alpha = grey == 60 ? 0 : 255;
     picture.rgba.insert(picture.rgba.end(), {value, value, value, alpha});
   }
-  // Pixels of 2 units; the centre of the first at (101, 199); rows run downward.
+  // Pixels of 2 units; the center of the first at (101, 199); rows run downward.
   const PlacedPicture placed(picture, {2, 0, 0, -2, 101, 199});
   EXPECT_EQ(placed.luminance_at({100.1, 199.9}), 10);
   EXPECT_EQ(placed.luminance_at({103, 199}), 20);
@@ -161,7 +161,7 @@ TEST(FlatMap, a_picture_stands_where_its_world_file_says) {
   EXPECT_EQ(placed.luminance_at({105, 197}), std::nullopt) << "transparent";
   for (const glm::dvec2 outside : {glm::dvec2(99.9, 199), {106.1, 199}, {101, 200.1}, {101, 195.9}})
     EXPECT_EQ(placed.luminance_at(outside), std::nullopt);
-  // Turned by a quarter: columns run along +y, rows along +x.
+  // Rotated by a quarter: columns run along +y, rows along +x.
   const PlacedPicture turned(picture, {0, 2, 2, 0, 0, 0});
   EXPECT_EQ(turned.luminance_at({0, 2}), 20);
   EXPECT_EQ(turned.luminance_at({2, 0}), 40);

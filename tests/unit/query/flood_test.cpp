@@ -1,4 +1,4 @@
-// Connectivity across the surface, seams of the atlas included.
+// Connectivity across the surface, including seams of the atlas.
 #include "query/conditions/flood.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST(Flood, the_pieces_of_the_texels_are_the_pieces_of_the_mesh) {
     Progress progress;
     const auto owners = mesh::bake_texel_owners(surface.geometry, kResolution, progress);
     const auto pieces = pieces_of_triangles(surface.geometry);
-    std::map<std::uint32_t, std::uint64_t> texels;       // of each piece of the mesh
+    std::map<std::uint32_t, std::uint64_t> texels;       // for each piece of the mesh
     std::map<std::uint32_t, std::uint32_t> first_texel;  // its first texel
     for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
       const std::uint32_t piece = pieces[owners->triangle[texel]];
@@ -84,7 +84,7 @@ TEST(Flood, the_pieces_of_the_texels_are_the_pieces_of_the_mesh) {
     std::uint64_t wrong = 0;
     int floods = 0;
     for (const auto& [piece, start] : first_texel) {
-      if (++floods > 40) break;  // there are meshes of separate triangles only
+      if (++floods > 40) break;  // some meshes have only separate triangles
       const auto selection = select_piece(surface.map, surface.graph, start);
       for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
         wrong += is_in(selection, texel) != (pieces[owners->triangle[texel]] == piece);
@@ -138,10 +138,10 @@ void expect_connected(const Surface& surface, const std::function<int(glm::vec3)
   const auto owners = mesh::bake_texel_owners(surface.geometry, map.resolution, progress);
   std::set<std::uint32_t> crossed;
   std::optional<std::uint32_t> start;
-  std::uint64_t wanted = 0;
+  std::uint64_t texels_expected = 0;
   for_each_surface_texel(map, [&](std::uint32_t texel) {
     if (!expected(map.position(texel / 64, static_cast<int>(texel % 64)))) return;
-    if (wanted++ % 997 == 500) start = texel;
+    if (texels_expected++ % 997 == 500) start = texel;
     crossed.insert(islands.of_triangle[owners->triangle[texel]]);
   });
   ASSERT_TRUE(start);
@@ -153,8 +153,8 @@ void expect_connected(const Surface& surface, const std::function<int(glm::vec3)
     ++(expected(map.position(texel / 64, static_cast<int>(texel % 64))) ? inside : outside);
   });
   EXPECT_EQ(outside, 0u);
-  // A texel at the region's border may hang on it by a corner only.
-  EXPECT_GE(inside, wanted - wanted / 1000);
+  // A texel at the region's border may be connected only at a corner.
+  EXPECT_GE(inside, texels_expected - texels_expected / 1000);
 }
 
 TEST(Flood, the_same_value_is_followed_across_seams_and_not_across_other_values) {
@@ -166,7 +166,8 @@ TEST(Flood, the_same_value_is_followed_across_seams_and_not_across_other_values)
 
 TEST(Flood, from_where_nothing_is_what_holds_nothing_is_connected) {
   const Surface torus = surface_of("torus", test::torus(40), 1024);
-  // A ring of the torus is painted at x = 0 on both sides: what is bare falls into two halves.
+  // A ring of the torus is painted at x = 0 on both sides: it divides the unpainted rest into two
+  // halves.
   const auto rings = [](glm::vec3 p) { return std::abs(p.x) < 0.06f ? 1 : 0; };
   expect_connected(torus, rings, [](glm::vec3 p) { return p.x >= 0.06f; });
 }
@@ -178,7 +179,7 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
     const mesh::SurfaceMap& map = surface.map;
     const glm::vec3 size = surface.geometry.box_max - surface.geometry.box_min;
     const float cell = std::max({size.x, size.y, size.z}) / 3;
-    // Cells of space in three values, and one in four bare.
+    // Cells of space with three values; one in four is unpainted.
     LayerView view;
     view.layer.type = ValueType::u8;
     view.layer.resolution = map.resolution;
@@ -204,7 +205,7 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
       const auto piece = select_connected(map, surface.graph, view.snapshot.tiles, texel);
       for (std::size_t slot = 0; slot < seen.size(); ++slot) seen[slot] |= piece[slot];
     });
-    if (floods > 300) continue;  // there are meshes of separate triangles only
+    if (floods > 300) continue;  // some meshes have only separate triangles
     const PieceCounts counts = count_pieces(view, map, surface.graph, nullptr, {.each = true});
     EXPECT_EQ(counts.of_class, expected);
     EXPECT_EQ(counts.all, floods);
@@ -216,7 +217,7 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
 }
 
 // By the legend: each value, or ranges; areas by a plain sum over texels, pieces by flooding a
-// layer that holds the class instead.
+// layer of the classes instead.
 TEST(Quantities, are_those_of_a_sum_over_every_texel_and_of_floods) {
   const Surface surface = surface_of("torus", test::torus(40), kResolution);
   const mesh::SurfaceMap& map = surface.map;
@@ -308,7 +309,7 @@ TEST(Flood, a_pot_is_one_piece_though_its_atlas_has_many) {
   std::uint32_t start = 0;
   for_each_surface_texel(pot.map, [&](std::uint32_t texel) { start = texel; });
   EXPECT_EQ(count(select_piece(pot.map, pot.graph, start)), pot.map.surface_texels);
-  // What it costs beside the map.
+  // The memory of the graph compared with the map's.
   EXPECT_LT(pot.graph.bytes(), pot.map.bytes() / 8);
 }
 

@@ -1,4 +1,4 @@
-// Borders of painted areas on shapes whose lengths are known.
+// Borders of painted areas on shapes with known lengths.
 #include "query/statistics/perimeter.h"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ TEST(Perimeter, two_classes_share_a_border_and_what_is_valid_has_only_its_own) {
   const auto one = measure(surface, halves, {});
   EXPECT_EQ(one.all, each.all);
   EXPECT_EQ(one.of_class.at(0), each.all);
-  // Only what is selected.
+  // Only the selected texels.
   TexelSelection within(surface.map.surface_mask.size(), 0);
   test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
     if (glm::length(surface.map.position(texel / 64, static_cast<int>(texel % 64))) < 0.2f)

@@ -1,5 +1,6 @@
-// Outlines of painted areas on shapes whose areas are known.
+// Outlines of painted areas on shapes with known areas.
 #include "query/maps/plane_outlines.h"
+#include "mesh/surface/geometry.h"
 
 #include <gtest/gtest.h>
 
@@ -51,14 +52,14 @@ Surface flat_sheet(const glm::dvec3& offset = glm::dvec3(0)) {
   return test::surface_of("sheet", test::transformed(test::open_grid(24, 0), 1, offset), 1024);
 }
 
-// In model space, whose middle is the sheet's.
+// In model space, with its center at the sheet's.
 int disc_with_a_core(glm::vec3 p) {
   const float r = std::hypot(p.x, p.y);
   return r < 0.1f ? 2 : r < 0.3f ? 1 : 0;
 }
 
-// The sheet's quarters at its lower left and its upper right alone, each with a hole, joined in the
-// middle vertex, where the first rim begins.
+// Only the sheet's lower left and upper right quarters, each with a hole, joined at the center
+// vertex, where the first rim begins.
 Surface two_lobes() {
   Surface surface = flat_sheet();
   mesh::Geometry& geometry = surface.geometry;
@@ -136,7 +137,7 @@ TEST(PlaneOutlines, areas_end_where_the_surface_ends) {
 }
 
 TEST(PlaneOutlines, seams_of_the_atlas_are_no_borders) {
-  // All of the ball is one chart or many; from any side it is a disc without holes.
+  // The whole ball is one chart or many; from any side it is a disc without holes.
   const Surface ball = test::surface_of("ball", test::sphere(48), 1024);
   const double radius = (ball.geometry.box_max.x - ball.geometry.box_min.x) / 2;
   for (const OutlinePlane plane :
@@ -147,7 +148,7 @@ TEST(PlaneOutlines, seams_of_the_atlas_are_no_borders) {
     EXPECT_EQ(made.at(1)[0].rings.size(), 1u);
     EXPECT_NEAR(area_of(made.at(1)) / (kPi * radius * radius), 1, 0.01);
   }
-  // A cap that lies on several charts.
+  // A cap on several charts.
   const auto cap = [&](glm::vec3 p) { return p.z > 0.6 * radius ? 1 : 0; };
   const PlaneOutlines made = outlines(ball, cap);
   ASSERT_EQ(made.at(1).size(), 1u);

@@ -23,9 +23,9 @@ TEST(PointMeasurements, are_read_by_the_names_of_their_columns) {
 
 TEST(PointMeasurements, that_cannot_be_read_are_refused_with_the_line) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"", "a line that names"},
-      {"\n\n  \n", "a line that names"},
-      {"x,y,z,value\n", "a line that names"},
+      {"", "a first line with"},
+      {"\n\n  \n", "a first line with"},
+      {"x,y,z,value\n", "a first line with"},
       {"1,2,3,4\n", "Line 1: there is no column 'x'"},
       {"x,y,z\n1,2,3\n", "Line 1: there is no column 'value'"},
       {"x,y,z,value\n1,2,3\n", "Line 2: it has 3 fields"},

@@ -1,4 +1,5 @@
 #include "query/maps/point_splats.h"
+#include "mesh/surface/geometry.h"
 
 #include <gtest/gtest.h>
 
@@ -45,10 +46,10 @@ PointSplat splat_at(const mesh::SurfaceMap& map, const glm::vec3& point, std::ui
 struct Texel {
   glm::vec3 position;
   bool surface;
-  std::optional<std::uint32_t> bits;  // what was painted
+  std::optional<std::uint32_t> bits;  // the painted texels
 };
 
-// All surface and gutter texels with what a result paints there.
+// All surface and gutter texels with the value that a result paints there.
 std::vector<Texel> texels_of(const mesh::SurfaceMap& map,
                              const std::map<TileAddress, TileData>& painted) {
   std::vector<Texel> texels;

@@ -1,5 +1,5 @@
-// TIFF and NumPy files of every kind of number, byte order and layout bring the same texels; what
-// GIS reads of our own TIFF.
+// TIFF and NumPy files with every type of number, byte order and layout have the same texels; and
+// GIS programs can read Strata's TIFF.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr int kSide = kTileSize;
 constexpr double kNodata = 120;
 
 struct Form {
-  char kind;  // as NumPy says it: u, i, f
+  char kind;  // as NumPy names it: u, i, f
   int bytes;
   std::string name() const { return std::string(1, kind) + std::to_string(bytes); }
 };
@@ -37,7 +37,7 @@ Layer layer_of(ValueType type) {
   return layer;
 }
 
-// The one raster that all files hold: `row` counts from the top.
+// The one raster that all files contain: `row` counts from the top.
 bool is_painted(int x, int row) { return (x + 3 * row) % 5 != 0; }
 double value_at(int x, int row) { return (7 * x + 3 * row) % 101; }
 
@@ -364,7 +364,7 @@ TEST(QueryRasterForms, files_with_a_mask_or_planes_that_are_cut_or_damaged_never
     }
 }
 
-// As GDAL looks for it: an internal mask for all types, and NaN with its tag for floats.
+// As GDAL expects it: an internal mask for all types, and NaN with its tag for floats.
 TEST(QueryRasterForms, our_tiff_marks_what_is_not_painted_for_gis) {
   for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i16,
                           ValueType::f16, ValueType::f32}) {

@@ -25,7 +25,7 @@ Layer layer_of(ValueType type, int resolution = 384) {
   return layer;
 }
 
-// Values of the whole range, among them 0 (which is a value, too) and both limits, in some tiles
+// Values of the whole range, including 0 (which is also a value) and both limits, in some tiles
 // only.
 TileMap paint(const Layer& layer, unsigned seed = 1) {
   std::mt19937 random(seed);
@@ -93,7 +93,7 @@ TEST(QueryRaster, an_empty_layer_comes_back_empty) {
   }
 }
 
-// Row 0 of the file is the top of the texture, where tiles count from the bottom.
+// Row 0 of the file is the top of the texture; tiles count from the bottom.
 TEST(QueryRaster, the_first_row_of_a_file_is_the_top_of_the_texture) {
   const Layer layer = layer_of(ValueType::u16, 256);
   auto tile = std::make_shared<TileData>(ValueType::u16);
@@ -275,8 +275,7 @@ TEST(QueryRaster, a_truncated_file_is_refused_where_texels_are_missing) {
     ASSERT_TRUE(bytes);
     for (std::size_t size = 0; size < bytes->size(); size += 1 + bytes->size() / 150) {
       const auto back = format.decode(layer, std::span(*bytes).first(size));
-      // The last bytes of a TIFF are its remarks and its mask: without them all texels are still
-      // there.
+      // The end of a TIFF has its comments and its mask: without them all texels are complete.
       if (back && format.decode == decode_tiff && size > bytes->size() * 3 / 4)
         expect_equal(*back, paint(layer));
       else
@@ -285,7 +284,7 @@ TEST(QueryRaster, a_truncated_file_is_refused_where_texels_are_missing) {
   }
 }
 
-// Only that it neither crashes nor runs away; the sanitizer build looks for more.
+// Tests only that decoding neither crashes nor hangs; the sanitizer build detects more.
 TEST(QueryRaster, flipped_bits_never_crash) {
   std::mt19937 random(5);
   for (const auto& format : kFormats) {
@@ -295,7 +294,8 @@ TEST(QueryRaster, flipped_bits_never_crash) {
     int refused = 0;
     for (int round = 0; round < 600; ++round) {
       Bytes broken = *bytes;
-      // Headers and directories are where lies hurt: at the start, or (TIFF) at the end.
+      // Wrong values have most effect in headers and directories: at the start, or (TIFF) at the
+      // end.
       const std::size_t area =
           round % 3 == 0 ? broken.size() : std::min<std::size_t>(broken.size(), 400);
       const std::size_t from = round % 3 == 1 ? broken.size() - area : 0;

@@ -128,7 +128,7 @@ TEST(Shapefile, the_attributes_to_choose_from_are_told) {
   const auto missing = flat_map(*map, {"SOME", 0, ""}, nullptr);
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().detail,
-              testing::HasSubstr("Record 3: the attribute 'SOME' holds no number"));
+              testing::HasSubstr("Record 3: the attribute 'SOME' does not contain a number"));
   const auto unknown = flat_map(*map, {"DEPTH", 0, ""}, nullptr);
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().field, "attribute");
@@ -159,17 +159,17 @@ TEST(Shapefile, that_cannot_be_read_is_refused_with_the_reason) {
     std::string shp, dbf, says;
   };
   const std::vector<Case> cases{
-      {"", "", "no shapefile"},
-      {good.substr(0, 60), "", "no shapefile"},
-      {patched(good, 0, "nope"), "", "no shapefile"},
-      {shp_of({}, 1), "", "holds points"},
-      {shp_of({}, 3), "", "holds lines"},
-      {shp_of({}, 31), "", "holds multipatches"},
+      {"", "", "not a shapefile"},
+      {good.substr(0, 60), "", "not a shapefile"},
+      {patched(good, 0, "nope"), "", "not a shapefile"},
+      {shp_of({}, 1), "", "contains points"},
+      {shp_of({}, 3), "", "contains lines"},
+      {shp_of({}, 31), "", "contains multipatches"},
       {shp_of({}, 77), "", "type 77"},
-      {good.substr(0, good.size() - 8), "", "cut off"},
+      {good.substr(0, good.size() - 8), "", "incomplete"},
       {patched(good, 104, test::big_endian(0x7fffffff)), "", "Record 1 of the .shp is longer"},
       {patched(good, 104, test::big_endian(0)), "", "Record 1 of the .shp is longer"},
-      {patched(good, 108, test::little_endian(3)), "", "Record 1 of the .shp is of another type"},
+      {patched(good, 108, test::little_endian(3)), "", "Record 1 of the .shp has another type"},
       {patched(good, 108 + 36, test::little_endian(0x7fffffff)), "",
        "Record 1 of the .shp cannot be read"},
       {patched(good, 108 + 40, test::little_endian(0x7fffffff)), "",
@@ -177,9 +177,9 @@ TEST(Shapefile, that_cannot_be_read_is_refused_with_the_reason) {
       {patched(good, 108 + 44, test::little_endian(0x7fffffff)), "", "Record 1 of the .shp"},
       {shp_of({polygon_record({{{0, 0}, {1, 1}}})}), "", "fewer than three"},
       {shp_of({polygon_record({{{0, 0}, {1, NAN}, {1, 1}}})}), "", "finite"},
-      {good, "x", ".dbf is cut off"},
-      {good, dbf.substr(0, dbf.size() - 4), ".dbf is cut off"},
-      {good, patched(dbf, 4, test::little_endian(0x7fffffff)), ".dbf is cut off"},
+      {good, "x", ".dbf is incomplete"},
+      {good, dbf.substr(0, dbf.size() - 4), ".dbf is incomplete"},
+      {good, patched(dbf, 4, test::little_endian(0x7fffffff)), ".dbf is incomplete"},
       {good, patched(dbf, 8, std::string(4, '\0')), "header has no fields"},
       {good, dbf_of({{"ID", 'N', 4, 0, {"8", "9"}}}), "do not belong together"},
   };
@@ -191,7 +191,8 @@ TEST(Shapefile, that_cannot_be_read_is_refused_with_the_reason) {
   }
 }
 
-// Every byte of small files changed in turn, and every length: an answer or a refusal, never more.
+// Changes every byte of small files in turn, and every length: the result is an answer or a
+// refusal.
 TEST(Shapefile, damaged_anywhere_it_is_read_or_refused) {
   const std::string shp = shp_of(kThree), dbf = dbf_of({{"ID", 'N', 4, 0, {"8", "9", "1"}},
                                                         {"T", 'C', 4, 0, {"a", "b", "c"}}});

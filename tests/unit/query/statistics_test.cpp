@@ -19,7 +19,7 @@ namespace {
 
 constexpr glm::dvec3 kOrigin{4'000'000.0, 500'000.0, 100.0};
 
-// A map by hand: `share` of the blocks are there, with surface, gutter and empty texels and random
+// A handmade map: `share` of the blocks exist, with surface, gutter and empty texels and random
 // areas and places.
 mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
   std::mt19937 random(seed);
@@ -159,7 +159,7 @@ TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
   }
 }
 
-// The same values with every texel of the area in order: what the quantiles must be.
+// Returns the expected quantiles from the same values, with every texel of the area in order.
 Quantiles quantiles_of(std::vector<Sample> all) {
   std::ranges::sort(all, {}, &Sample::value);
   double area = 0, sum = 0;
@@ -223,7 +223,7 @@ TEST(QueryStatistics, quantiles_are_those_of_all_texels_in_order) {
       const auto got = statistics(view, map, kOrigin, 0.01, {.quantiles = true});
       ASSERT_TRUE(got.quantiles);
       const Quantiles expected = quantiles_of(samples(view, map));
-      // Sums in another order may differ by rounding, so one value more or less is right, too.
+      // Sums in another order may differ by rounding, so the next value is also correct.
       const double step = is_float(type) ? 0.125 : 1.0;
       for (std::size_t i = 0; i < expected.size(); ++i)
         EXPECT_NEAR((*got.quantiles)[i], expected[i], distinct > 1000 ? step : 0) << kQuantiles[i];
@@ -239,7 +239,7 @@ TEST(QueryStatistics, within_a_selection_only_its_texels_count) {
   const LayerView view = make_layer(ValueType::u8, map, 20, 3);
   std::mt19937_64 random(1);
   TexelSelection within;
-  mesh::SurfaceMap smaller = map;  // the oracle: what is not selected is gutter
+  mesh::SurfaceMap smaller = map;  // the oracle: unselected texels are gutter
   for (auto& surface : smaller.surface_mask) {
     within.push_back(random() & random());
     surface &= within.back();

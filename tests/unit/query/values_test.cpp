@@ -1,4 +1,7 @@
 #include "query/sampling/values.h"
+#include "domain/scene/camera.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/surface/search_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +15,7 @@ namespace {
 
 constexpr glm::dvec3 kOrigin{4'000'000.0, 500'000.0, 100.0};
 
-// A square of 2 × 2 around the origin at z = 0, facing +z, whose uv run from (0,0) to (1,1).
+// A square of 2 × 2 around the origin at z = 0, facing +z, with uv from (0,0) to (1,1).
 std::shared_ptr<const mesh::Geometry> square() {
   auto geometry = std::make_shared<mesh::Geometry>();
   geometry->origin = kOrigin;
@@ -104,7 +107,7 @@ TEST(QueryValues, a_pixel_picks_what_is_under_it) {
 
 TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
   auto geometry = std::make_shared<mesh::Geometry>(*square());
-  for (int i = 0; i < 4; ++i) {  // a second square below, facing up as well
+  for (int i = 0; i < 4; ++i) {  // a second square below, also facing up
     mesh::Vertex vertex = geometry->vertices[static_cast<std::size_t>(i)];
     vertex.position.z = -1;
     vertex.position_index += 4;
@@ -120,15 +123,15 @@ TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
     return point.hit ? std::optional(point.position.z - kOrigin.z) : std::nullopt;
   };
   EXPECT_NEAR(*height(), 0, 1e-6);
-  camera.section = {{0, 0, -3, 3 * (kOrigin.z - 0.5)}};  // keeps what is below -0.5
+  camera.section = {{0, 0, -3, 3 * (kOrigin.z - 0.5)}};  // keeps the part below -0.5
   EXPECT_NEAR(*height(), -1, 1e-6);
   EXPECT_NEAR(pick(tree, kOrigin, camera, 250, 150, {}).distance, 5.9, 1e-4)
       << "from the near plane, as ever";
   camera.section.push_back({0, 0, 1, -kOrigin.z + 0.7});  // and above -0.7
   EXPECT_FALSE(height());
-  camera.section = {{1, 0, 0, -kOrigin.x - 1.5}};  // beside the ray
+  camera.section = {{1, 0, 0, -kOrigin.x - 1.5}};  // misses the ray
   EXPECT_FALSE(height());
-  // From below, a plane between the eye and the lower square's back: the solid between them is
+  // From below, with a plane between the eye and the lower square's back: the solid between them is
   // closed there.
   camera.view = glm::lookAt(kOrigin + glm::dvec3(0, 0, -5), kOrigin, glm::dvec3(0, 1, 0));
   camera.section = {{0, 0, 1, -kOrigin.z + 0.5}};

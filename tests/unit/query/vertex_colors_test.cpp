@@ -9,8 +9,8 @@
 namespace strata::query {
 namespace {
 
-// Four vertices at the corners of the unit square of texture coordinates, of one scan colour;
-// vertex 4 shares the place of vertex 3.
+// Four vertices at the corners of the unit square of texture coordinates, with one scan color;
+// vertex 4 has the place of vertex 3.
 std::shared_ptr<const mesh::Geometry> square() {
   auto geometry = std::make_shared<mesh::Geometry>();
   for (int i = 0; i < 5; ++i) {
@@ -53,8 +53,8 @@ Rgb at(const VertexColors& colors, std::vector<std::uint32_t> vertices) {
   return colors.at(vertices);
 }
 
-// What pictures do, written down once more: each colour covers what lies below by opacity times
-// alpha.
+// The compositing of pictures, implemented again: each color covers the content below it by opacity
+// times alpha.
 Rgb composed(glm::dvec3 below, const std::vector<std::pair<Rgba, double>>& inks) {
   for (const auto& [ink, opacity] : inks) {
     const double cover = opacity * ink[3] / 255;

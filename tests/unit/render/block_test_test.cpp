@@ -34,7 +34,7 @@ Block random_block(std::mt19937& random) {
   return block;
 }
 
-// Dots on every scale.
+// Dots at every scale.
 std::shared_ptr<const ShapeTexture> random_shape(std::mt19937& random) {
   ShapeBits bits{};
   for (int dot = 0; dot < 12; ++dot) {
@@ -114,7 +114,7 @@ TEST(BlockTest, every_vector_unit_of_this_machine_decides_as_plain_code_but_for_
       for (int t = 0; t < 64; ++t)
         ASSERT_FALSE(block.positions[std::size_t(t)] == mesh::kNoPosition && (plain >> t & 1))
             << "no surface there";
-      // To be told that the tool covers the block only saves asking.
+      // The information that the tool covers the block only saves work.
       const std::uint64_t in_tool = test_block_on(VectorUnit::plain)(
           stroke.test, block.positions.data(), block.box, stroke.segments, true);
       ASSERT_EQ(plain & ~in_tool, 0u);

@@ -8,7 +8,7 @@
 namespace strata::store {
 namespace {
 
-// A result of one row, as the server sends it: in binary form, most significant byte first.
+// A result with one row, as the server sends it: in binary format, most significant byte first.
 class Row {
  public:
   Row& integer(std::int64_t value) {

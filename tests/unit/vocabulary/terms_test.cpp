@@ -215,18 +215,20 @@ TEST(TermsCsv, columns_stand_in_any_order_and_colours_get_one_form) {
 TEST(TermsCsv, every_wrong_line_is_told) {
   const auto list = read_terms_csv("code,color,pattern\na,red,\n,#000,\nb,,zigzag\na1\nc,,\nc,,\n");
   ASSERT_TRUE(list);
-  std::vector<std::pair<int, std::string>> told;
-  for (const TermMistake& mistake : list->mistakes) told.emplace_back(mistake.line, mistake.column);
-  EXPECT_THAT(told, ElementsAre(std::pair(2, "color"), std::pair(3, "code"),
-                                std::pair(4, "pattern"), std::pair(5, ""), std::pair(7, "code")));
+  std::vector<std::pair<int, std::string>> mistakes;
+  for (const TermMistake& mistake : list->mistakes)
+    mistakes.emplace_back(mistake.line, mistake.column);
+  EXPECT_THAT(mistakes,
+              ElementsAre(std::pair(2, "color"), std::pair(3, "code"), std::pair(4, "pattern"),
+                          std::pair(5, ""), std::pair(7, "code")));
   EXPECT_EQ(list->terms.size(), 1u);
   EXPECT_EQ(list->rows, 6u);
 }
 
 TEST(TermsCsv, a_first_row_without_codes_or_with_strangers_is_refused) {
-  EXPECT_EQ(read_terms_csv("label\na\n").error().title, "No codes");
+  EXPECT_EQ(read_terms_csv("label\na\n").error().title, "Column missing");
   EXPECT_EQ(read_terms_csv("code,colour\na,\n").error().title, "Unknown column");
-  EXPECT_EQ(read_terms_csv("code,Code\na,b\n").error().title, "Column named twice");
+  EXPECT_EQ(read_terms_csv("code,Code\na,b\n").error().title, "Duplicate column");
   EXPECT_FALSE(read_terms_csv(""));
 }
 
@@ -257,7 +259,7 @@ TEST(SearchText, case_and_accents_make_no_difference) {
   EXPECT_EQ(search_text("\xff"), "\xff");
 }
 
-// --- a list of terms as a table has it
+// --- a list of terms as a table
 
 class List : public testing::Test {
  protected:

@@ -199,7 +199,7 @@ export const texts = {
     invite_button: "Create link",
     link: (name: string) => `Link for ${name}`,
     link_lead: (until: string) =>
-      `Send it only to this person: anyone with the link can set the password. It is shown only now, works once, and expires ${until}.`,
+      `Send it only to this person: anyone with the link can set the password. The link is shown only once: copy it now. It works once and expires ${until}.`,
     link_done: "Done",
     new_link: "New link…",
     new_link_title: (name: string) => `New link for ${name}?`,
@@ -1887,7 +1887,7 @@ export const texts = {
     make: "Create link",
     link: (name: string) => `Link for “${name}”`,
     link_lead:
-      "Open it once in the browser of the screen. It is shown only now. If you lose it, revoke it and create a new one.",
+      "Open it once in the browser of the screen. The link is shown only once: copy it now. If you lose it, revoke it and create a new one.",
     link_done: "Done",
     states: {
       running: "running",

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// Zeros take no bytes in a file: so many an accessor may have, whatever the size of the files.
+// Zeros take no bytes in a file: any accessor may have this many, independent of the file sizes.
 constexpr std::uint64_t kZerosAlways = 1u << 20;
 
 int components_of(const std::string& type) {
@@ -42,7 +42,7 @@ Result<GltfDocument::Form> GltfDocument::form(std::uint64_t accessor,
       normalized != found->end() && normalized->is_boolean() && normalized->get<bool>();
   if (bytes_of_component(form.component_type) == 0)
     return refuse_file(name_of_accessor(accessor, what) + " holds " +
-                       name_of_component(form.component_type) + ", which glTF does not have.");
+                       name_of_component(form.component_type) + ", which glTF does not define.");
   if (form.components == 0)
     return refuse_file(name_of_accessor(accessor, what) + " holds elements of type \"" +
                        shape.substr(0, 20) + "\", which is not used for this.");

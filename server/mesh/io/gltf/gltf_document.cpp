@@ -17,10 +17,10 @@ using nlohmann::json;
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 constexpr std::size_t kMaxJson = std::size_t{256} << 20;
-// Bytes that compressed views may become, all together: twice what the largest mesh needs.
+// Limit for the bytes of all decompressed views together: twice the needs of the largest mesh.
 constexpr std::uint64_t kMaxDecoded = std::uint64_t{4} << 30;
 
-// Extensions that a file may require and that are read, or that change only how it looks.
+// Extensions that a file may require: the reader supports them, or they change the appearance only.
 constexpr std::array<std::string_view, 12> kKnownExtensions{
     "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
     "KHR_mesh_quantization",      "EXT_mesh_gpu_instancing", "KHR_texture_transform",
@@ -89,19 +89,20 @@ Result<void> GltfDocument::read_container() {
   if (text.size() >= 4 && little_endian(text, 0) == kGlbMagic) {
     const auto file = text;
     text = {};
-    if (file.size() < 20) return refuse_file("The GLB ends in its header: it is cut short.");
+    if (file.size() < 20)
+      return refuse_file("The GLB ends within its header: the file is incomplete.");
     if (little_endian(file, 4) != 2)
-      return refuse_file("The GLB is of version " + std::to_string(little_endian(file, 4)) +
-                         "; version 2 is read.");
+      return refuse_file("The version of the GLB is " + std::to_string(little_endian(file, 4)) +
+                         ". The server reads version 2 only.");
     const std::uint64_t length = little_endian(file, 8);
     if (length > file.size())
-      return refuse_file("The GLB says that it has " + std::to_string(length) + " bytes, but has " +
+      return refuse_file("The GLB should have " + std::to_string(length) + " bytes, but has " +
                          std::to_string(file.size()) +
-                         ": it is cut short. Export or upload it again.");
+                         ": the file is incomplete. Export or upload it again.");
     for (std::uint64_t at = 12; at + 8 <= length;) {
       const std::uint64_t size = little_endian(file, at), type = little_endian(file, at + 4);
       if (size > length - at - 8)
-        return refuse_file("A part of the GLB says that it has " + std::to_string(size) +
+        return refuse_file("A chunk of the GLB should have " + std::to_string(size) +
                            " bytes, but " + std::to_string(length - at - 8) + " are left.");
       if (type == kJsonChunk && text.empty()) text = file.subspan(at + 8, size);
       if (type == kBinaryChunk && !has_glb_binary_) {
@@ -110,11 +111,12 @@ Result<void> GltfDocument::read_container() {
       }
       at += 8 + size;
     }
-    if (text.empty()) return refuse_file("The GLB has no JSON part.");
+    if (text.empty()) return refuse_file("The GLB has no JSON chunk.");
   }
-  if (text.size() > kMaxJson) return refuse_file("The JSON of the glTF has more than 256 MB.");
+  if (text.size() > kMaxJson) return refuse_file("The JSON of the glTF is larger than 256 MB.");
   json_ = json::parse(text.begin(), text.end(), nullptr, false);
-  if (!json_.is_object()) return refuse_file("This is not a glTF: its text is not a JSON object.");
+  if (!json_.is_object())
+    return refuse_file("This is not a glTF file: its text is not a JSON object.");
   return {};
 }
 
@@ -128,22 +130,23 @@ Result<void> GltfDocument::check_version_and_extensions() const {
   const std::string version = text_of(object_in(json_, "asset"), "version");
   if (!version.starts_with("2."))
     return refuse_file(version.empty()
-                           ? "This is not a glTF: it has no \"asset\" with a version."
-                           : "The glTF is of another version than 2; export it as glTF 2.0.");
+                           ? "This is not a glTF file: it has no \"asset\" with a version."
+                           : "The version of the glTF is not 2. Export it as glTF 2.0.");
   const auto required = json_.find("extensionsRequired");
   if (required == json_.end()) return {};
   if (!required->is_array())
     return refuse_file("In the glTF, \"extensionsRequired\" is not a list.");
   for (const json& name : *required) {
     if (!name.is_string())
-      return refuse_file("In the glTF, \"extensionsRequired\" holds something that is no name.");
+      return refuse_file(
+          "In the glTF, \"extensionsRequired\" contains something that is not a name.");
     const auto& text = name.get_ref<const std::string&>();
     const bool known =
         text.starts_with("KHR_materials_") ||
         std::find(kKnownExtensions.begin(), kKnownExtensions.end(), text) != kKnownExtensions.end();
     if (!known)
       return refuse_file("The glTF requires the extension " + text.substr(0, 60) +
-                         ", which is not read. Export it without.");
+                         ", which the server does not support. Export the file without it.");
   }
   return {};
 }
@@ -164,7 +167,8 @@ Result<std::span<const std::uint8_t>> GltfDocument::buffer(std::uint64_t index) 
   std::span<const std::uint8_t> bytes;
   if (uri.empty()) {
     if (index != 0 || !has_glb_binary_)
-      return refuse_file(name + " has no data: neither in the file nor beside it.");
+      return refuse_file(name +
+                         " has no data, neither in the file nor in another file of the upload.");
     bytes = glb_binary_;
   } else if (is_data_uri(uri)) {
     auto decoded = decoded_buffers_.find(index);
@@ -178,13 +182,14 @@ Result<std::span<const std::uint8_t>> GltfDocument::buffer(std::uint64_t index) 
     const std::string path = percent_decode_leniently(uri);
     const auto* file = files_->find(path);
     if (!file)
-      return refuse_file("The glTF keeps its data in \"" + path.substr(0, 200) +
-                         "\", which is not among the files. Send it along, or export a GLB.");
+      return refuse_file(
+          "The glTF stores its data in \"" + path.substr(0, 200) +
+          "\", but the upload does not contain this file. Send it, too, or export a GLB.");
     bytes = file->bytes;
   }
   if (length > bytes.size())
     return refuse_file(name + " should have " + std::to_string(length) + " bytes, but has " +
-                       std::to_string(bytes.size()) + ": it is cut short, or another file.");
+                       std::to_string(bytes.size()) + ": it is incomplete, or another file.");
   return bytes.first(length);
 }
 

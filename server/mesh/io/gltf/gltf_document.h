@@ -11,29 +11,28 @@
 
 namespace strata::mesh {
 
-// The parts of a glTF 2.0 file (Khronos, "glTF 2.0 Specification"): its JSON, and its buffers
-// wherever they are — in the GLB, in files of their own, in data URIs, compressed by
-// EXT_meshopt_compression or KHR_meshopt_compression. Every offset, count and index is checked
-// here; nothing is copied that need not be. Refusals are as of `refuse_file`. Thread: any, one at a
-// time.
+// The parts of a glTF 2.0 file (Khronos, "glTF 2.0 Specification"): its JSON and its buffers, in
+// the GLB, in separate files, in data URIs, or compressed by EXT_meshopt_compression or
+// KHR_meshopt_compression. Every offset, count and index is checked here; data are copied only
+// where necessary. Errors are those of `refuse_file`. Any thread, one at a time.
 class GltfDocument {
  public:
   static Result<GltfDocument> open(const InputFiles& files);
 
   const nlohmann::json& root() const { return json_; }
 
-  // The element of one of the top-level arrays.
+  // Returns an element of one of the top-level arrays.
   Result<const nlohmann::json*> element(const char* array, std::uint64_t index) const;
 
-  // The bytes of a buffer view, decompressed. Valid as long as the document.
+  // The bytes of a buffer view, decompressed. Valid for the lifetime of the document.
   struct View {
     std::span<const std::uint8_t> bytes;
     std::uint64_t stride = 0;  // 0: elements follow each other
   };
   Result<View> view(std::uint64_t index);
 
-  // What an accessor says of its values, wherever a compression extension keeps them. `what` names
-  // them in refusals.
+  // The declaration of an accessor's values, also where a compression extension stores the values.
+  // `what` names them in error messages.
   struct Form {
     std::uint64_t count = 0;
     int component_type = 0, components = 0;
@@ -41,8 +40,8 @@ class GltfDocument {
   };
   Result<Form> form(std::uint64_t accessor, const std::string& what) const;
 
-  // The values of an accessor as real numbers, `components` each; normalised whole numbers become
-  // 0…1 or −1…1, those that are not, too, with `normalize`. Sparse values are put in.
+  // The values of an accessor as real numbers, `components` each. Normalized integers become 0…1 or
+  // −1…1; with `normalize` all integers do. Sparse values are applied.
   struct Values {
     std::uint64_t count = 0;
     int components = 0;
@@ -51,7 +50,7 @@ class GltfDocument {
   Result<Values> values(std::uint64_t accessor, const std::string& what, bool normalize = false);
   Result<std::vector<std::uint32_t>> indices(std::uint64_t accessor);
 
-  // An image's encoded bytes, copied; nothing where its file was not sent along.
+  // An image's encoded bytes, copied; empty where its file was not uploaded.
   struct Image {
     std::string name;
     std::vector<std::uint8_t> bytes;
@@ -74,8 +73,8 @@ class GltfDocument {
     std::uint64_t stride = 0;
   };
   Result<Layout> layout(std::uint64_t accessor, const std::string& what);
-  // Calls put(number of the element, its bytes) for those of the buffer view, then for the sparse
-  // ones.
+  // Calls put(number of the element, its bytes) for the elements of the buffer view, then for the
+  // sparse ones.
   template <class Put>
   Result<void> for_each_element(std::uint64_t accessor, const std::string& what,
                                 const Layout& layout, Put&& put);
@@ -88,8 +87,8 @@ class GltfDocument {
   std::uint64_t decoded_bytes_ = 0;  // of decoded_views_
 };
 
-// Members of a JSON object, as glTF gives them. A missing one has the default; one of the wrong
-// type is refused.
+// Members of a glTF JSON object. A missing member has the default; one of the wrong type is
+// refused.
 Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* name,
                                    std::uint64_t otherwise);
 // refused where it is missing
@@ -97,7 +96,7 @@ Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* nam
 Result<std::vector<double>> real_numbers(const nlohmann::json& object, const char* name,
                                          const std::vector<double>& otherwise);
 std::string text_of(const nlohmann::json& object, const char* name);
-// A member that is an object; an empty object otherwise.
+// Returns a member that is an object; otherwise an empty object.
 const nlohmann::json& object_in(const nlohmann::json& object, const char* name);
 
 }  // namespace strata::mesh

@@ -9,7 +9,7 @@
 namespace strata::mesh {
 namespace {
 
-// 0: a type that no accessor has.
+// 0 for a type that accessors do not have.
 int component_type_of(draco::DataType type) {
   switch (type) {
     case draco::DT_INT8: return kByte;
@@ -33,7 +33,7 @@ double raw_number(const std::uint8_t* at, draco::DataType type) {
   }
 }
 
-// The numbers as they are stored, and then what the accessor makes of them.
+// Reads the stored numbers and converts them as the accessor declares.
 Result<GltfDocument::Values> read_attribute(const draco::Mesh& mesh, const std::string& name,
                                             const DracoRequest& request) {
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(request.id);
@@ -43,7 +43,7 @@ Result<GltfDocument::Values> read_attribute(const draco::Mesh& mesh, const std::
   const int components = attribute->num_components(), size = draco::DataTypeLength(stored);
   if (components < 1 || components > 4 || size < 1 || attribute->buffer() == nullptr)
     return refuse_file("The Draco data of the glTF keeps " + name +
-                       " in numbers that glTF does not have.");
+                       " as a type of number that glTF does not define.");
   if (request.form && request.form->components != components)
     return refuse_file("The Draco data of the glTF has " + std::to_string(components) +
                        " numbers a vertex for " + name + ", but its accessor says " +
@@ -86,8 +86,8 @@ Result<DracoPrimitive> decode_draco(std::span<const std::uint8_t> bytes,
   DracoPrimitive primitive;
   primitive.points = mesh->num_points();
   if (mesh->num_faces() > most_triangles)
-    return refuse_file("The Draco data of the glTF makes " + std::to_string(mesh->num_faces()) +
-                       " triangles, more than the glTF announces.");
+    return refuse_file("The Draco data of the glTF contains " + std::to_string(mesh->num_faces()) +
+                       " triangles, more than the glTF declares.");
   primitive.indices.reserve(3 * std::size_t{mesh->num_faces()});
   for (draco::FaceIndex face(0); face < mesh->num_faces(); ++face)
     for (int k = 0; k < 3; ++k) primitive.indices.push_back(mesh->face(face)[k].value());

@@ -11,7 +11,7 @@
 
 namespace strata::mesh {
 
-// A primitive of KHR_draco_mesh_compression: its triangles and the attributes asked for, by their
+// A primitive of KHR_draco_mesh_compression: its triangles and the requested attributes, by their
 // glTF names.
 struct DracoPrimitive {
   std::uint64_t points = 0;
@@ -21,14 +21,14 @@ struct DracoPrimitive {
 
 struct DracoRequest {
   std::uint32_t id = 0;  // of the attribute in the stream
-  // Of the attribute's accessor, which says what the numbers of the stream mean: encoders set the
-  // stream's own flag as they like. Nothing: there is no accessor, and the stream decides.
+  // Form of the attribute's accessor, which defines the numbers of the stream: encoders do not set
+  // the stream's own flag reliably. Empty: there is no accessor, and the stream decides.
   std::optional<GltfDocument::Form> form;
-  bool normalize = false;  // whatever the accessor says
+  bool normalize = false;  // independent of the accessor
 };
 
-// Refused as by `refuse_file` where the stream is damaged, makes more than `most_triangles`, or
-// lacks an attribute.
+// Fails as `refuse_file` does where the stream is damaged, has more than `most_triangles`, or lacks
+// an attribute.
 Result<DracoPrimitive> decode_draco(std::span<const std::uint8_t> bytes,
                                     const std::map<std::string, DracoRequest>& requests,
                                     std::uint64_t most_triangles);

@@ -6,18 +6,18 @@
 
 namespace strata::mesh {
 
-// More of one node are refused: nobody paints on them one by one.
+// More instances of one node are refused: nobody paints on so many one by one.
 constexpr std::uint64_t kMaxInstances = 1'000'000;
 
-// Translation, rotation (a quaternion x y z w, of any length) and scale, as glTF applies them.
+// The transform of glTF: translation, rotation (a quaternion x y z w, of any length) and scale.
 glm::dmat4 gltf_transform(const glm::dvec3& translation, const glm::dvec4& rotation,
                           const glm::dvec3& scale);
 
-// Where EXT_mesh_gpu_instancing repeats the mesh of a node.
+// The places where EXT_mesh_gpu_instancing repeats the mesh of a node.
 class GltfInstances {
  public:
-  // Of a node without the extension: one, where the node is. Refused as by `refuse_file`: counts
-  // that differ, numbers of other types than the extension has, more than kMaxInstances.
+  // A node without the extension has one instance, at the node. Fails as `refuse_file` does: counts
+  // that differ, number types that the extension does not allow, more than kMaxInstances.
   static Result<GltfInstances> read(GltfDocument& document, const nlohmann::json& node);
 
   std::uint64_t count() const { return count_; }
@@ -25,7 +25,7 @@ class GltfInstances {
 
  private:
   std::uint64_t count_ = 1;
-  GltfDocument::Values translations_, rotations_, scales_;  // `count_` each, or none
+  GltfDocument::Values translations_, rotations_, scales_;  // `count_` each, or empty
 };
 
 }  // namespace strata::mesh

@@ -109,7 +109,7 @@ class MaterialReader {
     return {};
   }
 
-  // The plain picture where there is one; otherwise that of an extension which keeps it in another
+  // Returns the plain picture where there is one; otherwise that of an extension, in another
   // format. Nothing: glTF allows a texture without a picture, which another extension may supply.
   static Result<std::optional<std::uint64_t>> image_of(const json& texture) {
     if (texture.contains("source")) return optional_number(texture);
@@ -125,7 +125,7 @@ class MaterialReader {
     if (!number) return tl::unexpected(number.error());
     return *number;
   }
-  // With the extensions that could have a picture.
+  // Also lists the extensions that may supply a picture.
   static std::string title_of(const json& texture, std::uint64_t index) {
     std::string title = "texture " + std::to_string(index);
     const json& extensions = object_in(texture, "extensions");
@@ -135,7 +135,7 @@ class MaterialReader {
     return mended_utf8(first_bytes(title, 200));
   }
 
-  // Rotation turns counter-clockwise where v points down (KHR_texture_transform).
+  // The rotation is counterclockwise where v points down (KHR_texture_transform).
   static Result<void> read_transform(const json& transform, GltfMaterial& result) {
     const auto offset = real_numbers(transform, "offset", {0, 0}),
                scale = real_numbers(transform, "scale", {1, 1});

@@ -8,10 +8,10 @@
 
 namespace strata::mesh {
 
-// How a primitive of a glTF material finds its base colour.
+// How a primitive with a glTF material gets its base color.
 struct GltfMaterial {
   std::uint16_t material = kNoMaterial;  // of TriangleMesh::materials
-  int texcoord = 0;                      // which of its sets of texture coordinates
+  int texcoord = 0;                      // index of the set of texture coordinates
   glm::dmat2 uv_matrix{1};               // KHR_texture_transform
   glm::dvec2 uv_offset{0};
 
@@ -22,9 +22,9 @@ struct GltfMaterial {
   }
 };
 
-// All materials of the document, in its order: the base colour of metallic-roughness, or the
-// diffuse one of KHR_materials_pbrSpecularGlossiness. Puts them and their pictures into the mesh;
-// pictures that cannot be read are noted.
+// Reads all materials of the document, in its order: the base color of metallic-roughness, or the
+// diffuse color of KHR_materials_pbrSpecularGlossiness. Adds them and their pictures to the mesh,
+// and notes pictures that cannot be read.
 Result<std::vector<GltfMaterial>> read_gltf_materials(GltfDocument& document,
                                                       const InputFiles& files, LoadedMesh& loaded);
 

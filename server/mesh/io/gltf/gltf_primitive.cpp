@@ -15,8 +15,8 @@ using Values = GltfDocument::Values;
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
 
-// An attribute as Strata needs it. KHR_mesh_quantization adds whole numbers for positions and
-// texture coordinates; they are read whether the file names it or not.
+// The form of an attribute that Strata needs. KHR_mesh_quantization adds integers for positions and
+// texture coordinates; they are read even if the file does not name the extension.
 struct Attribute {
   std::string name;
   Values* values;
@@ -43,14 +43,14 @@ class PrimitiveReader {
     primitive_.mode = mode;
     if (mode > kTriangleFan)
       return refuse_file("A primitive of the glTF has mode " + std::to_string(mode) +
-                         ", which glTF does not have.");
+                         ", which glTF does not define.");
     if (mode < kTriangles) {
       ++remarks_.points_and_lines;
       return std::nullopt;
     }
     const auto& draco = object_in(object_in(source_, "extensions"), "KHR_draco_mesh_compression");
     if (!accessors_.contains("POSITION") && !object_in(draco, "attributes").contains("POSITION")) {
-      // glTF has it so: an extension that is not read here may give them
+      // allowed by glTF: an extension that is not supported here may supply them
       ++remarks_.without_positions;
       return std::nullopt;
     }
@@ -63,8 +63,8 @@ class PrimitiveReader {
   }
 
  private:
-  // Whether numbers of this accessor mean what they must; whole ones that should be normalised and
-  // do not say so are.
+  // Checks the number type of this accessor. Returns true for integers that should be normalized
+  // but are not declared so.
   Result<bool> must_normalize(const Attribute& attribute, std::uint64_t accessor,
                               const GltfDocument::Form& form) {
     const std::string name =
@@ -75,20 +75,20 @@ class PrimitiveReader {
           name + " has " + std::to_string(form.components) + " numbers a vertex; " +
           std::to_string(attribute.least_components) +
           (attribute.is_color ? " or " + std::to_string(attribute.most_components) : "") +
-          " belong there.");
+          " are required.");
     const bool is_signed = type == kByte || type == kShort;
     if (type == kUnsignedInt || (attribute.is_color && is_signed))
       return refuse_file(name + " holds " + name_of_component(type) +
                          ", which glTF does not allow there. Export it with " +
                          (attribute.is_color ? "UNSIGNED_BYTE, UNSIGNED_SHORT or FLOAT."
                                              : "FLOAT, or with numbers of KHR_mesh_quantization."));
-    // A colour of whole numbers up to 255 or 65535 has no other meaning.
+    // Integer colors up to 255 or 65535 have no other meaning.
     const bool taken = attribute.is_color && type != kFloat && !form.normalized;
     remarks_.colors_taken_as_normalized += taken;
     return taken;
   }
 
-  // What a primitive of Draco keeps beside its stream is read like any other.
+  // The attributes of a Draco primitive outside its stream are read as usual.
   Result<void> read_plain(const Attribute& attribute) {
     if (attribute.values->components != 0 || !accessors_.contains(attribute.name)) return {};
     const auto accessor = STRATA_TRY(whole_number(accessors_, attribute.name.c_str()));
@@ -118,7 +118,7 @@ class PrimitiveReader {
     if (source_.contains("indices")) {
       const auto accessor = STRATA_TRY(whole_number(source_, "indices"));
       const auto form = STRATA_TRY(document_.form(accessor, "indices"));
-      // A strip is stored as the triangles that it makes.
+      // Draco stores a strip as its triangles.
       const std::uint64_t announced = primitive_.mode == kTriangles ? form.count / 3 : form.count;
       most = std::min(most, announced);
     }
@@ -137,7 +137,7 @@ class PrimitiveReader {
   Result<void> read_indices() {
     if (!source_.contains("indices")) {
       if (primitive_.positions.count > 3 * std::uint64_t{max_triangles_})
-        return refuse_file("The glTF has more vertices than may be.");
+        return refuse_file("The glTF has too many vertices.");
       primitive_.indices.resize(primitive_.positions.count);
       for (std::uint32_t i = 0; i < primitive_.indices.size(); ++i) primitive_.indices[i] = i;
       return {};
@@ -164,12 +164,12 @@ class PrimitiveReader {
     }
     for (const std::uint32_t index : primitive_.indices)
       if (index >= count)
-        return refuse_file("A triangle of the glTF names vertex " + std::to_string(index) +
+        return refuse_file("A triangle of the glTF refers to vertex " + std::to_string(index) +
                            ", but its primitive has " + std::to_string(count) + ".");
     return {};
   }
 
-  // Primitives share accessors: each takes the vertices that its triangles name.
+  // Primitives share accessors: each keeps the vertices that its triangles use.
   void keep_used_vertices() {
     std::vector<std::uint32_t> number(primitive_.positions.count, kUnused), used;
     for (std::uint32_t& index : primitive_.indices) {
@@ -183,11 +183,11 @@ class PrimitiveReader {
       Values& values = *attribute.values;
       if (values.components == 0) continue;
       const auto n = static_cast<std::size_t>(values.components);
-      std::vector<float> kept(used.size() * n);
+      std::vector<float> retained(used.size() * n);
       for (std::size_t i = 0; i < used.size(); ++i)
         std::copy_n(values.numbers.begin() + static_cast<std::ptrdiff_t>(used[i] * n), n,
-                    kept.begin() + static_cast<std::ptrdiff_t>(i * n));
-      values.numbers = std::move(kept);
+                    retained.begin() + static_cast<std::ptrdiff_t>(i * n));
+      values.numbers = std::move(retained);
       values.count = used.size();
     }
   }

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr std::uint64_t kTrianglesBetweenReports = 1u << 20;
 
-// Node transforms stay in double to the end: a translation may be a place on Earth.
+// Node transforms stay in double to the end: a translation may be a geographic position.
 class GltfReader {
  public:
   GltfReader(GltfDocument document, const InputFiles& files, Progress& progress,
@@ -51,15 +51,16 @@ class GltfReader {
   tl::unexpected<Error> nothing_to_see() const {
     const auto meshes = document_.root().find("meshes");
     if (remarks_.points_and_lines > 0)
-      return refuse_file("The glTF holds points or lines only, and no triangles.");
+      return refuse_file("The glTF contains points or lines only, but no triangles.");
     if (remarks_.without_positions > 0)
       return refuse_file("The meshes of the glTF have no POSITION, and so no triangles.");
     if (meshes == document_.root().end() || meshes->empty())
-      return refuse_file("The glTF holds no meshes.");
+      return refuse_file("The glTF contains no meshes.");
     if (!mesh_shown_)
       return refuse_file(
-          "The glTF holds meshes, but no node of its scene shows one. Export the scene with its objects.");
-    return refuse_file("The file holds no triangle: the meshes of the glTF are empty.");
+          "The glTF contains meshes, but no node of its scene uses one. Export the scene "
+          "with its objects.");
+    return refuse_file("The file contains no triangle: the meshes of the glTF are empty.");
   }
 
   struct Visit {
@@ -67,7 +68,7 @@ class GltfReader {
     glm::dmat4 world_from_parent;
   };
 
-  // The default scene; without scenes all nodes that are no one's children.
+  // The nodes of the default scene; without scenes, all nodes without a parent.
   Result<std::vector<Visit>> roots() {
     const json& root = document_.root();
     std::vector<Visit> roots;
@@ -117,7 +118,7 @@ class GltfReader {
       const auto node = STRATA_TRY(document_.element("nodes", visit.node));
       if (seen[visit.node])
         return refuse_file("Node " + std::to_string(visit.node) +
-                           " of the glTF hangs in its scene twice, or is its own ancestor.");
+                           " of the glTF appears in its scene twice, or is its own ancestor.");
       seen[visit.node] = true;
       const auto local = STRATA_TRY(transform_of(*node));
       const glm::dmat4 world_from_node = visit.world_from_parent * local;
@@ -171,7 +172,7 @@ class GltfReader {
     if (source.contains("material")) {
       const auto index = STRATA_TRY(whole_number(source, "material"));
       if (index >= materials_.size())
-        return refuse_file("A primitive of the glTF names material " + std::to_string(index) +
+        return refuse_file("A primitive of the glTF refers to material " + std::to_string(index) +
                            ", but there are " + std::to_string(materials_.size()) + ".");
       material = materials_[index];
     }
@@ -180,8 +181,8 @@ class GltfReader {
     if (!primitive) return tl::unexpected(primitive.error());
     if (!*primitive || (*primitive)->most_triangles() == 0) return {};
     const std::uint64_t triangles = (*primitive)->most_triangles(), count = instances.count();
-    // A few bytes can ask for any number of copies: how much they are is known before one is made.
-    // Of strips some triangles only join others.
+    // A few bytes can request any number of copies: their size is checked before they are made.
+    // Some triangles of strips only join others.
     const std::uint64_t room =
         max_triangles_ - std::min<std::uint64_t>(loaded_.mesh.triangle_count(), max_triangles_);
     const std::uint64_t most =
@@ -190,7 +191,7 @@ class GltfReader {
     if (count > 1 &&
         (triangles > most / count || vertices > 3 * std::uint64_t{max_triangles_} / count))
       return refuse_file("The glTF repeats a mesh of " + std::to_string(triangles) + " triangles " +
-                         std::to_string(count) + " times, which makes more than " +
+                         std::to_string(count) + " times. That is more than " +
                          std::to_string(max_triangles_) +
                          " triangles. Reduce the mesh, or export the parts that you need.");
     std::uint64_t since_report = 0;
@@ -209,7 +210,7 @@ class GltfReader {
     TriangleMesh& mesh = loaded_.mesh;
     const std::size_t first = mesh.positions.size(), count = primitive.positions.count;
     if (first + count >= 0xffffffffu)
-      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+      return refuse_file("The file has more than 4 294 967 294 vertices. Split the mesh.");
     append_colors(primitive.colors, first, count);
     for (std::size_t i = 0; i < count; ++i)
       mesh.positions.emplace_back(world_from_mesh * glm::dvec4(primitive.position(i), 1));
@@ -239,7 +240,7 @@ class GltfReader {
     return {};
   }
 
-  // COLOR_0 is linear; ours are as pictures have them.
+  // COLOR_0 is linear; vertex colors here are sRGB, as in pictures.
   void append_colors(const GltfDocument::Values& colors, std::size_t first, std::size_t count) {
     auto& out = loaded_.mesh.vertex_colors;
     if (colors.components == 0) {

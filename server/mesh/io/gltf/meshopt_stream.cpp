@@ -16,8 +16,8 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t kSecondVersion = 0xa1;
-// More than this many times its size no stream can become: of version 0, two bits stand for 16
-// bytes of a vertex, and of version 1 for 256.
+// The largest compression ratio of a stream: in version 0, two bits encode 16 bytes of a vertex,
+// and in version 1, 256.
 constexpr std::uint64_t kMaxGain = 64, kMaxGainOfSecond = 1024;
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kMinTail = 24;
@@ -28,7 +28,7 @@ std::uint16_t unzigzag16(std::uint16_t v) {
 }
 
 // Version 1 of the attribute stream (KHR_meshopt_compression, appendix A), which the library of
-// Debian 12 does not know.
+// Debian 12 does not support.
 class AttributeStream {
  public:
   AttributeStream(std::span<const std::uint8_t> bytes, std::size_t count, std::size_t stride)
@@ -55,7 +55,7 @@ class AttributeStream {
   }
 
  private:
-  // The deltas of a block, byte by byte of the element: those of byte k begin at k × 256.
+  // The deltas of a block, by bytes of the element: those of byte k begin at k × 256.
   bool read_deltas(std::size_t size) {
     const std::size_t control = at_;
     if (!take(stride_ / 4)) return false;
@@ -83,7 +83,7 @@ class AttributeStream {
     return true;
   }
 
-  // All bits set stand for a byte that follows the group.
+  // A value with all bits set is replaced by a byte after the group.
   bool read_group(int bits, std::uint8_t* out) {
     if (bits == 0) {
       std::fill_n(out, kGroup, std::uint8_t{0});
@@ -93,7 +93,7 @@ class AttributeStream {
     if (!take(kGroup / each)) return false;
     const int sentinel = (1 << bits) - 1;
     for (std::size_t i = 0; i < kGroup; ++i) {
-      // Of single bits the lowest is the first, of others the highest.
+      // The first single bit is the lowest; the first of wider values is the highest.
       const std::size_t place = bits == 1 ? i % each : each - 1 - i % each;
       const int value =
           bytes_[packed + i / each] >> (place * static_cast<std::size_t>(bits)) & sentinel;
@@ -129,7 +129,7 @@ class AttributeStream {
         std::uint32_t change, word;
         std::memcpy(&change, delta.data(), 4);
         std::memcpy(&word, last, 4);
-        word ^= std::rotr(change, turn);  // encoders turn to the left
+        word ^= std::rotr(change, turn);  // encoders rotate left
         std::memcpy(last, &word, 4);
       }
       std::memcpy(out, last, 4);
@@ -148,8 +148,8 @@ class AttributeStream {
   std::array<std::uint8_t, 256 * 256> deltas_{};
 };
 
-// YCoCg with a precision that the alpha tells (appendix B, filter 4); the library does not know
-// this one either.
+// YCoCg with a precision encoded in the alpha (appendix B, filter 4), which the library does not
+// support either.
 template <class Unsigned, class Signed>
 void decode_colors(Bytes& out, std::size_t count) {
   constexpr double kMax = std::numeric_limits<Unsigned>::max();
@@ -190,16 +190,16 @@ tl::expected<Bytes, std::string> decode_meshopt(std::span<const std::uint8_t> by
     return tl::unexpected("it has no mode \"" + mode.substr(0, 40) + "\"");
   if (attributes ? stride == 0 || stride > 256 || stride % 4 != 0 : stride != 2 && stride != 4)
     return tl::unexpected("elements of " + std::to_string(stride) +
-                          " bytes do not belong to the mode " + mode);
+                          " bytes are not possible in the mode " + mode);
   if (triangles && count % 3 != 0)
-    return tl::unexpected("its " + std::to_string(count) + " indices are no whole triangles");
+    return tl::unexpected("its " + std::to_string(count) + " indices are not a multiple of three");
   const bool fits =
       plain || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
                                (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL" ||
                                (filter == "COLOR" && (stride == 4 || stride == 8))));
   if (!fits)
     return tl::unexpected("the filter \"" + filter.substr(0, 40) +
-                          "\" does not belong to elements of " + std::to_string(stride) +
+                          "\" is not possible for elements of " + std::to_string(stride) +
                           " bytes in the mode " + mode);
   const bool second = attributes && !bytes.empty() && bytes[0] == kSecondVersion;
   if (count > 256 + (bytes.size() + 64) * (second ? kMaxGainOfSecond : kMaxGain) / stride)

@@ -8,8 +8,8 @@
 
 namespace strata::mesh {
 
-// What EXT_meshopt_compression and KHR_meshopt_compression say of a compressed buffer view, in
-// their words.
+// The declaration of a compressed buffer view by EXT_meshopt_compression or
+// KHR_meshopt_compression, with their names.
 struct MeshoptShape {
   std::string mode,
       // ATTRIBUTES, TRIANGLES or INDICES; NONE or empty, OCTAHEDRAL, QUATERNION, EXPONENTIAL, COLOR
@@ -17,8 +17,8 @@ struct MeshoptShape {
   std::uint64_t count = 0, stride = 0;
 };
 
-// The count × stride bytes of a compressed view. Or what is wrong with it, as the end of a
-// sentence: damaged, of an unknown mode or filter, or more than `most_bytes`. Any thread.
+// Returns the count × stride bytes of a compressed view. Otherwise the fault, as the end of a
+// sentence: damaged, unknown mode or filter, or more than `most_bytes`. Any thread.
 tl::expected<std::vector<std::uint8_t>, std::string> decode_meshopt(
     std::span<const std::uint8_t> bytes, const MeshoptShape& shape, std::uint64_t most_bytes);
 

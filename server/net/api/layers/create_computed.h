@@ -5,14 +5,14 @@
 
 namespace strata::net {
 
-// POST …/layers with `compute`: the job that computes the layer from the model's shape. `layer`:
-// what the request says of it, which precedes what follows from the recipe.
+// POST …/layers with `compute`: starts the job that computes the layer from the model's shape. The
+// properties that the request sets in `layer` have precedence over those of the recipe.
 Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
                                     const protocol::LayerCreate& body, Layer layer);
 
-// POST …/layers with `expression`: makes the layer and computes it; nothing is left of one that
-// cannot be computed. 201, or 202 with a job where the expression reads the shape of the surface.
+// POST …/layers with `expression`: makes the layer and computes it, or removes the layer if it
+// cannot be computed. Returns 201, or 202 with a job if the expression reads the surface's shape.
 Result<Response> create_formula_layer(const RouteContext& context, JobIdempotency& book,
                                       const Request& request,
                                       const std::shared_ptr<room::Room>& room, Layer layer,

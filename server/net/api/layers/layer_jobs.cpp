@@ -56,12 +56,12 @@ Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& bo
 }
 
 Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& book,
-                                  const Request& request, const nlohmann::json& kept) {
+                                  const Request& request, const nlohmann::json& stored) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
-  jobs::JobResult result(kept.at("model").get<ModelId>());
-  result.layers = kept.at("layers").get<std::vector<LayerId>>();
-  result.report = kept.at("report");
+  jobs::JobResult result(stored.at("model").get<ModelId>());
+  result.layers = stored.at("layers").get<std::vector<LayerId>>();
+  result.report = stored.at("report");
   const auto model = STRATA_TRY(stored_model(context, request));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);

@@ -11,14 +11,14 @@ namespace strata::net {
 using MakeLayers =
     std::function<Result<nlohmann::json>(app::NewLayers& layers, Progress& progress)>;
 
-// Answers 202 with a job that makes layers of the room: all of them or, where it fails or is
-// cancelled, none. With an Idempotency-Key the job is known to repeats, also once another server
-// has done it.
+// Answers 202 with a job that makes layers of the room: all of them, or no layer if the job fails
+// or is canceled. With an Idempotency-Key a repeat finds the job, also after a restart of the
+// server.
 Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& book,
                                  const Request& request, const std::shared_ptr<room::Room>& room,
                                  MakeLayers make);
-// For a route's `replay`: what was kept of a job that succeeded.
+// For a route's `replay`: answers from the stored result of a job that succeeded.
 Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& book,
-                                  const Request& request, const nlohmann::json& kept);
+                                  const Request& request, const nlohmann::json& stored);
 
 }  // namespace strata::net

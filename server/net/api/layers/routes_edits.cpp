@@ -30,14 +30,14 @@ Result<Response> history(const RouteContext& context, const Request& request) {
       end_page(rows.rows, page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
   for (const auto& row : rows.rows) {
-    nlohmann::json told = to_json(row);
-    // An expression of then may name what fewer people see now.
-    if (told.contains("expression")) {
+    nlohmann::json entry = to_json(row);
+    // The old expression may name layers that fewer people can see now.
+    if (entry.contains("expression")) {
       const auto seen = STRATA_TRY(app::sees_all_of(context.store, request.role(), layer.model_id,
-                                                    told.at("expression").get<std::string>()));
-      if (!seen) told.erase("expression");
+                                                    entry.at("expression").get<std::string>()));
+      if (!seen) entry.erase("expression");
     }
-    list.push_back(std::move(told));
+    list.push_back(std::move(entry));
   }
   Response response = json_response({{"edits", list}, {"total", rows.total}});
   add_page_links(response, request, page, last);
@@ -48,10 +48,11 @@ Result<Response> list_review(const RouteContext& context, const Request& request
   auto page = STRATA_TRY(page_of(request));
   auto layer = STRATA_TRY(stored_layer(context, request));
   std::optional<std::string> user;
-  if (const auto asked = request.query.find("user"); asked != request.query.end())
-    user = asked->second;
+  if (const auto parameter = request.query.find("user"); parameter != request.query.end())
+    user = parameter->second;
   if (user && (user->empty() || user->size() > 200))
-    return fail(ErrorCode::invalid, "Bad name", "`user` is the name of a person.", "user");
+    return fail(ErrorCode::invalid, "Invalid name", "`user` must be the user name of a person.",
+                "user");
   const auto after = STRATA_TRY(number_after(page));
   auto queue = STRATA_TRY(
       context.store.journal().review_queue(layer.id, user, page.limit + 1, page.offset, after));
@@ -75,7 +76,7 @@ Result<Target> target_of(const RouteContext& context, const Request& request) {
   return Target{std::move(room), std::move(layer)};
 }
 
-// Runs `make` for the layer that is named by the path and applies the edit that it returns.
+// Runs `make` for the layer that the path names and applies the edit that `make` returns.
 template <class Make>
 Handler editing(const RouteContext& context, Make make) {
   return [&context, make](const Request& request, const Respond& respond) {
@@ -97,10 +98,10 @@ Result<room::EditRequest> review_edit(const Request& request, const Target& targ
   const auto body = STRATA_TRY(body_of<protocol::Review>(request));
   const auto decision = *parse_decision(name(body.decision));
   if (decision == Decision::reopen && !body.edits)
-    return fail(ErrorCode::invalid, "Edits missing",
-                "Name the edits whose review is to be taken back.", "edits");
+    return fail(ErrorCode::invalid, "Edits not specified",
+                "Specify the edits whose review you want to undo.", "edits");
   auto edit = bare_edit(request, target, std::string(name(decision)));
-  edit.id = edit_id(request, target.layer, "review");  // one key is for one decision, whichever
+  edit.id = edit_id(request, target.layer, "review");  // a key is for one decision of any kind
   if (body.edits) edit.record["edits"] = *body.edits;
   if (body.user) edit.record["user"] = *body.user;
   if (body.reason) edit.record["reason"] = *body.reason;
@@ -110,7 +111,7 @@ Result<room::EditRequest> review_edit(const Request& request, const Target& targ
   return edit;
 }
 
-// Undo and redo take no members; no body is the same as an empty object.
+// Undo and redo take no members; an absent body is the same as an empty object.
 Result<void> check_empty(const Request& request) {
   if (request.body.empty()) return {};
   STRATA_TRY(body_of<protocol::Empty>(request));
@@ -171,7 +172,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
                  [](const Request& request, const Target& target) -> Result<room::EditRequest> {
                    auto body = STRATA_TRY(body_of<protocol::Restore>(request));
                    if (body.sequence > target.room->edits().sequence())
-                     return fail(ErrorCode::invalid, "Not yet there",
+                     return fail(ErrorCode::invalid, "Sequence not reached",
                                  "The newest sequence of this model is " +
                                      std::to_string(target.room->edits().sequence()) + ".",
                                  "sequence");

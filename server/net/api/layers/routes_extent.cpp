@@ -7,6 +7,7 @@
 #include "net/serialization/statistics_serialization.h"
 #include "net/serialization/view_settings_serialization.h"
 #include "net/transport/server_options.h"
+#include "query/statistics/key_areas.h"
 #include "room/caches/record_colors.h"
 #include "room/layers.h"
 #include "room/queries.h"
@@ -17,8 +18,8 @@
 namespace strata::net {
 namespace {
 
-// Where the records lie that a person highlights, with what is painted and with their lines and
-// points: to fly there, and to tell how much surface they have.
+// Returns the extent of the records that a person highlights, with their painted texels, lines and
+// points. The page moves the camera there and shows their area.
 Result<Response> extent(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::Highlight>(request));
   auto room = open_room(context, request);
@@ -50,10 +51,10 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
     area_m2 += one.area_m2;
     ++painted;
   }
-  const std::set<std::int64_t> wanted(keys->begin(), keys->end());
+  const std::set<std::int64_t> requested_keys(keys->begin(), keys->end());
   std::set<std::int64_t> marked;
   for (const auto& [key, feature] : *features) {
-    if (!wanted.contains(key)) continue;
+    if (!requested_keys.contains(key)) continue;
     marked.insert(key);
     for (const glm::dvec3& place : feature.places) add_bounds(place, place);
   }

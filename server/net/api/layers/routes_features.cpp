@@ -14,23 +14,23 @@ namespace {
 
 enum class FeatureFormat { geojson, gpkg };
 
-// `f`, or where that is absent what Accept names; GeoJSON where neither says anything. 406 for what
-// is none of them.
+// Returns the format in `f`, otherwise the one that `Accept` names, otherwise GeoJSON. 406 for
+// other formats.
 Result<FeatureFormat> feature_format(const Request& request) {
-  const auto asked = request.query.find("f");
-  if (asked == request.query.end())
+  const auto format = request.query.find("f");
+  if (format == request.query.end())
     return request.header("accept").find(app::kGeoPackageType) == std::string_view::npos
                ? FeatureFormat::geojson
                : FeatureFormat::gpkg;
-  if (asked->second == "geojson") return FeatureFormat::geojson;
-  if (asked->second == "gpkg") return FeatureFormat::gpkg;
-  return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is geojson or gpkg.", "f");
+  if (format->second == "geojson") return FeatureFormat::geojson;
+  if (format->second == "gpkg") return FeatureFormat::gpkg;
+  return fail(ErrorCode::not_acceptable, "Unknown format", "`f` must be geojson or gpkg.", "f");
 }
 
 Result<Response> read_features(const RouteContext& context, const Request& request) {
   const auto format = STRATA_TRY(feature_format(request));
   const auto axis = STRATA_TRY(map_axis(request));
-  const auto language = STRATA_TRY(asked_language(request));
+  const auto language = STRATA_TRY(requested_language(request));
   const auto query = STRATA_TRY(LayerQuery::from(context, request));
   auto set = STRATA_TRY(app::layer_features(context.store, {query.room,
                                                             query.layer,

@@ -43,24 +43,24 @@ Result<Response> list_layers(const RouteContext& context, const Request& request
   return response;
 }
 
-bool is_automatic(const std::optional<protocol::Recompute>& asked) {
-  return asked == protocol::Recompute::automatic;
+bool is_automatic(const std::optional<protocol::Recompute>& recompute) {
+  return recompute == protocol::Recompute::automatic;
 }
 
-Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType type,
+Result<Palette> palette_of(const std::optional<nlohmann::json>& requested, ValueType type,
                            bool categorical) {
-  if (!asked) return default_palette(type, categorical);
-  return palette_from_json(*asked);
+  if (!requested) return default_palette(type, categorical);
+  return palette_from_json(*requested);
 }
 
-// A condition is told by one value, where it holds.
+// A condition paints one value where it is true.
 bool computes_numbers(const protocol::LayerCreate& body) {
   if (!body.expression) return body.compute.has_value();
   const auto expression = app::parse_formula(*body.expression);
   return !expression || !expression->is_condition();
 }
 
-// One class, painted where the condition holds.
+// Returns a palette with one class, for the texels where the condition is true.
 Palette palette_of_condition(const std::string& label) {
   Palette palette;
   palette.mode = PaletteMode::categorical;
@@ -78,13 +78,14 @@ int order_at_bottom(const std::vector<Layer>& others) {
 Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
                         const std::vector<Layer>& others) {
   if ((body.compute || body.expression) && body.kind != LayerKind::numeric)
-    return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.", "kind");
+    return fail(ErrorCode::invalid, "Invalid kind of layer", "A computed layer must be numeric.",
+                "kind");
   if (body.compute && body.expression)
-    return fail(ErrorCode::invalid, "Two ways to compute", "Give either `compute` or `expression`.",
-                "expression");
+    return fail(ErrorCode::invalid, "Two computations",
+                "Send either `compute` or `expression`, but not both.", "expression");
   if (body.recompute && !body.expression)
     return fail(ErrorCode::invalid, "No expression",
-                "`recompute` is for layers with an `expression`.", "recompute");
+                "Only layers with an `expression` can have `recompute`.", "recompute");
   Layer layer;
   layer.model_id = model.id;
   layer.name = body.name;
@@ -95,20 +96,21 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   const bool is_key =
       layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
-    return fail(ErrorCode::invalid, "Type not usable",
-                "A database layer holds keys: its type is u8, u16 or u32.", "type");
+    return fail(ErrorCode::invalid, "Invalid type of layer",
+                "A layer of records stores keys. Its type must be u8, u16 or u32.", "type");
   if ((body.table || body.columns) && layer.kind != LayerKind::database)
     return fail(ErrorCode::invalid, "Table on a numeric layer",
-                "Only database layers have a table.", body.table ? "table" : "columns");
+                "Only layers of records can have a table.", body.table ? "table" : "columns");
   if (body.table && body.columns)
     return fail(ErrorCode::invalid, "Table and columns",
-                "Name a table, or give the columns of a new one.", "columns");
+                "Send either an existing table or the columns of a new table, but not both.",
+                "columns");
   layer.resolution =
       body.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
   if (layer.resolution < model.atlas.lowest_resolution)
     return fail(ErrorCode::invalid, "Resolution too low",
-                "Layers of this model have at least " +
-                    std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                "Layers of this model need at least " +
+                    std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                 "resolution");
   layer.unit = body.unit;
   layer.description = body.description;
@@ -116,10 +118,10 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   layer.descriptions = body.descriptions.value_or(Labels());
   const bool is_computed = body.compute || body.expression;
   if (is_computed && body.locked == false)
-    return fail(
-        ErrorCode::invalid, "Locked at first",
-        "A computed layer is locked when it is made. Unlock it afterwards to edit it by hand.",
-        "locked");
+    return fail(ErrorCode::invalid, "Locked when created",
+                "The server locks a computed layer when it creates it. Unlock the layer "
+                "afterwards to edit it by hand.",
+                "locked");
   const bool is_condition = body.expression && !computes_numbers(body);
   auto palette =
       STRATA_TRY(is_condition && !body.palette
@@ -127,7 +129,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
                      : palette_of(body.palette, layer.type, layer.kind == LayerKind::database));
   layer.palette = std::move(palette);
   layer.opacity = body.opacity;
-  // It must not cover what others look at.
+  // A computed layer must not cover the layers that other people look at.
   layer.visible = body.visible.value_or(!is_computed);
   layer.locked = body.locked.value_or(is_computed);
   layer.review = body.review;
@@ -147,7 +149,7 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
     auto table = table_of_project(context.store, model.project_id, *body.table, "table");
     if (!table) return tl::unexpected(table.error());
     layer.table = table->id;
-    if (!body.palette && term_columns(*table)) layer.palette = terms_palette({});  // theirs
+    if (!body.palette && term_columns(*table)) layer.palette = terms_palette({});  // by terms
   }
   Column name;
   name.name = "Name";
@@ -177,14 +179,15 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
   return answer(*created);
 }
 
-// An expression makes a numeric layer a computed one; an empty one makes it a layer like others,
-// with the values that it has. `before`: who saw the layer, which must see nothing more through it.
+// An expression makes a numeric layer a computed one; an empty one makes it an ordinary layer that
+// keeps its values. `before`: the former visibility: people who see the layer only now must not see
+// hidden layers through it.
 Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& body,
                          Visibility before, Layer& layer) {
   const bool is_seen_by_more = layer.formula && layer.visibility < before;
   if (!body.expression && !body.recompute && !is_seen_by_more) return {};
   if (layer.kind != LayerKind::numeric)
-    return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.",
+    return fail(ErrorCode::invalid, "Invalid kind of layer", "A computed layer must be numeric.",
                 "expression");
   if (body.expression && body.expression->empty()) {
     if (!layer.formula) return {};
@@ -195,14 +198,14 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& bod
   }
   if (!body.expression && !layer.formula)
     return fail(ErrorCode::invalid, "No expression",
-                "`recompute` is for layers with an `expression`.", "recompute");
+                "Only layers with an `expression` can have `recompute`.", "recompute");
   const bool automatic =
       body.recompute ? is_automatic(body.recompute) : layer.formula && layer.formula->automatic;
   auto formula =
       app::read_formula(room, body.expression ? *body.expression : layer.formula->expression,
                         automatic, layer.visibility, layer.id);
   if (!formula) return tl::unexpected(formula.error());
-  // Another expression: what was painted is going to be overwritten.
+  // The new expression will overwrite the painted values.
   const bool is_other = !layer.formula || layer.formula->expression != formula->expression;
   layer.formula = std::move(*formula);
   if (is_other) {
@@ -220,10 +223,11 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
   if (!layer) return tl::unexpected(layer.error());
   const std::string overwrite = request.query_or("overwrite", "false");
   if (overwrite != "true" && overwrite != "false")
-    return fail(ErrorCode::invalid, "Bad value", "`overwrite` is true or false.", "overwrite");
+    return fail(ErrorCode::invalid, "Invalid value", "`overwrite` must be true or false.",
+                "overwrite");
   if (overwrite == "true" && layer->edited_by_hand && request.role() < Role::curator)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "Only curators have what was edited by hand computed again.", "overwrite");
+                "Only curators can recompute a layer that people edited by hand.", "overwrite");
   Progress progress;
   auto computed =
       app::compute_layer(context, room, *layer, request.author(), progress, overwrite == "true");
@@ -234,7 +238,7 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::LayerPatch>(request));
   auto room = STRATA_TRY(open_room(context, request));
-  // As it is stored: what is open may be a moment behind.
+  // Reads the stored layer, because the room's copy may be slightly older.
   auto layer =
       context.store.layers().find(room->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
@@ -247,7 +251,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
     alone.type = body.type;
     if (!(body == alone))
       return fail(ErrorCode::invalid, "Type with other changes",
-                  "Change the type of a layer in a call of its own.", "type");
+                  "Change the type of a layer in a separate request.", "type");
     auto widened =
         room->layers().widen(*layer, *body.type, idempotent_response<Layer>(request, answer));
     return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
@@ -276,8 +280,10 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
     const auto queue = context.store.journal().review_queue(layer->id, {}, 0, 0);
     if (!queue) return tl::unexpected(queue.error());
     if (queue->total > 0)
-      return fail(ErrorCode::conflict, "Edits wait for review",
-                  "Accept or reject what waits on this layer before it is computed.", "expression");
+      return fail(ErrorCode::conflict, "Edits waiting for review",
+                  "Edits of this layer wait for review. Accept or reject them before the server "
+                  "computes the layer.",
+                  "expression");
   }
   STRATA_TRY(app::check_shows_nothing(context.store, *layer, room->layers().all()));
   auto changed =
@@ -318,9 +324,9 @@ void add_layer_routes(Router& router, const RouteContext& context) {
               .max_body = context.options.max_json_bytes,
               .keeps_answer = true,
               .replay = [&context, book](const Request& request,
-                                         const nlohmann::json& kept) -> Result<Response> {
-                return kept.contains("layers") ? repeat_layer_job(context, *book, request, kept)
-                                               : response_of(kept);
+                                         const nlohmann::json& stored) -> Result<Response> {
+                return stored.contains("layers") ? repeat_layer_job(context, *book, request, stored)
+                                                 : response_of(stored);
               }});
   router.add({.method = Method::get,
               .pattern = layers + "/{layer}",

@@ -1,4 +1,4 @@
-// Maps and measurements, painted as one edit.
+// Paints maps and measurements as one edit.
 #include "app/maps/map_contents.h"
 #include "app/maps/map_legend.h"
 #include "app/maps/map_values.h"
@@ -34,7 +34,7 @@ constexpr double kMaxLength_mm = 1e7;
 
 struct Painted {
   TileMap tiles;
-  nlohmann::json record;  // of what was sent
+  nlohmann::json record;  // describes the input in the journal
 };
 
 struct Target {
@@ -57,7 +57,7 @@ Handler painting(const RouteContext& context, const std::string& op, Paint paint
     edit.record.update(painted->record);
     for (const auto& [name, value] : request.query) edit.record[name] = value;
     edit.edit = room::ImportEdit{std::move(painted->tiles), true};
-    // With the names that the map brought.
+    // Includes the names that the map added.
     const auto named = (*room)->layers().find(to_string(layer->id));
     if (!named) return respond(named.error());
     if (auto made = app::records_from_legend(context, *named, room::painted_by(*named, edit),
@@ -71,7 +71,8 @@ Handler painting(const RouteContext& context, const std::string& op, Paint paint
 Result<Painted> paint_point_measurements(const Request& request, const Target& target) {
   const auto file = MappedFile::open(request.body_file);
   if (!file || file->bytes().empty())
-    return fail(ErrorCode::malformed, "Empty body", "Send the file as the body.", "body");
+    return fail(ErrorCode::malformed, "Empty body",
+                "The request has no body. Send the file as the body.", "body");
   const auto radius_mm = STRATA_TRY(number_of(request, "radius_mm", 1e-6, kMaxLength_mm));
   const auto tolerance_mm =
       STRATA_TRY(number_of(request, "tolerance_mm", 0, kMaxLength_mm, radius_mm));
@@ -91,7 +92,7 @@ Result<Painted> paint_point_measurements(const Request& request, const Target& t
                  {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
 }
 
-// What a map paints at a place, and the keys that it brings to the layer's legend.
+// Reads the values that a map paints at a place, and the keys that it adds to the layer's legend.
 using MakeValues = Result<app::MapValues> (*)(const app::MapOptions& options,
                                               const app::MapFiles& files,
                                               const app::MapTarget& target, ByteBudget& budget);

@@ -30,8 +30,7 @@ namespace {
 
 using Names = app::RecordNames;
 
-// What records have besides texels: lines and points, of those that have some. Names as in
-// RecordMeasures.
+// Quantities of the lines and points of the records that have some. `names` as in RecordMeasures.
 struct OfFeatures {
   std::vector<std::string> names;
   std::map<std::int64_t, std::vector<double>> of_key;
@@ -50,7 +49,7 @@ struct OfFeatures {
   }
 };
 
-// `model`: only those on it.
+// `model`: only the features on this model.
 Result<OfFeatures> features_of(const RouteContext& context, const Table& table, Role seen_by,
                                const std::optional<Model>& model, std::optional<std::int64_t> at) {
   store::RecordQuery query;
@@ -152,7 +151,7 @@ app::Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Name
   return sheet;
 }
 
-// Records that have lines or points, and nothing painted.
+// Adds the records that have lines or points but no painted texels.
 void add_classes(query::Quantities& all, const OfFeatures& features) {
   std::set<double> painted;
   for (const query::Quantity& quantity : all.classes) painted.insert(*quantity.value);
@@ -174,47 +173,47 @@ Result<Response> quantity_sheet(const RouteContext& context, app::Sheet sheet, S
 Result<Response> layer_quantities(const RouteContext& context, const Request& request) {
   const auto format = STRATA_TRY(sheet_format(request));
   const auto separator = STRATA_TRY(csv_separator(request));
-  const auto language = STRATA_TRY(asked_language(request));
-  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
-  auto all = asked.room->queries().quantities(asked.layer.slug, asked.at);
+  const auto language = STRATA_TRY(requested_language(request));
+  const auto target = STRATA_TRY(LayerQuery::from(context, request));
+  auto all = target.room->queries().quantities(target.layer.slug, target.at);
   if (!all) return tl::unexpected(all.error());
   Names names;
   OfFeatures features;
-  if (asked.layer.table) {
-    std::optional<std::int64_t> records_at;  // as they were when that edit was made
-    if (asked.at) {
-      auto found =
-          context.store.tables().sequence_when(*asked.layer.table, asked.layer.model_id, *asked.at);
+  if (target.layer.table) {
+    std::optional<std::int64_t> records_at;  // the records as they were at that edit
+    if (target.at) {
+      auto found = context.store.tables().sequence_when(*target.layer.table, target.layer.model_id,
+                                                        *target.at);
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
-    const auto table = context.store.tables().find(to_string(*asked.layer.table), request.role());
+    const auto table = context.store.tables().find(to_string(*target.layer.table), request.role());
     if (!table) return tl::unexpected(table.error());
-    auto marked = features_of(context, *table, request.role(), asked.room->model(), records_at);
+    auto marked = features_of(context, *table, request.role(), target.room->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
     features = std::move(*marked);
     add_classes(*all, features);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes)
       keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = app::record_names(context.store, *asked.layer.table, request.role(),
+    auto found = app::record_names(context.store, *target.layer.table, request.role(),
                                    std::move(keys), records_at, language);
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
   auto response =
       STRATA_TRY(format == SheetFormat::json
-                     ? json_response(quantities_json(*all, asked.layer, names, features))
+                     ? json_response(quantities_json(*all, target.layer, names, features))
                      : quantity_sheet(context,
-                                      to_sheet(*all, asked.layer, names, features,
-                                               asked.layer.slug + "-quantities"),
+                                      to_sheet(*all, target.layer, names, features,
+                                               target.layer.slug + "-quantities"),
                                       format, separator));
-  add_sequences(response, asked.sequence, asked.room->edits().durable_sequence());
+  add_sequences(response, target.sequence, target.room->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }
 
-// --- of a table: over all models whose layers hold its keys
+// --- quantities of a table, over all models with layers that hold its keys
 
 struct OfLayer {
   Model model;
@@ -227,10 +226,10 @@ Result<std::vector<OfLayer>> of_layers(const RouteContext& context, TableId tabl
   auto layers = STRATA_TRY(context.store.layers().of_table(table_id, seen_by));
   std::vector<OfLayer> found;
   for (Layer& layer : layers) {
-    if (layer.sequence == 0) continue;  // nothing was ever painted there
+    if (layer.sequence == 0) continue;  // the layer was never painted
     auto room = STRATA_TRY(context.rooms.open(to_string(layer.model_id), seen_by));
     auto all = room->queries().quantities(layer.slug);
-    if (!all && all.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
+    if (!all && all.error().code == ErrorCode::not_found) continue;  // deleted in the meantime
     if (!all) return tl::unexpected(all.error());
     if (all->classes.empty()) continue;
     OfLayer of_layer{room->model(), std::move(layer), {}};
@@ -259,7 +258,7 @@ class QuantitySum {
 Result<Response> table_quantities(const RouteContext& context, const Request& request) {
   const auto format = STRATA_TRY(sheet_format(request));
   const auto separator = STRATA_TRY(csv_separator(request));
-  const auto language = STRATA_TRY(asked_language(request));
+  const auto language = STRATA_TRY(requested_language(request));
   const auto table = STRATA_TRY(stored_table(context, request));
   const auto layers = STRATA_TRY(of_layers(context, table.id, request.role()));
   std::map<std::int64_t, QuantitySum> of_key;

@@ -8,6 +8,7 @@
 #include "net/serialization/point_text.h"
 #include "net/serialization/sheet_response.h"
 #include "net/transport/server_options.h"
+#include "query/sampling/profile.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/queries.h"
@@ -22,12 +23,12 @@ std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
   return slugs;
 }
 
-// Those of a body, or all.
-Result<std::vector<Layer>> asked_layers(
-    const room::Room& room, const std::optional<std::vector<protocol::LayerRef>>& asked) {
-  if (!asked) return room.layers().all();
+// Returns the layers that the body names, or all.
+Result<std::vector<Layer>> requested_layers(
+    const room::Room& room, const std::optional<std::vector<protocol::LayerRef>>& requested) {
+  if (!requested) return room.layers().all();
   std::vector<std::string> refs;
-  for (const auto& ref : *asked) refs.push_back(protocol::to_ref(ref));
+  for (const auto& ref : *requested) refs.push_back(protocol::to_ref(ref));
   return find_layers(room, refs, "layers");
 }
 
@@ -35,7 +36,8 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   auto coordinates = STRATA_TRY(parse_point(request.query_or("coords", {})));
   const std::string format = request.query_or("f", "json");
   if (format != "json" && format != "covjson" && format != "csv")
-    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, covjson or csv.", "f");
+    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` must be json, covjson or csv.",
+                "f");
   auto room = STRATA_TRY(open_room(context, request));
   std::vector<Layer> layers = room->layers().all();
   if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
@@ -43,8 +45,8 @@ Result<Response> position(const RouteContext& context, const Request& request) {
     if (!found) return tl::unexpected(found.error());
     layers = std::move(*found);
   }
-  const auto asked = as_of(request);
-  const auto at = STRATA_TRY(find_sequence(context, *room, asked));
+  const auto requested_at = as_of(request);
+  const auto at = STRATA_TRY(find_sequence(context, *room, requested_at));
   const auto sequence = at.value_or(room->edits().sequence());
   auto point = room->queries().position(coordinates, slugs_of(layers), at);
   if (!point) return tl::unexpected(point.error());
@@ -54,8 +56,8 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   else if (format == "json")
     response = json_response(protocol::to_json(to_protocol(*point)));
   else if (!point->hit)
-    return fail(ErrorCode::not_found, "No surface", "The model has no surface to measure at.",
-                "coords");
+    return fail(ErrorCode::not_found, "No surface",
+                "The model has no surface, so the server cannot measure.", "coords");
   else {
     response = json_response(point_coverage(*point, layers, room->model()));
     response.headers = {{"Content-Type", "application/prs.coverage+json"}};
@@ -68,7 +70,7 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
   auto body =
       STRATA_TRY(body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes));
   auto room = STRATA_TRY(open_room(context, request));
-  const auto layers = STRATA_TRY(asked_layers(*room, body.layers));
+  const auto layers = STRATA_TRY(requested_layers(*room, body.layers));
   const std::vector<glm::dvec3> points(body.points.begin(), body.points.end());
   const auto at = STRATA_TRY(find_sequence(context, *room, body.at));
   const auto sequence = at.value_or(room->edits().sequence());
@@ -92,7 +94,7 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::ProfileRequest>(request));
   const auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
-  const auto layers = STRATA_TRY(asked_layers(**room, body.layers));
+  const auto layers = STRATA_TRY(requested_layers(**room, body.layers));
   const Unit unit = (*room)->model().unit;
   room::ProfileLine line;
   if (body.places)

@@ -38,7 +38,7 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
     for (const std::string& ref : *refs) {
       auto layer = store.layers().find(source.id, ref, seen_by);
       if (!layer && layer.error().code == ErrorCode::not_found)
-        return fail(ErrorCode::invalid, "No such layer",
+        return fail(ErrorCode::invalid, "Layer not found",
                     source.name + " has no layer \"" + ref + "\".", "layers");
       if (!layer) return tl::unexpected(layer.error());
       layers.push_back(std::move(*layer));
@@ -48,13 +48,13 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
     layers = std::move(all);
   }
   if (layers.empty())
-    return fail(ErrorCode::invalid, "No layers",
-                source.name + " has no layers that could be brought over.", "from");
+    return fail(ErrorCode::invalid, "No layers to transfer",
+                source.name + " has no layers to transfer.", "from");
   for (const Layer& layer : layers)
     if (layer.table && source.project_id != target.project_id)
       return fail(ErrorCode::invalid, "Table of another project",
-                  "The keys of " + layer.name +
-                      " are of a table that this project does not have; name the other layers.",
+                  "The keys of the layer " + layer.name +
+                      " belong to a table of another project. Choose other layers.",
                   "layers");
   return layers;
 }
@@ -63,16 +63,18 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
                                                const Model& target, const Principal& who) {
   auto source = store.models().find(body.from);
   if (source ? !who.sees(source->project_id) : source.error().code == ErrorCode::not_found)
-    return fail(ErrorCode::invalid, "No such model", "There is no model \"" + body.from + "\".",
+    return fail(ErrorCode::invalid, "Model not found", "There is no model \"" + body.from + "\".",
                 "from");
   if (!source) return tl::unexpected(source.error());
   if (source->id == target.id)
-    return fail(ErrorCode::invalid, "The same model",
-                "Name the other version of the scan, whose layers are taken.", "from");
+    return fail(ErrorCode::invalid, "Same model",
+                "A model cannot get layers from itself. Choose the other version of the scan.",
+                "from");
   if (!source->crs.empty() && !target.crs.empty() && source->crs != target.crs)
-    return fail(ErrorCode::invalid, "Other coordinates",
-                "This model lies in " + target.crs + ", the other one in " + source->crs +
-                    "; bring both into one coordinate system before importing them.",
+    return fail(ErrorCode::invalid, "Different coordinate systems",
+                "The coordinate system of this model is " + target.crs +
+                    ", that of the other model is " + source->crs +
+                    ". Transform both scans into one coordinate system and import them again.",
                 "from");
   auto layers =
       chosen_layers(store, *source, who.roles.in(source->project_id), target, body.layers);
@@ -81,18 +83,18 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
                                body.max_angle};
 }
 
-// The layer as it is on the source, for the target.
+// Returns a copy of the source's layer for the target.
 Layer copy_of(const Layer& from, int resolution, int order, const jobs::TransferRequest& request) {
   Layer layer = from;
   layer.id = 0;
   layer.resolution = resolution;
   layer.order = order;
-  layer.locked = false;   // work goes on here
-  layer.formula.reset();  // its values are brought over, as they are
+  layer.locked = false;   // people continue to edit the layer here
+  layer.formula.reset();  // the transfer copies its values unchanged
   layer.origin.reset();
   layer.edited_by_hand = false;
   layer.description += (layer.description.empty() ? "" : "\n\n") +
-                       std::string("Brought over from ") + request.source.name + ", within " +
+                       std::string("Transferred from ") + request.source.name + ", within " +
                        short_number(request.tolerance_mm) + " mm.";
   return layer;
 }
@@ -136,12 +138,12 @@ Result<Response> start_transfer(const RouteContext& context, JobIdempotency& boo
   auto body = STRATA_TRY(body_of<protocol::Transfer>(request));
   auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
-  auto wish = transfer_request(context.store, body, (*room)->model(), *request.principal);
-  if (!wish) return tl::unexpected(wish.error());
+  auto job_request = transfer_request(context.store, body, (*room)->model(), *request.principal);
+  if (!job_request) return tl::unexpected(job_request.error());
   return start_layer_job(context, book, request, *room,
-                         [&context, room = *room, wish = std::move(*wish), user = request.user()](
-                             app::NewLayers& layers, Progress& progress) {
-                           return transfer(context, *room, wish, user, layers, progress);
+                         [&context, room = *room, job_request = std::move(*job_request),
+                          user = request.user()](app::NewLayers& layers, Progress& progress) {
+                           return transfer(context, *room, job_request, user, layers, progress);
                          });
 }
 
@@ -164,19 +166,19 @@ Result<Response> list_properties(const RouteContext& context, const Request& req
   return json_response({{"properties", std::move(list)}, {"total", total}});
 }
 
-// The scan whose vertices are meant: the one named, or the only one that has an order of vertices.
-Result<std::string> scan_of(const Model& model, const std::string& wanted) {
+// Returns the scan that `requested` names, or the only scan with an order of vertices.
+Result<std::string> scan_of(const Model& model, const std::string& requested) {
   std::vector<std::string> scans;
   for (const SourceFile& source : model.source_files) {
     const auto kind = mesh::input_kind(source.name);
     const bool has_order = kind == mesh::InputKind::ply || kind == mesh::InputKind::obj;
-    if (has_order && (wanted.empty() || source.name == wanted)) scans.push_back(source.name);
+    if (has_order && (requested.empty() || source.name == requested)) scans.push_back(source.name);
   }
   if (scans.size() == 1) return scans.front();
-  return fail(ErrorCode::invalid, "Which scan?",
+  return fail(ErrorCode::invalid, "Source file not clear",
               scans.empty()
-                  ? "This model has no such PLY or OBJ file whose vertices the values could be of."
-                  : "Several files of this model have vertices; name one as `source`.",
+                  ? "This model has no matching PLY or OBJ file for these values."
+                  : "Several files of this model have vertices. Specify one of them as `source`.",
               "source");
 }
 
@@ -190,8 +192,8 @@ void write_vertices(const RouteContext& context, const Request& request, const R
   if (!source) return respond(source.error());
   const auto file = MappedFile::open(request.body_file);
   if (!file || file->bytes().empty())
-    return respond(
-        Error{ErrorCode::malformed, "Empty body", "Send one number a line as the body.", "body"});
+    return respond(Error{ErrorCode::malformed, "Empty body",
+                         "The request has no body. Send one number per line as the body.", "body"});
   Progress progress;
   auto scan = jobs::read_source(context.store, model, *source, progress);
   if (!scan) return respond(scan.error());
@@ -205,7 +207,7 @@ void write_vertices(const RouteContext& context, const Request& request, const R
   if (!tiles) {
     Error problem = tiles.error();
     if (problem.field == "type")
-      problem.field = "body";  // the layer is there already: it is the values that do not fit
+      problem.field = "body";  // the layer exists already, so the values are the cause
     return respond(problem);
   }
   room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};
@@ -231,8 +233,8 @@ void add_shape_routes(Router& router, const RouteContext& context) {
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .keeps_answer = true,
-              .replay = [&context, book](const Request& request, const nlohmann::json& kept) {
-                return repeat_layer_job(context, *book, request, kept);
+              .replay = [&context, book](const Request& request, const nlohmann::json& stored) {
+                return repeat_layer_job(context, *book, request, stored);
               }});
   router.add(
       {.method = Method::put,

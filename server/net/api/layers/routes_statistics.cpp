@@ -14,6 +14,7 @@
 #include "net/serialization/sheet_response.h"
 #include "net/serialization/statistics_serialization.h"
 #include "net/transport/server_options.h"
+#include "query/statistics/cross_table.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -51,17 +52,17 @@ Result<room::Selection> selection_of(const RouteContext& context, const room::Ro
 }
 
 Result<Response> statistics(const RouteContext& context, const Request& request) {
-  room::StatisticsWanted wanted;
+  room::StatisticsOptions options;
   for (const auto& part : split_list(request.query_or("include", {}))) {
     if (part == "pieces")
-      wanted.pieces = true;
+      options.pieces = true;
     else if (part == "perimeter")
-      wanted.perimeter = true;
+      options.perimeter = true;
     else if (part == "quantiles")
-      wanted.quantiles = true;
+      options.quantiles = true;
     else
       return fail(ErrorCode::invalid, "Unknown part",
-                  "`include` takes pieces, perimeter and quantiles, with commas between.",
+                  "`include` accepts pieces, perimeter and quantiles, separated by commas.",
                   "include");
   }
   auto room = STRATA_TRY(open_room(context, request));
@@ -72,24 +73,24 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
   const auto selection =
       STRATA_TRY(selection_of(context, *room, where, std::nullopt, as_of(request)));
   const auto sequence = selection.at.value_or(room->edits().sequence());
-  auto statistics = room->queries().statistics(layer.slug, selection, wanted);
+  auto statistics = room->queries().statistics(layer.slug, selection, options);
   if (!statistics) return tl::unexpected(statistics.error());
   Response response = json_response(to_json(*statistics));
   add_sequences(response, sequence, room->edits().durable_sequence());
   return response;
 }
 
-// The edit that paints where the condition holds.
+// Returns the edit that paints where the condition is true.
 Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& body,
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "`into` paints, which needs the role annotator.", "into");
+                "`into` paints on a layer. This needs the role annotator.", "into");
   if (!body.where || body.within || body.at)
-    return fail(
-        ErrorCode::invalid, "Cannot be painted",
-        "`into` paints where a condition holds now: give `where`, and neither `within` nor `at`.",
-        "into");
+    return fail(ErrorCode::invalid, "Cannot paint this area",
+                "`into` paints where a condition is true now. Send `where`, but neither "
+                "`within` nor `at`.",
+                "into");
   const auto layer = room.layers().find(protocol::to_ref(body.into->layer));
   if (!layer) {
     Error problem = layer.error();
@@ -106,33 +107,34 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
 }
 
 void select(const RouteContext& context, const Request& request, const Respond& respond) {
-  const auto asked = body_of<protocol::SelectRequest>(request);
-  if (!asked) return respond(asked.error());
+  const auto select_request = body_of<protocol::SelectRequest>(request);
+  if (!select_request) return respond(select_request.error());
   const auto room = open_room(context, request);
   if (!room) return respond(room.error());
   std::vector<std::string> refs, slugs;
-  for (const auto& ref : asked->layers.value_or(std::vector<protocol::LayerRef>{}))
+  for (const auto& ref : select_request->layers.value_or(std::vector<protocol::LayerRef>{}))
     refs.push_back(protocol::to_ref(ref));
   const auto layers = find_layers(**room, refs, "layers");
   if (!layers) return respond(layers.error());
   for (const auto& layer : *layers) slugs.push_back(layer.slug);
-  const auto selection = selection_of(context, **room, asked->where, asked->within, asked->at);
+  const auto selection = selection_of(context, **room, select_request->where,
+                                      select_request->within, select_request->at);
   if (!selection) return respond(selection.error());
-  room::StatisticsWanted wanted;
-  for (const auto part : asked->include.value_or(std::vector<protocol::StatisticsPart>{}))
+  room::StatisticsOptions options;
+  for (const auto part : select_request->include.value_or(std::vector<protocol::StatisticsPart>{}))
     switch (part) {
-      case protocol::StatisticsPart::pieces: wanted.pieces = true; break;
-      case protocol::StatisticsPart::perimeter: wanted.perimeter = true; break;
-      case protocol::StatisticsPart::quantiles: wanted.quantiles = true; break;
+      case protocol::StatisticsPart::pieces: options.pieces = true; break;
+      case protocol::StatisticsPart::perimeter: options.perimeter = true; break;
+      case protocol::StatisticsPart::quantiles: options.quantiles = true; break;
     }
   std::optional<room::EditRequest> edit;
-  if (asked->into) {
-    auto made = painting(request, *asked, **room);
+  if (select_request->into) {
+    auto made = painting(request, *select_request, **room);
     if (!made) return respond(made.error());
     edit = std::move(*made);
   }
   const auto sequence = selection->at.value_or((*room)->edits().sequence());
-  const auto area = (*room)->queries().select(*selection, slugs, wanted);
+  const auto area = (*room)->queries().select(*selection, slugs, options);
   if (!area) return respond(area.error());
   nlohmann::json body = to_json(*area);
   if (edit)
@@ -146,9 +148,9 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   respond(std::move(response));
 }
 
-constexpr const char* kNoValue = "–";  // where one of the two layers has none
+constexpr const char* kNoValue = "–";  // where one of the two layers has no value
 
-// What one side of a cross-table is called.
+// Returns the names of one side of a cross-table.
 Result<std::vector<std::string>> side_names(const RouteContext& context, const room::Room& room,
                                             const Layer& layer, Role role,
                                             const std::vector<query::CrossTable::Key>& side,
@@ -157,18 +159,18 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
   std::vector<double> values;
   for (const auto& key : side)
     if (key) values.push_back(*key);
-  std::optional<std::int64_t> records_at;  // as they were when that edit was made
+  std::optional<std::int64_t> records_at;  // the records as they were at that edit
   if (layer.table && at) {
     const auto found =
         STRATA_TRY(context.store.tables().sequence_when(*layer.table, room.model().id, *at));
     records_at = found;
   }
   auto names = app::class_names(context.store, layer, role, values, records_at, language);
-  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // nothing is the last
+  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // the last key
   return names;
 }
 
-// With names and sums, as people read it: in the unit that suits the sum of all.
+// Returns the table with names and sums, in the unit that suits the total.
 app::Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
                     const std::vector<std::string>& row_names,
                     const std::vector<std::string>& column_names) {
@@ -205,13 +207,13 @@ app::Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Lay
 
 Result<Response> cross_table(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::CrossTableRequest>(request));
-  // Without `f` scripts get keys; what is asked for as a sheet is for people.
+  // Scripts without `f` get keys; a sheet is for people and gets names.
   const bool as_csv = !request.query.contains("f") &&
                       request.header("accept").find("text/csv") != std::string_view::npos;
   const auto format =
       STRATA_TRY(as_csv ? Result<SheetFormat>(SheetFormat::csv) : sheet_format(request));
   const auto separator = STRATA_TRY(csv_separator(request));
-  const auto language = STRATA_TRY(asked_language(request));
+  const auto language = STRATA_TRY(requested_language(request));
   const auto room = STRATA_TRY(open_room(context, request));
   const auto rows = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.rows)}, "rows"));
   const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.columns)}, "columns"));

@@ -30,7 +30,7 @@
 namespace strata::net {
 namespace {
 
-// of files that are imported: a double and whether it is valid
+// per texel of an imported file: a double and a validity byte
 constexpr std::uint64_t kTexelBytes = 9;
 // of the largest layer
 constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * kTexelBytes) + (1u << 20);
@@ -49,10 +49,10 @@ Result<const Format*> format_of(const Request& request) {
   for (const Format& format : kFormats)
     if (request.param("format") == format.extension) return &format;
   return fail(ErrorCode::not_found, "Unknown raster format",
-              "Texels are there as texels.tif, texels.png, texels.npy and texels.csv.", "format");
+              "Request texels.tif, texels.png, texels.npy or texels.csv.", "format");
 }
 
-// Uncompressed, with the valid plane; TIFF keeps that in the value's type, too.
+// With the valid plane, uncompressed; a TIFF stores that plane in the value's type, too.
 std::uint64_t raster_bytes(const Layer& layer) {
   return std::uint64_t(layer.resolution) * layer.resolution * 2 *
              std::uint64_t(bytes_per_texel(layer.type)) +
@@ -81,10 +81,11 @@ Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
       std::uint64_t(layer.resolution) * layer.resolution * kTexelBytes + (1u << 20);
   if (bytes <= most) return {};
   return fail(ErrorCode::too_large, "Raster too large",
-              "A raster of this layer has at most " + std::to_string(most) + " bytes.", "body");
+              "A raster of this layer can have at most " + std::to_string(most) + " bytes.",
+              "body");
 }
 
-// Before the body, where its length is told.
+// Runs before the body is read, if the request has a Content-Length.
 Result<void> check_raster(const RouteContext& context, const Request& request) {
   STRATA_TRY(format_of(request));
   auto layer = STRATA_TRY(stored_layer(context, request));
@@ -107,8 +108,8 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   if (!held) return respond(held.error());
   const auto file = MappedFile::open(request.body_file);
   if (!file || file->bytes().empty())
-    return respond(
-        Error{ErrorCode::malformed, "Empty body", "Send the raster file as the body.", "body"});
+    return respond(Error{ErrorCode::malformed, "Empty body",
+                         "The request has no body. Send the raster file as the body.", "body"});
   auto tiles = (*format)->decode(*layer, file->bytes());
   if (!tiles) return respond(tiles.error());
   room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};
@@ -120,13 +121,13 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   apply_edit(context, request, *room, std::move(edit), respond);
 }
 
-// --- as lines of text
+// --- text lines
 
 constexpr std::size_t kPieceBytes = 1u << 16;
 
 std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
   std::set<std::int64_t> keys;
-  std::optional<std::uint32_t> last;  // neighbours mostly share a key
+  std::optional<std::uint32_t> last;  // neighboring texels mostly share a key
   query::for_each_sample(texels, [&](const query::TexelSample& sample) {
     if (last != sample.bits) keys.insert(sample.bits);
     last = sample.bits;
@@ -135,15 +136,15 @@ std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
   return {keys.begin(), keys.end()};
 }
 
-// Columns of the records behind the keys, with what they were at `at`.
+// Adds columns of the records that the keys name, with their values at `at`.
 Result<void> add_columns(const RouteContext& context, Role seen_by,
-                         const std::vector<std::string>& wanted, const query::SurfaceTexels& texels,
-                         std::optional<std::int64_t> at, app::TexelCsv& csv) {
+                         const std::vector<std::string>& column_refs,
+                         const query::SurfaceTexels& texels, std::optional<std::int64_t> at,
+                         app::TexelCsv& csv) {
   const Layer& layer = texels.view.layer;
   if (!layer.table)
     return fail(ErrorCode::invalid, "Numeric layer",
-                layer.name + " holds numbers; only database layers have records with columns.",
-                "columns");
+                layer.name + " stores numbers. Only layers of records have columns.", "columns");
   store::RecordQuery query;
   query.keys = keys_of(texels);
   if (at) {
@@ -152,10 +153,10 @@ Result<void> add_columns(const RouteContext& context, Role seen_by,
   }
   auto page = STRATA_TRY(context.store.records().page(*layer.table, seen_by, query));
   std::vector<Column> columns;
-  for (const std::string& ref : wanted) {
+  for (const std::string& ref : column_refs) {
     const Column* column = find_column(page.table.columns, ref);
     if (!column)
-      return fail(ErrorCode::invalid, "No such column",
+      return fail(ErrorCode::invalid, "Column not found",
                   page.table.name + " has no column `" + ref.substr(0, 100) + "`.", "columns");
     columns.push_back(*column);
   }
@@ -177,14 +178,14 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
     if (!condition) return tl::unexpected(condition.error());
     selection.where = std::move(*condition);
   }
-  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
-  selection.at = asked.at;
-  auto found = asked.room->queries().surface_texels(asked.layer.slug, selection);
+  const auto target = STRATA_TRY(LayerQuery::from(context, request));
+  selection.at = target.at;
+  auto found = target.room->queries().surface_texels(target.layer.slug, selection);
   if (!found) return tl::unexpected(found.error());
   const auto texels = std::make_shared<const query::SurfaceTexels>(std::move(*found));
-  auto csv = std::make_shared<app::TexelCsv>(asked.room->model().unit, separator);
-  if (const auto wanted = split_list(request.query_or("columns", {})); !wanted.empty())
-    STRATA_TRY(add_columns(context, request.role(), wanted, *texels, asked.at, *csv));
+  auto csv = std::make_shared<app::TexelCsv>(target.room->model().unit, separator);
+  if (const auto column_refs = split_list(request.query_or("columns", {})); !column_refs.empty())
+    STRATA_TRY(add_columns(context, request.role(), column_refs, *texels, target.at, *csv));
   std::shared_ptr<std::vector<query::TexelSample>> cells;
   if (cell_m) {
     auto summed = STRATA_TRY(query::samples_by_cell(*texels, *cell_m / texels->metres_per_unit));
@@ -192,9 +193,9 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   }
   Response response;
   response.with("Content-Type", kCsvType);
-  name_download(response, asked.layer.slug + ".csv");
-  add_sequences(response, asked.at.value_or(texels->view.snapshot.sequence),
-                asked.room->edits().durable_sequence());
+  name_download(response, target.layer.slug + ".csv");
+  add_sequences(response, target.at.value_or(texels->view.snapshot.sequence),
+                target.room->edits().durable_sequence());
   response.stream = Response::Stream{
       {}, [texels, csv, cells](const Response::Sink& sink) {
         std::string text = csv->head();
@@ -225,7 +226,7 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
 void add_texel_routes(Router& router, const RouteContext& context) {
   const std::string pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}";
   auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
-  // Before the pattern that takes any ending.
+  // Must precede the pattern that accepts any extension.
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/texels.csv",
               .handler = answering([&context](const Request& request) {

@@ -16,13 +16,13 @@
 namespace strata::net {
 namespace {
 
-// What is sent, with the memory that it takes.
+// The file to send and its reservation of memory.
 struct VertexFile {
   MemoryLedger::Share memory;
   query::VertexPly ply;
 };
 
-// The layers that the query names, as it names them; all by their order where it names none.
+// Returns the layers in the query, in its order; without any, all layers in theirs.
 Result<std::vector<query::LayerView>> layer_views(const Request& request, room::Room& room,
                                                   room::At at) {
   std::vector<Layer> layers = room.layers().all();
@@ -35,27 +35,28 @@ Result<std::vector<query::LayerView>> layer_views(const Request& request, room::
   for (const Layer& layer : layers) {
     for (const query::LayerView& other : views)
       if (other.layer.id == layer.id)
-        return fail(ErrorCode::invalid, "Layer named twice", "Name each layer once.", "layers");
+        return fail(ErrorCode::invalid, "Duplicate layer",
+                    "The request contains a layer twice. Send each layer once.", "layers");
     auto tiles = STRATA_TRY(room.queries().tiles(layer.slug, at));
     views.push_back({layer, std::move(tiles)});
   }
   return views;
 }
 
-// Whether the vertices have the colours that the layers give them. The default leaves the scan's as
-// they are: who reads the mesh back as a scan does not get layers as its colours.
+// Whether the vertices get the colors of the layers. By default they keep those of the scan, so
+// that a client that imports the mesh as a scan again does not get the layers as its colors.
 Result<bool> wants_layer_colors(const Request& request) {
   const std::string colors = request.query_or("colors", "scan");
   if (colors != "scan" && colors != "layers")
-    return fail(
-        ErrorCode::invalid, "Colours not understood",
-        "`colors` is `scan` (the colours of the file, the default) or `layers` (as the layers are drawn).",
-        "colors");
+    return fail(ErrorCode::invalid, "Invalid colors",
+                "`colors` must be `scan` (the colors of the file, the default) or `layers` "
+                "(the colors of the layers).",
+                "colors");
   return colors == "layers";
 }
 
-// As pictures show them: those that are named in the order in which they are, otherwise those that
-// are visible in theirs.
+// Returns the layers in the drawing order: the named ones in the order of the query, otherwise the
+// visible ones in the order of the model.
 std::vector<query::LayerView> shown_layers(const Request& request,
                                            std::vector<query::LayerView> views) {
   if (request.query.contains("layers")) return views;

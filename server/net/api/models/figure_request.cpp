@@ -22,7 +22,7 @@ using app::FigureRequest;
 
 constexpr Rgba kPaper{255, 255, 255, 255};
 
-// Directions, papers and formats have the contract's order, so that they are cast.
+// Directions, papers and formats have the order of the contract, so that a cast converts them.
 static_assert(static_cast<int>(protocol::FigureDirection::right) ==
                   static_cast<int>(figure::Direction::right) &&
               static_cast<int>(protocol::FigureRequestPaper::a3) ==
@@ -30,7 +30,7 @@ static_assert(static_cast<int>(protocol::FigureDirection::right) ==
               static_cast<int>(protocol::FigureFormat::pdf) ==
                   static_cast<int>(figure::Format::pdf));
 
-// What is shown, and the camera that it comes with, if any.
+// Reads the shown layers and images into `figure`; returns the camera, if there is one.
 Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
                                          const protocol::FigureRequest& body,
                                          FigureRequest& figure) {
@@ -42,21 +42,21 @@ Result<std::optional<Camera>> read_shown(const RouteContext& context, const Requ
     return body.camera;
   }
   if (body.camera || body.layers || body.looks || body.light)
-    return fail(
-        ErrorCode::invalid, "View and more",
-        "A figure of a view shows what the view does: leave out camera, layers, looks and light.",
-        "view");
+    return fail(ErrorCode::invalid, "View with other settings",
+                "A figure of a saved view uses the settings of the view. Leave out camera, "
+                "layers, looks and light.",
+                "view");
   const auto view = context.store.views().find(room.model().id, *body.view);
   if (!view) {
     return at_field(view.error(), "view");
   }
-  const auto kept = STRATA_TRY(as_asked(context, request, *view, room));
-  auto shown = STRATA_TRY(shown_settings(room, kept));
+  const auto saved = STRATA_TRY(as_view_create(context, request, *view, room));
+  auto shown = STRATA_TRY(shown_settings(room, saved));
   figure.shown.shown = std::move(shown);
-  return std::optional<Camera>(kept.camera);
+  return std::optional<Camera>(saved.camera);
 }
 
-// What lies in the middle of the camera's window, as far as the drawing's plane is concerned.
+// Returns the middle of the camera's window; its depth does not affect the drawing plane.
 glm::dvec3 middle_of(const Camera& camera, const Model& model) {
   const Ray ray = ray_through_pixel(camera, camera.width / 2.0, camera.height / 2.0);
   const glm::dvec3 to_model = (model.bounds_min + model.bounds_max) / 2.0 - ray.origin;
@@ -67,12 +67,15 @@ Result<void> read_direction(const protocol::FigureRequest& body,
                             const std::optional<Camera>& camera, FigureRequest& figure) {
   const Model model = figure.room->model();
   if (body.direction && body.normal)
-    return fail(ErrorCode::invalid, "Two directions", "Give a direction or a normal.", "normal");
+    return fail(ErrorCode::invalid, "Direction and normal together",
+                "Send either a direction or a normal, but not both.", "normal");
   if (camera) figure.section = camera->section;
   if (body.normal) {
     if (!(glm::length(*body.normal) > 1e-12))
-      return fail(ErrorCode::invalid, "No direction",
-                  "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
+      return fail(ErrorCode::invalid, "Invalid normal",
+                  "The length of the normal must not be 0. For example, [0, 0, 1] is a surface "
+                  "that faces along z.",
+                  "normal");
     figure.plane = figure::plane_square_to(*body.normal, model.up);
     figure.from = "face";
   } else if (body.direction || !camera) {
@@ -95,16 +98,16 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
     return at_field(layer.error(), "labels.layer");
   }
   if (!layer->table)
-    return fail(ErrorCode::invalid, "No records",
-                "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
+    return fail(ErrorCode::invalid, "Layer has no records",
+                "The layer '" + layer->slug + "' is not a layer of records, so it has no records.",
                 "labels.layer");
   const auto table = context.store.tables().find(to_string(*layer->table), figure.role);
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, body.column);
   if (!column || holds_lists(column->kind))
-    return fail(ErrorCode::invalid, "No such column",
+    return fail(ErrorCode::invalid, "Column not found",
                 "The table '" + table->slug + "' has no column '" + body.column +
-                    "' that holds one text or number.",
+                    "' that contains a single text or number.",
                 "labels.column");
   figure.labels = {*layer, *column};
   return {};
@@ -122,8 +125,8 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
   const auto camera = STRATA_TRY(read_shown(context, request, body, figure));
   STRATA_TRY(read_direction(body, camera, figure));
   const auto at = STRATA_TRY(find_sequence(context, *figure.room, body.at));
-  // Which layers it shows is settled before what of them waits: one that others see only later is
-  // not on it, unmarked.
+  // Selects the layers before it reads the state of the review: a layer that becomes visible later
+  // must not appear in the figure without marks.
   for (Layer& layer : figure.room->layers().all())
     if (figure.shown.shown.of(layer.id).visible.value_or(layer.visible))
       figure.layers.push_back(layer);
@@ -151,7 +154,7 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
                      body.credit.value_or(model.credit), body.continued};
   figure.legend = body.legend;
   figure.waiting_label = body.provisional;
-  const auto language = STRATA_TRY(asked_language(request));
+  const auto language = STRATA_TRY(requested_language(request));
   figure.language = language;
   return figure;
 }

@@ -5,8 +5,8 @@
 
 namespace strata::net {
 
-// The figure that the body of the request describes. Refused (422): a view and what stands in its
-// place, two directions, a normal without one, labels of what holds no keys.
+// Reads the figure from the body. Refuses (422): a view together with the settings that it
+// replaces, two directions, a normal without a direction, labels of a layer without keys.
 Result<app::FigureRequest> read_figure_request(const RouteContext& context, const Request& request);
 
 }  // namespace strata::net

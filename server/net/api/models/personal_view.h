@@ -4,8 +4,8 @@
 
 namespace strata::net {
 
-// What somebody keeps of how they show the layers of a model: the protocol's PersonalView, of what
-// is there for their role. Blocks.
+// Returns a user's stored settings of how the layers of a model are shown, as the protocol's
+// PersonalView. Contains only entities that their role can see. Blocks.
 Result<nlohmann::json> personal_view(store::Store& store, const std::string& user, Role role,
                                      const room::Room& room);
 

@@ -6,7 +6,7 @@
 
 namespace strata::net {
 
-// A rendered picture, for keeps: JPEG of good quality, or PNG. Encoded while it is drawn.
+// Renders a picture to keep: JPEG of good quality, or PNG. Encodes while the GPU renders.
 Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown,
                                   const Camera& camera, bool is_png);
 

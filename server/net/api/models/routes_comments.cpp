@@ -1,5 +1,5 @@
-// Threads of comments on a model. Everybody reads them, annotators write; what one wrote one
-// changes oneself, and curators may delete it.
+// Threads of comments on a model. Everybody reads them, and annotators write. An author can change
+// his or her own comments; a curator can delete any.
 #include <set>
 
 #include "core/log.h"
@@ -33,7 +33,7 @@ using protocol::CommentEventEvent;
 using store::Comment;
 using store::Comments;
 
-constexpr double kMaxDistance = 0.05;  // from the surface, of the model's diagonal
+constexpr double kMaxDistance = 0.05;  // to the surface, as a fraction of the model's diagonal
 
 nlohmann::json to_json(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
 
@@ -60,7 +60,7 @@ nlohmann::json to_json(const Comment& comment) {
   return json;
 }
 
-// Those whom a comment, and what is done to it now, may name.
+// Returns the people that a comment and a change of it may name.
 Result<People> people_of(const RouteContext& context, const Comment& comment,
                          const std::string& asking) {
   std::vector<std::string> names{comment.user, asking};
@@ -110,14 +110,16 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
   query.after = after;
   if (const auto state = request.query.find("state"); state != request.query.end()) {
     if (state->second != "open" && state->second != "resolved")
-      return fail(ErrorCode::invalid, "No such state", "`state` is open or resolved.", "state");
+      return fail(ErrorCode::invalid, "Invalid state", "`state` must be open or resolved.",
+                  "state");
     query.resolved = state->second == "resolved";
   }
   if (const auto since = request.query.find("since"); since != request.query.end()) {
     query.since = utc_timestamp(since->second);
     if (!query.since)
-      return fail(ErrorCode::invalid, "Not a time",
-                  "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
+      return fail(ErrorCode::invalid, "Invalid time",
+                  "`since` must be a time such as 2026-05-04T12:00:00Z. Write the + of a time "
+                  "zone as %2B.",
                   "since");
   }
   const auto model = STRATA_TRY(stored_model(context, request));
@@ -146,13 +148,13 @@ Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
   return Comment::Place{nearest.position, glm::dvec3(nearest.normal)};
 }
 
-// What the comment is about, as asked for.
+// Sets the layer and the record that the body names.
 Result<void> put_subject(const RouteContext& context, const room::Room& room,
                          const protocol::CommentCreate& body, Comment& comment) {
   if (!body.layer) {
     if (body.record)
-      return fail(ErrorCode::invalid, "Record of no layer",
-                  "`record` is a key of a `layer`; name it, too.", "layer");
+      return fail(ErrorCode::invalid, "Record without a layer",
+                  "`record` is a key of a `layer`. Send the `layer`, too.", "layer");
     return {};
   }
   const auto layers = STRATA_TRY(find_layers(room, {protocol::to_ref(*body.layer)}, "layer"));
@@ -160,13 +162,13 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room,
   comment.layer_id = layer.id;
   if (!body.record) return {};
   if (!layer.table)
-    return fail(ErrorCode::invalid, "No records",
-                "The layer `" + layer.slug + "` is numeric: it has no records.", "record");
+    return fail(ErrorCode::invalid, "Layer has no records",
+                "The layer `" + layer.slug + "` is numeric, so it has no records.", "record");
   const auto missing =
       STRATA_TRY(context.store.records().missing(*layer.table, std::vector{*body.record}));
   if (!missing.empty())
     return fail(
-        ErrorCode::invalid, "No such record",
+        ErrorCode::invalid, "Record not found",
         "The table of `" + layer.slug + "` has no record " + std::to_string(*body.record) + ".",
         "record");
   comment.table_id = *layer.table;
@@ -218,20 +220,23 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
   STRATA_TRY(check_if_match(request, comment.version));
   if (body.text) {
     if (comment.user != request.user())
-      return fail(ErrorCode::forbidden, "Not yours",
-                  "Only " + comment.user + " changes the text of this comment. Reply to it.",
-                  "text");
+      return fail(
+          ErrorCode::forbidden, "Not allowed",
+          "Only " + comment.user + " can change the text of this comment. Write a reply instead.",
+          "text");
     if (comment.deleted)
-      return fail(ErrorCode::conflict, "Deleted already",
-                  "The comment was deleted; it stands there for its replies.", "text");
+      return fail(
+          ErrorCode::conflict, "Already deleted",
+          "Somebody deleted this comment. The page shows its place only because it has replies.",
+          "text");
     comment.text = *body.text;
   }
   if (body.state) {
     if (comment.thread)
-      return fail(
-          ErrorCode::invalid, "State of a reply",
-          "The state is that of the thread: change comment " + to_string(*comment.thread) + ".",
-          "state");
+      return fail(ErrorCode::invalid, "State of a reply",
+                  "Only the first comment of a thread has a state. Change comment " +
+                      to_string(*comment.thread) + ".",
+                  "state");
     if (*body.state == protocol::CommentState::open)
       comment.resolved.reset();
     else if (!comment.resolved)
@@ -252,8 +257,8 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
   const auto comment = STRATA_TRY(stored_comment(context, request));
   STRATA_TRY(check_if_match(request, comment.version));
   if (comment.user != request.user() && request.principal->role < Role::curator)
-    return fail(ErrorCode::forbidden, "Not yours",
-                "Only " + comment.user + " and curators delete this comment.");
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Only " + comment.user + " and curators can delete this comment.");
   const auto answer = [](const Comments::Removal&) { return empty_response(204); };
   const auto removal = context.store.comments().remove(
       comment, idempotent_response<Comments::Removal>(request, answer));

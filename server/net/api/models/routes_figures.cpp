@@ -1,4 +1,4 @@
-// Measured figures: drawings to scale as files.
+// Figures: drawings to scale as files.
 #include <boost/algorithm/string/predicate.hpp>
 
 #include "domain/scene/model.h"
@@ -11,10 +11,10 @@
 namespace strata::net {
 namespace {
 
-// of drawings that are made at one time; A3 at 600 dpi has 260 MB
+// for drawings that are made at the same time; A3 at 600 dpi has 260 MB
 constexpr std::uint64_t kFigureBytes = 320u << 20;
 
-// RFC 7240: preferences are parted by commas.
+// RFC 7240: commas separate preferences.
 bool wants_job(const Request& request) {
   for (std::string preference : split_list(std::string(request.header("prefer")))) {
     preference.erase(0, preference.find_first_not_of(" \t"));
@@ -26,16 +26,16 @@ bool wants_job(const Request& request) {
 
 Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteBudget>& budget,
                         const Request& request) {
-  auto wish = read_figure_request(context, request);
-  if (!wish) return tl::unexpected(wish.error());
+  auto figure_request = read_figure_request(context, request);
+  if (!figure_request) return tl::unexpected(figure_request.error());
   if (wants_job(request)) {
-    const Model model = wish->room->model();
+    const Model model = figure_request->room->model();
     auto job = context.jobs.add(
         model.project_id,
-        [&context, budget, wish = std::move(*wish),
+        [&context, budget, figure_request = std::move(*figure_request),
          id = model.id](Progress& progress) -> Result<jobs::JobResult> {
-          auto file = STRATA_TRY(
-              app::make_figure(context.store, *budget, wish, context.options.upload_dir, progress));
+          auto file = STRATA_TRY(app::make_figure(context.store, *budget, figure_request,
+                                                  context.options.upload_dir, progress));
           jobs::JobResult result(id);
           result.file = std::move(file);
           return result;
@@ -45,10 +45,11 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
     return std::move(job_response(context, *job).with("Preference-Applied", "respond-async"));
   }
   Progress unwatched;
-  auto file = STRATA_TRY(
-      app::make_figure(context.store, *budget, *wish, context.options.upload_dir, unwatched));
+  auto file = STRATA_TRY(app::make_figure(context.store, *budget, *figure_request,
+                                          context.options.upload_dir, unwatched));
   Response response = file_response(std::move(file));
-  add_sequences(response, *wish->shown.at, wish->room->edits().durable_sequence());
+  add_sequences(response, *figure_request->shown.at,
+                figure_request->room->edits().durable_sequence());
   return response;
 }
 

@@ -17,9 +17,9 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::FrameRequest>(request));
   auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
-  room::PictureRequest wanted;
+  room::PictureRequest picture_request;
   if (body.layers) {
-    wanted.layers.emplace();
+    picture_request.layers.emplace();
     for (std::size_t i = 0; i < body.layers->size(); ++i) {
       auto layer = (*room)->layers().find(protocol::to_ref((*body.layers)[i]));
       if (!layer) {
@@ -27,38 +27,40 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
         problem.field = "layers[" + std::to_string(i) + "]";
         return tl::unexpected(std::move(problem));
       }
-      wanted.layers->push_back(layer->slug);
+      picture_request.layers->push_back(layer->slug);
     }
   }
   if (body.highlights) {
     for (std::size_t i = 0; i < body.highlights->size(); ++i) {
-      const auto& wished = (*body.highlights)[i];
+      const auto& highlighted = (*body.highlights)[i];
       const std::string field = "highlights[" + std::to_string(i) + "]";
-      auto layer = (*room)->layers().find(protocol::to_ref(wished.layer));
+      auto layer = (*room)->layers().find(protocol::to_ref(highlighted.layer));
       if (!layer) {
         Error problem = layer.error();
         problem.field = field + ".layer";
         return tl::unexpected(std::move(problem));
       }
-      auto highlight = STRATA_TRY(highlight_of(wished.highlight, *layer, field + ".highlight"));
-      wanted.shown.layers.push_back(
+      auto highlight =
+          STRATA_TRY(highlight_of(highlighted.highlight, *layer, field + ".highlight"));
+      picture_request.shown.layers.push_back(
           {layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(highlight)});
     }
   }
   const auto sequence = (*room)->edits().sequence();
   const auto at = STRATA_TRY(find_sequence(context, **room, body.at));
-  wanted.at = at;
+  picture_request.at = at;
   if (body.looks) {
     auto images = STRATA_TRY(surface_image_views(**room, *body.looks));
-    wanted.shown.images = std::move(images);
+    picture_request.shown.images = std::move(images);
   }
-  if (body.light) wanted.shown.light = *body.light;
-  STRATA_TRY(validate(wanted.shown.light));
+  if (body.light) picture_request.shown.light = *body.light;
+  STRATA_TRY(validate(picture_request.shown.light));
   const auto background = STRATA_TRY(background_of(body.background));
-  wanted.shown.background = background;
-  auto response = STRATA_TRY(picture_response(**room, wanted, body.camera,
+  picture_request.shown.background = background;
+  auto response = STRATA_TRY(picture_response(**room, picture_request, body.camera,
                                               body.format == protocol::FrameRequestFormat::png));
-  add_sequences(response, wanted.at.value_or(sequence), (*room)->edits().durable_sequence());
+  add_sequences(response, picture_request.at.value_or(sequence),
+                (*room)->edits().durable_sequence());
   return response;
 }
 

@@ -24,91 +24,92 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Everything but the file, from the query.
+// Reads everything except the file from the query.
 Result<jobs::ImportRequest> import_request(const RouteContext& context, const Request& request) {
-  jobs::ImportRequest asked;
-  asked.name = request.query_or("name", {});
-  asked.project = request.query_or("project", "default");
-  if (auto project = context.store.projects().find(asked.project); !project) {
+  jobs::ImportRequest requested;
+  requested.name = request.query_or("name", {});
+  requested.project = request.query_or("project", "default");
+  if (auto project = context.store.projects().find(requested.project); !project) {
     Error problem = project.error();
     problem.field = "project";
     return tl::unexpected(std::move(problem));
   }
   constexpr const char* kProposed = "proposed";
   if (auto unit = request.query_or("unit", {}); unit == kProposed) {
-    asked.unit_proposed = true;
+    requested.unit_proposed = true;
   } else if (!unit.empty()) {
-    asked.unit = parse_unit(unit);
-    if (!asked.unit)
+    requested.unit = parse_unit(unit);
+    if (!requested.unit)
       return fail(ErrorCode::invalid, "Unknown unit",
-                  "The unit is mm, cm or m, or `proposed` for what the file lets one guess.",
+                  "The unit must be mm, cm, m or `proposed`. With `proposed`, the server guesses "
+                  "the unit from the file.",
                   "unit");
   }
-  asked.up = request.query_or("up", {});
-  if (asked.up == kProposed) {
-    asked.up_proposed = true;
-    asked.up.clear();
+  requested.up = request.query_or("up", {});
+  if (requested.up == kProposed) {
+    requested.up_proposed = true;
+    requested.up.clear();
   }
-  asked.crs = request.query_or("crs", {});
+  requested.crs = request.query_or("crs", {});
   if (auto text = request.query_or("resolution", {}); !text.empty()) {
     auto resolution = STRATA_TRY(parse_integer(text, 1, INT32_MAX, "resolution"));
-    asked.resolution = static_cast<int>(resolution);
+    requested.resolution = static_cast<int>(resolution);
   }
   if (auto text = request.query_or("weld", {}); !text.empty()) {
     const auto [end, error] =
-        std::from_chars(text.data(), text.data() + text.size(), asked.weld_distance);
+        std::from_chars(text.data(), text.data() + text.size(), requested.weld_distance);
     if (error != std::errc() || end != text.data() + text.size())
       return fail(ErrorCode::invalid, "Not a number",
-                  "`weld` is a distance in the file's units, such as 0.05.", "weld");
+                  "`weld` must be a distance in the units of the file, such as 0.05.", "weld");
   }
   const std::string strict = request.query_or("strict", "false");
   if (strict != "true" && strict != "false")
-    return fail(ErrorCode::invalid, "Neither true nor false", "`strict` is true or false.",
+    return fail(ErrorCode::invalid, "Not true or false", "`strict` must be true or false.",
                 "strict");
-  asked.strict = strict == "true";
-  asked.files.push_back({base_filename(request.query_or("filename", {})), {}});
-  return asked;
+  requested.strict = strict == "true";
+  requested.files.push_back({base_filename(request.query_or("filename", {})), {}});
+  return requested;
 }
 
-// Before the upload; its name may be in there.
+// Runs before the upload, whose form may contain the file's name.
 Result<void> check_import(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(import_request(context, request));
-  if (asked.files[0].filename.empty()) asked.files[0].filename = "named in the body.ply";
-  return jobs::check(asked);
+  auto requested = STRATA_TRY(import_request(context, request));
+  if (requested.files[0].filename.empty()) requested.files[0].filename = "named in the body.ply";
+  return jobs::check(requested);
 }
 
-// The upload under a name of its own: the request's file goes with the answer, the job needs it
+// Moves the upload to another name: the answer deletes the request's file, but the job needs it
 // longer.
 Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const fs::path& file,
                                                    const fs::path& folder) {
   if (file != request.body_file) return std::make_shared<TemporaryFile>(file);
-  const fs::path kept = folder / (to_string(random_uuid()) + ".upload");
+  const fs::path destination = folder / (to_string(random_uuid()) + ".upload");
   std::error_code error;
-  fs::rename(file, kept, error);
+  fs::rename(file, destination, error);
   if (error)
-    return fail(ErrorCode::internal, "Upload lost",
-                "The uploaded file could not be kept: " + error.message());
-  return std::make_shared<TemporaryFile>(kept);
+    return fail(ErrorCode::internal, "Upload not saved",
+                "The server could not save the uploaded file: " + error.message());
+  return std::make_shared<TemporaryFile>(destination);
 }
 
 Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
                               const Request& request) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
-  auto asked = import_request(context, request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto requested = import_request(context, request);
+  if (!requested) return tl::unexpected(requested.error());
   auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir));
-  std::vector<std::shared_ptr<TemporaryFile>> kept;
-  const std::string named = asked->files[0].filename;
-  asked->files.clear();
+  std::vector<std::shared_ptr<TemporaryFile>> stored_files;
+  const std::string named = requested->files[0].filename;
+  requested->files.clear();
   for (const Upload& upload : uploads) {
     auto file = STRATA_TRY(keep_upload(request, upload.file, context.options.upload_dir));
-    kept.push_back(std::move(file));
-    asked->files.push_back({upload.filename, kept.back()->path});
+    stored_files.push_back(std::move(file));
+    requested->files.push_back({upload.filename, stored_files.back()->path});
   }
-  // One file goes by the name that the query gives it, whatever a form calls it.
-  if (asked->files.size() == 1 && !named.empty()) asked->files[0].filename = named;
-  STRATA_TRY(jobs::check(*asked));
+  // The name in the query has precedence over the name in a form.
+  if (requested->files.size() == 1 && !named.empty()) requested->files[0].filename = named;
+  STRATA_TRY(jobs::check(*requested));
 
   const store::IdempotentResponse<Model> answer{
       scoped_key(request),
@@ -116,14 +117,15 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
         return nlohmann::json{{"request", print}, {"model", model.id}};
       },
       request.user()};
-  const auto project = STRATA_TRY(context.store.projects().find(asked->project));
+  const auto project = STRATA_TRY(context.store.projects().find(requested->project));
   auto job = STRATA_TRY(context.jobs.add(
       project.id,
-      [&store = context.store, &memory = context.rooms.memory(), asked = *asked,
-       kept = std::move(kept), answer](Progress& progress) -> Result<jobs::JobResult> {
-        store::IdempotentResponse<Model> kept_answer = answer;
-        kept_answer.job = progress.job();
-        auto model = jobs::import_model(store, asked, progress, kept_answer, &memory);
+      [&store = context.store, &memory = context.rooms.memory(), requested = *requested,
+       stored_files = std::move(stored_files),
+       answer](Progress& progress) -> Result<jobs::JobResult> {
+        store::IdempotentResponse<Model> stored_answer = answer;
+        stored_answer.job = progress.job();
+        auto model = jobs::import_model(store, requested, progress, stored_answer, &memory);
         if (!model) return tl::unexpected(model.error());
         return model->id;
       }));
@@ -131,14 +133,14 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
   return job_response(context, job);
 }
 
-// The import succeeded. Its job is known where this server did it.
+// The import succeeded. Only the server process that ran the job still has it.
 Result<Response> repeat_import(const RouteContext& context, JobIdempotency& book,
-                               const Request& request, const nlohmann::json& kept) {
+                               const Request& request, const nlohmann::json& stored) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
   const auto project =
       STRATA_TRY(context.store.projects().find(request.query_or("project", "default")));
-  auto job = STRATA_TRY(book.finished(request, project.id, kept.at("model").get<ModelId>()));
+  auto job = STRATA_TRY(book.finished(request, project.id, stored.at("model").get<ModelId>()));
   return job_response(context, job);
 }
 
@@ -161,8 +163,8 @@ void add_import_routes(Router& router, const RouteContext& context) {
        .max_body = context.options.max_upload_bytes,
        .keeps_answer = true,
        .replay =
-           [&context, book](const Request& request, const nlohmann::json& kept) {
-             return repeat_import(context, *book, request, kept);
+           [&context, book](const Request& request, const nlohmann::json& stored) {
+             return repeat_import(context, *book, request, stored);
            }});
 }
 

@@ -34,9 +34,9 @@ Result<Response> list_models(const RouteContext& context, const Request& request
   std::map<ProjectId, std::string> slugs;
   for (const auto& project : projects) slugs[project.id] = project.slug;
   std::optional<ProjectId> only;
-  if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
-    STRATA_TRY(check_seen(context, request, wanted->second, "project"));
-    auto project = STRATA_TRY(context.store.projects().find(wanted->second));
+  if (auto parameter = request.query.find("project"); parameter != request.query.end()) {
+    STRATA_TRY(check_seen(context, request, parameter->second, "project"));
+    auto project = STRATA_TRY(context.store.projects().find(parameter->second));
     only = project.id;
   }
   auto models = STRATA_TRY(context.store.models().all(only));
@@ -67,8 +67,8 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   if (patch.default_resolution) {
     if (*patch.default_resolution < model.atlas.lowest_resolution)
       return fail(ErrorCode::invalid, "Resolution too low",
-                  "Layers of this model have at least " +
-                      std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                  "Layers of this model need at least " +
+                      std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                   "default_resolution");
     model.default_resolution = *patch.default_resolution;
   }
@@ -91,7 +91,7 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
 
 Result<Response> change_model(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::ModelPatch>(request));
-  // Through the room: those who look at the model are told.
+  // The room notifies the participants of the model.
   auto room = STRATA_TRY(open_room(context, request));
   Model model = room->model();
   STRATA_TRY(check_if_match(request, model.version));
@@ -109,9 +109,9 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
 Result<Response> source(const RouteContext& context, const Request& request) {
   auto model = STRATA_TRY(stored_model(context, request));
   STRATA_TRY(check_source_download(request, model));
-  const std::string& wanted = request.param("name");
+  const std::string& name = request.param("name");
   for (const auto& file : model.source_files) {
-    if (file.name != wanted) continue;
+    if (file.name != name) continue;
     const std::string etag = "\"" + file.sha256 + "\"";
     if (names_tag(request.header("if-none-match"), etag))
       return empty_response(304).with("ETag", etag);
@@ -119,13 +119,15 @@ Result<Response> source(const RouteContext& context, const Request& request) {
     response.with("Content-Type", "application/octet-stream").with("ETag", etag);
     name_download(response, file.name);
     response.stream = Response::Stream{
-        file.bytes, [&store = context.store, id = model.id, wanted](const Response::Sink& sink) {
-          return store.models().read_source(id, wanted, sink).has_value();
+        file.bytes, [&store = context.store, id = model.id, name](const Response::Sink& sink) {
+          return store.models().read_source(id, name, sink).has_value();
         }};
     return response;
   }
-  return fail(ErrorCode::not_found, "No such file",
-              "The model was not made from a file of this name; see `source_files`.", "name");
+  return fail(
+      ErrorCode::not_found, "File not found",
+      "The server did not import this model from a file with this name. See `source_files`.",
+      "name");
 }
 
 }  // namespace

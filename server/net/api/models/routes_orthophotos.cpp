@@ -1,4 +1,4 @@
-// Orthophotos that become looks.
+// Orthophotos that become surface images.
 #include <algorithm>
 #include <bit>
 
@@ -24,29 +24,29 @@
 namespace strata::net {
 namespace {
 
-struct Wish {
+struct OrthophotoRequest {
   SurfaceImage image;
   app::MapAxis axis;
   int resolution = 0;
 };
 
-Result<Wish> wish_of(const Request& request) {
+Result<OrthophotoRequest> orthophoto_request(const Request& request) {
   const auto axis = STRATA_TRY(map_axis(request));
-  Wish wish{{}, axis, 0};
-  wish.image.name = request.query_or("name", {});
-  if (wish.image.name.empty() || wish.image.name.size() > 200)
-    return fail(ErrorCode::invalid, "Name missing", "A surface image has a name of 1 to 200 bytes.",
-                "name");
-  wish.image.description = request.query_or("description", {});
+  OrthophotoRequest requested{{}, axis, 0};
+  requested.image.name = request.query_or("name", {});
+  if (requested.image.name.empty() || requested.image.name.size() > 200)
+    return fail(ErrorCode::invalid, "Name missing",
+                "The name of a surface image must have 1 to 200 bytes.", "name");
+  requested.image.description = request.query_or("description", {});
   if (const std::string text = request.query_or("resolution", {}); !text.empty()) {
     const auto resolution =
         STRATA_TRY(parse_integer(text, 1, jobs::kMaxOrthophotoSurfaceImage, "resolution"));
-    wish.resolution = static_cast<int>(resolution);
-    if (!std::has_single_bit(static_cast<unsigned>(wish.resolution)))
-      return fail(ErrorCode::invalid, "Resolution not usable", "`resolution` is a power of two.",
+    requested.resolution = static_cast<int>(resolution);
+    if (!std::has_single_bit(static_cast<unsigned>(requested.resolution)))
+      return fail(ErrorCode::invalid, "Invalid resolution", "`resolution` must be a power of two.",
                   "resolution");
   }
-  return wish;
+  return requested;
 }
 
 double texel_area(const Model& model, int resolution) {
@@ -54,36 +54,37 @@ double texel_area(const Model& model, int resolution) {
   return texels > 0 ? model.area / texels : 0;
 }
 
-Result<SurfaceImage> bake(room::Room& room, const Wish& wish, const app::MapPicture& map,
+Result<SurfaceImage> bake(room::Room& room, const OrthophotoRequest& requested,
+                          const app::MapPicture& map,
                           const store::IdempotentResponse<SurfaceImage>& answer,
                           Progress& progress) {
   progress.report(0, "Finding what is seen");
   const jobs::OrthophotoSampler sampler(map.picture, map.world,
-                                        texel_area(room.model(), wish.resolution));
+                                        texel_area(room.model(), requested.resolution));
   if (progress.cancelled()) return cancelled_problem();
-  Layer colors;  // of the surface: never stored, its numbers are RGBA
+  Layer colors;  // never stored; its numbers are RGBA
   colors.type = ValueType::u32;
-  colors.resolution = wish.resolution;
+  colors.resolution = requested.resolution;
   const auto tiles =
-      room.surface().project(colors, wish.axis.direction, [&](const glm::dvec3& world) {
-        return progress.cancelled() ? std::nullopt : sampler.color_at(wish.axis.on_map(world));
+      room.surface().project(colors, requested.axis.direction, [&](const glm::dvec3& world) {
+        return progress.cancelled() ? std::nullopt : sampler.color_at(requested.axis.on_map(world));
       });
   if (progress.cancelled()) return cancelled_problem();
   if (!tiles) return tl::unexpected(tiles.error());
   if (tiles->empty())
-    return fail(
-        ErrorCode::invalid, "Beside the model",
-        "Nothing of the model lies under the picture. Check its place, the direction and the unit.",
-        "world");
+    return fail(ErrorCode::invalid, "Picture misses the model",
+                "The picture does not cover any part of the model. Check its position, the "
+                "direction and the unit.",
+                "world");
   progress.report(0.4, "Painting the surface image");
-  const auto map_of_surface = STRATA_TRY(room.surface().map(wish.resolution));
+  const auto map_of_surface = STRATA_TRY(room.surface().map(requested.resolution));
   const Picture picture = jobs::orthophoto_surface_image(*tiles, *map_of_surface);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.6, "Packing the surface image");
   const auto png = encode_png(picture.rgba, picture.width, picture.height);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.9, "Saving");
-  SurfaceImage image = wish.image;
+  SurfaceImage image = requested.image;
   image.visible = false;
   image.media_type = media_type(PictureFormat::png);
   image.width = picture.width;
@@ -97,21 +98,22 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
                                   ByteBudget& budget, const Request& request) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
-  auto wish = wish_of(request);
-  if (!wish) return tl::unexpected(wish.error());
+  auto requested = orthophoto_request(request);
+  if (!requested) return tl::unexpected(requested.error());
   auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
   const Model model = (*room)->model();
-  if (wish->resolution != 0 && wish->resolution < model.atlas.lowest_resolution)
+  if (requested->resolution != 0 && requested->resolution < model.atlas.lowest_resolution)
     return fail(ErrorCode::invalid, "Resolution too low",
-                "Pictures of this model have at least " +
-                    std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                "Pictures of this model need at least " +
+                    std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                 "resolution");
   const auto files = STRATA_TRY(take_map(request, context.options.upload_dir));
   const auto options = STRATA_TRY(map_options(request));
   auto map = app::map_picture(options, files, model, budget);
   if (!map) return tl::unexpected(map.error());
-  if (wish->resolution == 0) wish->resolution = jobs::orthophoto_resolution(model, map->world);
+  if (requested->resolution == 0)
+    requested->resolution = jobs::orthophoto_resolution(model, map->world);
 
   const store::IdempotentResponse<SurfaceImage> answer{
       scoped_key(request),
@@ -121,12 +123,12 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
       request.user()};
   auto job = context.jobs.add(
       model.project_id,
-      [room = *room, wish = std::move(*wish), answer,
+      [room = *room, requested = std::move(*requested), answer,
        map = std::make_shared<const app::MapPicture>(std::move(*map))](
           Progress& progress) -> Result<jobs::JobResult> {
-        store::IdempotentResponse<SurfaceImage> kept = answer;
-        kept.job = progress.job();
-        auto image = STRATA_TRY(bake(*room, wish, *map, kept, progress));
+        store::IdempotentResponse<SurfaceImage> stored_answer = answer;
+        stored_answer.job = progress.job();
+        auto image = STRATA_TRY(bake(*room, requested, *map, stored_answer, progress));
         jobs::JobResult result(image.model_id);
         result.image = image.id;
         return result;
@@ -138,11 +140,11 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
 }
 
 Result<Response> repeat_orthophoto(const RouteContext& context, JobIdempotency& book,
-                                   const Request& request, const nlohmann::json& kept) {
+                                   const Request& request, const nlohmann::json& stored) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
-  jobs::JobResult result(kept.at("model").get<ModelId>());
-  result.image = kept.at("look").get<SurfaceImageId>();
+  jobs::JobResult result(stored.at("model").get<ModelId>());
+  result.image = stored.at("look").get<SurfaceImageId>();
   const auto model = STRATA_TRY(stored_model(context, request));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);
@@ -161,15 +163,15 @@ void add_orthophoto_routes(Router& router, const RouteContext& context) {
               .role = Role::curator,
               .query = {"name", "description", "along", "world", "resolution", "crs"},
               .check = [](const Request& request) -> Result<void> {
-                auto wish = wish_of(request);
-                return wish ? Result<void>{} : tl::unexpected(wish.error());
+                auto requested = orthophoto_request(request);
+                return requested ? Result<void>{} : tl::unexpected(requested.error());
               },
               .body = BodyKind::file,
               .max_body = kMaxMapBytes,
               .keeps_answer = true,
               .replay =
-                  [&context, book](const Request& request, const nlohmann::json& kept) {
-                    return repeat_orthophoto(context, *book, request, kept);
+                  [&context, book](const Request& request, const nlohmann::json& stored) {
+                    return repeat_orthophoto(context, *book, request, stored);
                   }});
 }
 

@@ -1,4 +1,4 @@
-// How a person shows the layers of a model, kept for them alone.
+// The settings with which a user shows the layers of a model; private to the user.
 #include "domain/people/role.h"
 #include "net/api/addressed.h"
 #include "net/api/models/personal_view.h"
@@ -29,15 +29,15 @@ Result<Response> put_view(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::PersonalView>(request));
   for (std::size_t i = 0; i < body.layers.size(); ++i)
     if (body.layers[i].highlight)
-      return fail(ErrorCode::invalid, "Not kept",
-                  "Records that stand out belong to a named view; here they are not kept.",
+      return fail(ErrorCode::invalid, "Not saved",
+                  "Only saved views can store highlighted records. Leave them out here.",
                   "layers[" + std::to_string(i) + "].highlight");
   const auto room = STRATA_TRY(open_room(context, request));
   const auto settings = STRATA_TRY(view_settings(*room, body.layers, {}, {}));
-  if (auto kept = context.store.personal_views().keep(request.user(), room->model().id,
-                                                      kept_layers(body.layers, settings));
-      !kept)
-    return tl::unexpected(kept.error());
+  if (auto saved = context.store.personal_views().keep(request.user(), room->model().id,
+                                                       stored_layers(body.layers, settings));
+      !saved)
+    return tl::unexpected(saved.error());
   return get_view(context, request);
 }
 

@@ -44,17 +44,17 @@ Result<Response> list_surface_images(const RouteContext& context, const Request&
   return response;
 }
 
-// All but the picture, from the query.
+// Reads everything except the picture from the query.
 Result<SurfaceImage> new_surface_image(const Request& request) {
   SurfaceImage image;
   image.name = request.query_or("name", {});
   if (image.name.empty() || image.name.size() > 200)
-    return fail(ErrorCode::invalid, "Name missing", "A surface image has a name of 1 to 200 bytes.",
-                "name");
+    return fail(ErrorCode::invalid, "Name missing",
+                "The name of a surface image must have 1 to 200 bytes.", "name");
   image.description = request.query_or("description", {});
   const std::string visible = request.query_or("visible", "false");
   if (visible != "true" && visible != "false")
-    return fail(ErrorCode::invalid, "Neither true nor false", "`visible` is true or false.",
+    return fail(ErrorCode::invalid, "Not true or false", "`visible` must be true or false.",
                 "visible");
   image.visible = visible == "true";
   return image;
@@ -65,18 +65,20 @@ Result<Response> create_surface_image(const RouteContext& context, const Request
   const auto body = MappedFile::open(request.body_file);
   if (!body || body->bytes().empty())
     return fail(ErrorCode::malformed, "Empty body",
-                "Send a picture as the body: JPEG, PNG, TIFF, WebP, BMP or TGA.", "body");
+                "The request has no body. Send a picture as the body: JPEG, PNG, TIFF, WebP, "
+                "BMP or TGA.",
+                "body");
   std::span<const std::uint8_t> picture = body->bytes();
   const auto info = STRATA_TRY(inspect_picture(picture));
   image.width = info.width;
   image.height = info.height;
   const bool stays = is_surface_image_format(info.format);
   image.media_type = media_type(stays ? info.format : PictureFormat::png);
-  // Whole, so that what cannot be shown is told now.
+  // Decodes the whole picture, so that a picture that cannot be shown is refused now.
   const auto memory = STRATA_TRY(context.rooms.memory().reserve(
       std::uint64_t{stays ? 4u : 8u} * static_cast<std::uint64_t>(info.width) *
           static_cast<std::uint64_t>(info.height),
-      "the picture of a new look"));
+      "the picture of a new surface image"));
   auto decoded = STRATA_TRY(decode_picture(picture));
   std::vector<std::uint8_t> as_png;
   if (!stays) {
@@ -135,7 +137,7 @@ Result<Response> surface_image_picture(const RouteContext& context, const Reques
     auto number = STRATA_TRY(parse_integer(text, 16, 1024, "thumbnail"));
     side = static_cast<int>(number);
   }
-  // In full the pictures of a scan are as good as its files.
+  // In full size a picture of a scan equals the scan's file.
   if (!side) STRATA_TRY(check_source_download(request, model));
   auto bytes = STRATA_TRY(context.store.surface_images().picture(image.id));
   if (!side) return bytes_response(std::move(bytes), image.media_type);

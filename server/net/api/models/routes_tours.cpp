@@ -1,4 +1,4 @@
-// Tours of a model. Everybody reads them, curators make and change them.
+// Tours of a model. Everybody reads them; curators make and change them.
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
@@ -33,12 +33,12 @@ Result<Found> find_to_change(const RouteContext& context, const Request& request
   return found;
 }
 
-// An answer is made within the transaction of what it tells, so that what its tour names is read
-// before.
-Response answer_of(nlohmann::json told, const NamedPart& now, int status) {
-  told.update(
+// The answer is made within the transaction that stores the tour, so `tour_json` with the names is
+// read before it.
+Response answer_of(nlohmann::json tour_json, const NamedPart& now, int status) {
+  tour_json.update(
       {{"id", now.id}, {"slug", now.slug}, {"time", utc_text(now.time)}, {"version", now.version}});
-  return json_response(told, status).with("ETag", etag_of(now.version));
+  return json_response(tour_json, status).with("ETag", etag_of(now.version));
 }
 
 Result<Response> list_tours(const RouteContext& context, const Request& request) {
@@ -58,16 +58,16 @@ Result<Response> list_tours(const RouteContext& context, const Request& request)
 
 Result<Response> get_tour(const RouteContext& context, const Request& request) {
   const auto found = STRATA_TRY(find_tour(context, request));
-  const auto told =
-      to_json(context, found.tour, request.role(), told_name(request, found.tour.user));
-  if (!told) return tl::unexpected(told.error());
-  return with_etag(json_response(*told), request, found.tour.version);
+  const auto tour_json =
+      to_json(context, found.tour, request.role(), visible_name(request, found.tour.user));
+  if (!tour_json) return tl::unexpected(tour_json.error());
+  return with_etag(json_response(*tour_json), request, found.tour.version);
 }
 
 Result<Response> create_tour(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::TourCreate>(request));
   const auto model = STRATA_TRY(stored_model(context, request));
-  auto stops = STRATA_TRY(kept_stops(context, model, request.role(), body.stops));
+  auto stops = STRATA_TRY(stored_stops(context, model, request.role(), body.stops));
   NamedPart tour;
   tour.model_id = model.id;
   tour.name = body.name;
@@ -76,9 +76,9 @@ Result<Response> create_tour(const RouteContext& context, const Request& request
       {"languages", body.languages}, {"idle_s", body.idle_s}, {"stops", std::move(stops)}};
   tour.user = request.user();
   STRATA_TRY(check_languages(tour.content, true));
-  const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
+  const auto tour_json = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
   const auto answer = [&](const NamedPart& made) {
-    return answer_of(told, made, 201)
+    return answer_of(tour_json, made, 201)
         .with("Location", "/api/v1/models/" + model.slug + "/tours/" + made.slug);
   };
   const auto made = STRATA_TRY(
@@ -95,12 +95,12 @@ Result<Response> change_tour(const RouteContext& context, const Request& request
   if (body.languages) tour.content["languages"] = *body.languages;
   if (body.idle_s) tour.content["idle_s"] = *body.idle_s;
   if (body.stops) {
-    auto stops = STRATA_TRY(kept_stops(context, found.model, request.role(), *body.stops));
+    auto stops = STRATA_TRY(stored_stops(context, found.model, request.role(), *body.stops));
     tour.content["stops"] = std::move(stops);
   }
   STRATA_TRY(check_languages(tour.content, body.stops.has_value()));
-  const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
-  const auto answer = [&](const NamedPart& now) { return answer_of(told, now, 200); };
+  const auto tour_json = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
+  const auto answer = [&](const NamedPart& now) { return answer_of(tour_json, now, 200); };
   const auto changed = STRATA_TRY(
       context.store.tours().update(tour, idempotent_response<NamedPart>(request, answer)));
   return answer(changed);

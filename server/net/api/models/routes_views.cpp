@@ -1,5 +1,5 @@
-// Named views of a model. Everybody reads them, annotators make them; what one made one changes
-// oneself, and curators may.
+// Saved views of a model. Everybody reads them, and annotators make them. An author can change his
+// or her own views; a curator can change any.
 #include <algorithm>
 #include <cmath>
 
@@ -27,15 +27,15 @@ namespace {
 using protocol::ViewEventEvent;
 using store::NamedPart;
 
-// What the body says is shown, as it is kept: with ids, since slugs change.
-template <class Asked>
-Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked,
+// Converts the shown settings of the body to their stored form, with ids, since slugs change.
+template <class ViewBody>
+Result<nlohmann::json> content_of(const room::Room& room, const ViewBody& body,
                                   const Camera& camera) {
   STRATA_TRY(validate(camera));
-  const auto shown = asked.layers.value_or(std::vector<protocol::LayerOverride>{});
-  const auto settings = STRATA_TRY(shown_settings(room, asked));
+  const auto shown = body.layers.value_or(std::vector<protocol::LayerOverride>{});
+  const auto settings = STRATA_TRY(shown_settings(room, body));
   nlohmann::json content{{"camera", protocol::write_core(camera)},
-                         {"layers", kept_layers(shown, settings)},
+                         {"layers", stored_layers(shown, settings)},
                          {"light", protocol::write_core(settings.light)}};
   if (settings.images) {
     content["looks"] = nlohmann::json::array();
@@ -45,7 +45,7 @@ Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked,
   return content;
 }
 
-// The model as who asks sees it, and one of its views.
+// The model as the caller sees it, and one of its views.
 struct Found {
   std::shared_ptr<room::Room> room;
   NamedPart view;
@@ -61,9 +61,9 @@ Result<Found> find_own_view(const RouteContext& context, const Request& request)
   auto found = STRATA_TRY(find_view(context, request));
   STRATA_TRY(check_if_match(request, found.view.version));
   if (found.view.user != request.user() && request.role() < Role::curator)
-    return fail(ErrorCode::forbidden, "Not yours",
+    return fail(ErrorCode::forbidden, "Not allowed",
                 "Only " + found.view.user +
-                    " and curators change this view. Keep one of your own under another name.");
+                    " and curators can change this view. Save your own view under another name.");
   return found;
 }
 
@@ -98,7 +98,7 @@ Result<Response> get_view(const RouteContext& context, const Request& request) {
                    found.view.version);
 }
 
-// What the view shows today, to who asks.
+// Returns a picture of the view's current content, as the caller sees it.
 Result<Response> view_picture(const RouteContext& context, const Request& request) {
   std::optional<int> side;
   if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {
@@ -107,22 +107,22 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
   }
   const std::string format = request.query_or("format", "jpeg");
   if (format != "jpeg" && format != "png")
-    return fail(ErrorCode::invalid, "Unknown format", "A picture of a view is 'jpeg' or 'png'.",
-                "format");
+    return fail(ErrorCode::invalid, "Unknown format",
+                "The format of a picture must be 'jpeg' or 'png'.", "format");
   const auto found = STRATA_TRY(find_view(context, request));
-  const auto kept = STRATA_TRY(as_asked(context, request, found.view, *found.room));
-  auto shown = shown_settings(*found.room, kept);
+  const auto saved = STRATA_TRY(as_view_create(context, request, found.view, *found.room));
+  auto shown = shown_settings(*found.room, saved);
   if (!shown) return tl::unexpected(shown.error());
-  room::PictureRequest wanted;
-  Camera camera = kept.camera;
+  room::PictureRequest picture_request;
+  Camera camera = saved.camera;
   if (side) {
     const double scale = std::min(1.0, double(*side) / std::max(camera.width, camera.height));
     camera.width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
     camera.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
   }
-  wanted.shown = std::move(*shown);
+  picture_request.shown = std::move(*shown);
   const auto sequence = found.room->edits().sequence();
-  auto response = picture_response(*found.room, wanted, camera, format == "png");
+  auto response = picture_response(*found.room, picture_request, camera, format == "png");
   if (!response) return response;
   add_sequences(*response, sequence, found.room->edits().durable_sequence());
   return response;

@@ -1,4 +1,4 @@
-// What was done in a project.
+// The activity of a project.
 #include "domain/people/role.h"
 #include "net/api/addressed.h"
 #include "net/http/page.h"
@@ -23,15 +23,17 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   if (const auto before = request.query.find("before"); before != request.query.end()) {
     query.before = place_of(before->second);
     if (!query.before)
-      return fail(ErrorCode::invalid, "No such page",
-                  "`before` is `next` of an answer: 1777896570120000-7, for example.", "before");
+      return fail(
+          ErrorCode::invalid, "Page not found",
+          "`before` must be the value of `next` from an answer, for example 1777896570120000-7.",
+          "before");
   }
   const auto project = STRATA_TRY(stored_project(context, request));
   if (const auto ref = request.query.find("model"); ref != request.query.end()) {
     const auto model = context.store.models().find(ref->second);
     if (!model && model.error().code != ErrorCode::not_found) return tl::unexpected(model.error());
     if (!model || model->project_id != project.id)
-      return fail(ErrorCode::invalid, "No such model",
+      return fail(ErrorCode::invalid, "Model not found",
                   "The project has no model `" + ref->second.substr(0, 100) + "`.", "model");
     query.model = model->id;
   }
@@ -45,15 +47,15 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   return json_response(answer);
 }
 
-// From where a reader comes back, or from now.
+// Streams the events after `Last-Event-ID`, or from now.
 Result<Response> listen(const RouteContext& context, const Request& request) {
   const auto model = STRATA_TRY(stored_model(context, request));
   std::optional<store::ActivityPlace> after;
   if (const auto text = request.header("last-event-id"); !text.empty()) {
     after = place_of(text);
     if (!after)
-      return fail(ErrorCode::malformed, "No such event",
-                  "`Last-Event-ID` is the id of an event: 1777896570120000-7, for example.",
+      return fail(ErrorCode::malformed, "Event not found",
+                  "`Last-Event-ID` must be the id of an event, for example 1777896570120000-7.",
                   "Last-Event-ID");
   }
   Response response;

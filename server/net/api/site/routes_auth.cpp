@@ -1,4 +1,4 @@
-// Signing in and out, and what people change of themselves.
+// Signing in and out, and the changes that users make to their own account.
 #include <memory>
 
 #include "core/text/timestamp.h"
@@ -27,7 +27,8 @@ namespace strata::net {
 Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role) {
   const auto person = context.store.accounts().find(user);
   if (!person && person.error().code == ErrorCode::not_found)
-    return fail(ErrorCode::unauthenticated, "Not signed in", "This account was closed meanwhile.");
+    return fail(ErrorCode::unauthenticated, "Not signed in",
+                "Somebody closed this account in the meantime.");
   if (!person) return tl::unexpected(person.error());
   nlohmann::json me{{"user", person->name},
                     {"full_name", person->full_name},
@@ -41,7 +42,8 @@ Result<Response> signed_in(const RouteContext& context, const Request& request,
                            const std::string& session) {
   auto principal = STRATA_TRY(context.auth.identify_token(session));
   if (!principal)
-    return fail(ErrorCode::unauthenticated, "Not signed in", "This account was closed meanwhile.");
+    return fail(ErrorCode::unauthenticated, "Not signed in",
+                "Somebody closed this account in the meantime.");
   auto response = who_is_signed_in(context, principal->user, principal->role);
   if (response)
     response->with("Set-Cookie", Authenticator::set_cookie(session, needs_secure_cookie(request)));
@@ -50,11 +52,12 @@ Result<Response> signed_in(const RouteContext& context, const Request& request,
 
 Result<void> check_no_script(const Request& request) {
   if (!request.principal->is_script) return {};
-  return fail(ErrorCode::forbidden, "Not for scripts",
-              "A token for scripts does nothing to accounts. Sign in with name and password.");
+  return fail(ErrorCode::forbidden, "Not allowed for scripts",
+              "A token for scripts cannot change accounts. Sign in with your user name and "
+              "password.");
 }
 
-std::string told_name(const Request& request, const std::string& user) {
+std::string visible_name(const Request& request, const std::string& user) {
   return request.principal->kiosk ? std::string() : user;
 }
 
@@ -80,7 +83,7 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
 }
 
 Result<Response> sign_out(const RouteContext& context, const Request& request) {
-  // A script's token stays valid: it is revoked by name, not by using it here.
+  // A script's token stays valid: it is revoked by name, not by a sign-out.
   if (request.principal->by_cookie) {
     const std::string session = Authenticator::secret_of(request);
     STRATA_TRY(context.auth.end_session(session));
@@ -104,14 +107,14 @@ Result<Response> change_password(const RouteContext& context, LoginThrottle& gat
   STRATA_TRY(store::check_password(body.password, request.user(), "password"));
   const auto hash = STRATA_TRY(context.store.accounts().password_of(request.user()));
   if (!hash.empty()) {
-    // Whoever sits at somebody else's browser guesses no faster than from anywhere.
+    // Limits the guesses of a person at another user's browser as much as those at the sign-in.
     STRATA_TRY(gate.pass(address_of(request), request.user()));
     const auto fits =
         body.current ? store::password_fits(hash, *body.current) : Result<bool>(false);
     if (!fits) return tl::unexpected(fits.error());
     if (!*fits)
-      return fail(ErrorCode::invalid, "Password does not fit",
-                  "This is not the password that you have now.", "current");
+      return fail(ErrorCode::invalid, "Wrong current password",
+                  "The current password is wrong. Enter it again.", "current");
     gate.was_right(address_of(request), request.user());
   }
   const auto chosen = STRATA_TRY(store::hash_password(body.password));
@@ -202,8 +205,8 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
   if (body.role) role = static_cast<Role>(static_cast<int>(*body.role));
   if (role > own)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "Your highest role " + std::string(only ? "there " : "") + "is " +
-                    std::string(name(own)) + ": a token of yours can do no more.",
+                "Your role " + std::string(only ? "there " : "") + "is " + std::string(name(own)) +
+                    ". A token cannot have a higher role than you.",
                 "role");
   const auto made =
       context.store.tokens().create(TokenKind::script, request.user(), role,
@@ -217,7 +220,7 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
 
 void add_auth_routes(Router& router, const RouteContext& context) {
   auto gate = std::make_shared<LoginThrottle>();
-  // What people change of themselves.
+  // Changes that users make to their own account.
   const auto add = [&](Method method, const std::string& pattern, auto answer,
                        const std::vector<std::string>& query = {}) {
     const bool has_body = method == Method::post || method == Method::patch;

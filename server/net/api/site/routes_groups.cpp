@@ -1,4 +1,4 @@
-// Groups of people, and the roles that projects give them.
+// Groups of users, and their roles in projects.
 #include "domain/people/role.h"
 #include "net/api/addressed.h"
 #include "net/api/route_help.h"

@@ -11,8 +11,8 @@ Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& req
   auto id = parse_integer(request.param("job"), 1, INT64_MAX, "job");
   auto status = id ? context.jobs.status(JobId(*id)) : std::nullopt;
   if (!status)
-    return fail(ErrorCode::not_found, "No such job",
-                "There is no job of this id, or it ended long ago.", "job");
+    return fail(ErrorCode::not_found, "Job not found",
+                "There is no job with this id, or it ended long ago.", "job");
   return *status;
 }
 
@@ -20,15 +20,15 @@ bool is_own(const jobs::JobStatus& job, const Principal& who) {
   return !job.user.empty() && job.user == who.user;
 }
 
-// What a job reports, or why it failed, may name layers that only curators see, who start such
-// jobs. A file is for who asked for it: it shows what they see.
+// The report or problem of a job may name layers that only curators see; curators start such jobs.
+// Only the user who requested a file gets it: it may contain data that others cannot see.
 nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
   if (job.result && !is_own(job, who)) job.result->file.reset();
   if (!sees(who.roles.in(job.project), Visibility::curators) && !is_own(job, who)) {
     if (job.result) job.result->report = nullptr;
     if (job.problem)
-      job.problem =
-          Error{job.problem->code, job.problem->title, "Curators of the project read why.", {}};
+      job.problem = Error{
+          job.problem->code, job.problem->title, "Curators of the project can see the reason.", {}};
   }
   return net::to_json(job);
 }
@@ -70,11 +70,12 @@ void add_job_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto job = STRATA_TRY(find_job(context, request));
                 if (request.role() < Role::curator && !is_own(job, *request.principal))
-                  return fail(ErrorCode::forbidden, "Not yours",
-                              "Only who started a job and curators cancel it.", "job");
+                  return fail(ErrorCode::forbidden, "Not allowed",
+                              "Only the person who started a job, and curators, can cancel it.",
+                              "job");
                 if (is_over(job) || !context.jobs.cancel(job.id))
-                  return fail(ErrorCode::conflict, "Job is over",
-                              "The job has ended; there is nothing to cancel.", "job");
+                  return fail(ErrorCode::conflict, "Job has ended",
+                              "The job has ended, so it cannot be canceled.", "job");
                 auto now = context.jobs.status(job.id);
                 return json_response(job_json(now.value_or(job), *request.principal));
               })});
@@ -83,14 +84,15 @@ void add_job_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto job = STRATA_TRY(find_job(context, request));
                 if (!is_over(job) && is_own(job, *request.principal))
-                  return fail(ErrorCode::conflict, "Not done yet",
-                              "The job is still at work: ask again when it is done.", "job");
+                  return fail(ErrorCode::conflict, "Job not finished",
+                              "The job is still running. Try again when it has finished.", "job");
                 if (!is_own(job, *request.principal) || !job.result || !job.result->file)
-                  return fail(ErrorCode::not_found, "No such file",
-                              "This job made no file for you, or it is kept no longer.", "job");
+                  return fail(ErrorCode::not_found, "File not found",
+                              "This job has no file for you, or the server has deleted the file.",
+                              "job");
                 return file_response(job.result->file);
               }),
-              // A job makes one file, and its number is never given again.
+              // A job makes one file, and its number is never used again.
               .state = [](const Request& request) { return std::optional(request.param("job")); }});
 }
 

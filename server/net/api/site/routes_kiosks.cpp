@@ -1,4 +1,4 @@
-// Links for kiosks: what curators do with them, and what a kiosk asks.
+// Links for kiosks: the requests of curators, and those of a kiosk.
 #include <memory>
 
 #include "core/text/timestamp.h"
@@ -94,15 +94,15 @@ Result<Response> reload_kiosk(const RouteContext& context, const Request& reques
   return json_response(to_json(kiosk));
 }
 
-// --- from the other side of the link
+// --- requests of kiosks
 
 Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool wants_reload) {
   const auto tour =
       STRATA_TRY(context.store.tours().find(kiosk.model_id, to_string(kiosk.tour_id)));
-  auto told = STRATA_TRY(to_json(context, tour, Role::viewer, {}));
-  nlohmann::json json{{"id", kiosk.id},           {"name", kiosk.name},
-                      {"project", kiosk.project}, {"model", kiosk.model},
-                      {"tour", std::move(told)},  {"wants_reload", wants_reload}};
+  auto tour_json = STRATA_TRY(to_json(context, tour, Role::viewer, {}));
+  nlohmann::json json{
+      {"id", kiosk.id},       {"name", kiosk.name},           {"project", kiosk.project},
+      {"model", kiosk.model}, {"tour", std::move(tour_json)}, {"wants_reload", wants_reload}};
   if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
   return json_response(json).with("Cache-Control", "no-store");
 }
@@ -113,8 +113,8 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
   STRATA_TRY(gate.pass(address, {}));
   const auto kiosk = STRATA_TRY(context.store.kiosks().find(body.link));
   if (!kiosk)
-    return fail(ErrorCode::unauthenticated, "Link not valid",
-                "This link is unknown, expired or revoked. A curator makes a new one.", "link");
+    return fail(ErrorCode::unauthenticated, "Link is not valid",
+                "This link is unknown, expired or revoked. Ask a curator for a new link.", "link");
   gate.was_right(address, {});
   STRATA_TRY(context.store.kiosks().seen(kiosk->id, true));
   auto response = self(context, *kiosk, false);
@@ -126,11 +126,11 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
 
 Result<Response> kiosk_self(const RouteContext& context, const Request& request) {
   if (!request.principal->kiosk)
-    return fail(
-        ErrorCode::forbidden, "Not a kiosk",
-        "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
+    return fail(ErrorCode::forbidden, "Not a kiosk",
+                "Only kiosks can read this. Send the cookie of a kiosk with `as=kiosk`, or its "
+                "bearer token.");
   const auto kiosk = STRATA_TRY(context.store.kiosks().kiosk(request.principal->kiosk->id));
-  // That it was there is only remembered: it gets its answer also where nothing can be written.
+  // Only records the visit, so a kiosk gets its answer even while the database refuses writes.
   (void)context.store.kiosks().seen(kiosk.id, false);
   return self(context, kiosk, kiosk.wants_reload);
 }

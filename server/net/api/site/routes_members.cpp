@@ -1,4 +1,4 @@
-// Who may do more in a project than everywhere, and who sees it.
+// The members of a project, and the people who can see it.
 #include <set>
 
 #include "domain/people/role.h"
@@ -50,7 +50,7 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   return response;
 }
 
-// Those who may not sign in see nothing.
+// Leaves out people who may not sign in.
 Result<Response> list_people(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
   const auto project = STRATA_TRY(stored_project(context, request));

@@ -1,4 +1,4 @@
-// Accounts: who there is, what they may do, and how they come in.
+// Accounts, their roles and invitations.
 #include "core/text/percent.h"
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
@@ -54,14 +54,14 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   return response;
 }
 
-Result<Role> usable_role(const Request& request, std::optional<protocol::Role> asked,
+Result<Role> usable_role(const Request& request, std::optional<protocol::Role> requested,
                          Role otherwise) {
-  const Role role = asked ? static_cast<Role>(static_cast<int>(*asked)) : otherwise;
+  const Role role = requested ? static_cast<Role>(static_cast<int>(*requested)) : otherwise;
   if (role == Role::owner)
-    return fail(ErrorCode::invalid, "One owner",
-                "A server has one owner. Make the person administrator.", "role");
+    return fail(ErrorCode::invalid, "Only one owner",
+                "A server can have only one owner. Choose the role administrator instead.", "role");
   if (role > request.principal->role)
-    return fail(ErrorCode::forbidden, "Not allowed", "Nobody gives a role above their own.",
+    return fail(ErrorCode::forbidden, "Not allowed", "You cannot assign a role above your own.",
                 "role");
   return role;
 }
@@ -70,7 +70,7 @@ Result<Response> with_invitation(const RouteContext& context, const Person& pers
   const auto link = context.store.tokens().create_link(TokenKind::invitation, person.name,
                                                        store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
-  // Behind a #, so that it is in no log: browsers keep that to themselves.
+  // After a #: browsers do not send that part, so no log contains it.
   return json_response({{"path", "/join#" + link->secret},
                         {"expires", utc_text(link->token.expires.value_or(link->token.created))},
                         {"user", to_json(person)}},
@@ -89,19 +89,20 @@ Result<Response> invite(const RouteContext& context, const Request& request) {
   return response;
 }
 
-// Whom the caller may change: not themselves, so that no server is left without who runs it, and
-// not the owner.
+// Returns the account that the caller may change. Users cannot change themselves here, so that a
+// server keeps an administrator, and nobody can change the owner.
 Result<Person> somebody_else(const RouteContext& context, const Request& request) {
   auto person = STRATA_TRY(context.store.accounts().find(request.param("user")));
   if (person.name == request.user())
-    return fail(ErrorCode::conflict, "That is you",
-                "Nobody changes their own account here. Ask another administrator.");
+    return fail(ErrorCode::conflict, "Your own account",
+                "You cannot change your own account here. Ask another administrator.");
   if (person.role == Role::owner)
-    return fail(ErrorCode::conflict, "The owner", "The owner's account is changed by nobody else.");
-  // Otherwise they could let themselves in as one another.
+    return fail(ErrorCode::conflict, "Account of the owner",
+                "Only the owner can change the owner's account.");
+  // Otherwise one administrator could sign in as another.
   if (person.role == Role::administrator && request.principal->role < Role::owner)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "Only the owner changes accounts of administrators.");
+                "Only the owner can change accounts of administrators.");
   return person;
 }
 
@@ -120,25 +121,25 @@ Result<Response> change_person(const RouteContext& context, const Request& reque
 
 Result<Response> delete_person(const RouteContext& context, const Request& request) {
   const auto person = STRATA_TRY(somebody_else(context, request));
-  // Out first, so that nothing more is written under the name.
+  // Disables the account first, so that nobody writes under the name afterwards.
   const auto out =
       context.store.accounts().update(person.id, {.full_name = {}, .role = {}, .disabled = true});
   if (!out) return tl::unexpected(out.error());
   context.auth.forget();
   context.live_sockets.close_user(person.name, kClosePolicy, "your account was deleted");
-  // What they drew last may be on its way to the journal still.
+  // The last strokes of the person may still be on their way to the journal.
   STRATA_TRY(context.rooms.settle());
   STRATA_TRY(context.store.accounts().remove(person.name));
   return empty_response(204);
 }
 
-// --- from the other side of the link
+// --- requests of invited people
 
 Result<Person> invited_by(const RouteContext& context, const std::string& invitation) {
   const auto principal = STRATA_TRY(context.store.tokens().find(invitation));
   if (!principal || principal->kind != TokenKind::invitation)
-    return fail(ErrorCode::unauthenticated, "Link not valid",
-                "This invitation was used, or is too old. Ask for a new one.", "invitation");
+    return fail(ErrorCode::unauthenticated, "Link is not valid",
+                "This invitation has been used or has expired. Ask for a new one.", "invitation");
   return context.store.accounts().find(principal->user);
 }
 
@@ -156,8 +157,8 @@ Result<Response> accept_invitation(const RouteContext& context, const Request& r
   const auto session = STRATA_TRY(context.store.accounts().accept_invitation(
       body.invitation, hash, body.full_name, kSessionLifetime, agent_of(request)));
   if (!session)
-    return fail(ErrorCode::unauthenticated, "Link not valid", "This invitation was used meanwhile.",
-                "invitation");
+    return fail(ErrorCode::unauthenticated, "Link is not valid",
+                "Somebody used this invitation in the meantime. Ask for a new one.", "invitation");
   context.auth.forget();
   context.live_sockets.close_user(person.name, kClosePolicy, "the password was changed");
   return signed_in(context, request, *session);

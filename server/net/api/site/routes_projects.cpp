@@ -12,8 +12,8 @@
 namespace strata::net {
 namespace {
 
-// Where a role higher than the one everywhere is by groups, and not as high of the person's own,
-// these. A token may do less than they give.
+// Returns the groups that give `who` a role in a project above the general role, where the person's
+// own role is lower. A token may allow less than these roles.
 Result<std::map<ProjectId, nlohmann::json>> groups_that_give(const RouteContext& context,
                                                              const Principal& who) {
   std::map<ProjectId, nlohmann::json> groups;
@@ -70,9 +70,10 @@ Result<Response> change_project(const RouteContext& context, const Request& requ
   auto project = STRATA_TRY(stored_project(context, request));
   STRATA_TRY(check_if_match(request, project.version));
   auto body = STRATA_TRY(body_of<protocol::ProjectPatch>(request));
-  // Curators say how work goes on in their project, not what it is called.
+  // Curators can change the work settings of their project, but not its name and description.
   if ((body.name || body.description) && request.role() < Role::administrator)
-    return fail(ErrorCode::forbidden, "Not allowed", "Administrators name and describe projects.",
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Only administrators can change the name and the description of a project.",
                 body.name ? "name" : "description");
   if (body.require_if_match) project.require_if_match = *body.require_if_match;
   if (body.name) project.name = *body.name;

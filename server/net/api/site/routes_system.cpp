@@ -20,12 +20,12 @@ Response readiness(const RouteContext& context) {
   nlohmann::json reasons = nlohmann::json::array();
   if (!context.store.ready()) reasons.push_back("The database does not answer.");
   if (!context.renderer.ready())
-    reasons.push_back("The graphics context was lost and cannot be replaced yet.");
+    reasons.push_back("The server lost the graphics context and cannot restore it yet.");
   const bool ready = reasons.empty();
   return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
 }
 
-// With the tag of its bytes; 304 to a client that has them.
+// Tags the response with a hash of its bytes; 304 to a client that has them.
 Response revalidated(Response response, const Request& request) {
   const auto tag = tag_of_body(response).value_or("");
   response.with("ETag", tag).with("Cache-Control", "no-cache");
@@ -36,8 +36,8 @@ Response revalidated(Response response, const Request& request) {
 Result<Response> contract(const RouteContext& context, const Request& request) {
   std::ifstream file(context.options.protocol_dir / "openapi.json", std::ios::binary);
   if (!file)
-    return fail(ErrorCode::unavailable, "Contract missing",
-                "openapi.json is not part of this installation.");
+    return fail(ErrorCode::unavailable, "API description missing",
+                "This installation does not contain openapi.json.");
   std::ostringstream text;
   text << file.rdbuf();
   return revalidated(text_response(std::move(text).str(), "application/json"), request);

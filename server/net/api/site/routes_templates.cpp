@@ -35,7 +35,7 @@ Result<Response> list_templates(const RouteContext& context, const Request& requ
   const auto& templates = context.templates.all();
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(templates.size());
-  // They are those that the server began with, in the order of then.
+  // The list is fixed at the start of the server, and so is its order.
   std::int64_t place = 0;
   const auto part = slice_by(page, templates, [&place](const auto&) { return NumberKey{place++}; });
   if (!part) return tl::unexpected(part.error());
@@ -52,48 +52,49 @@ Response answer_with(const std::vector<Table>& tables, const std::vector<Layer>&
   return json_response(made, 201);
 }
 
-// The layers as they are to be made, of tables by their places in the template.
-struct WishedLayer {
+// A layer to make, and the position of its table in the template.
+struct RequestedLayer {
   Layer layer;
   std::size_t table = 0;
 };
-Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, const room::Room& room,
-                                               const std::optional<std::string>& language) {
+Result<std::vector<RequestedLayer>> requested_layers(const protocol::Template& of,
+                                                     const room::Room& room,
+                                                     const std::optional<std::string>& language) {
   const Model model = room.model();
   const auto others = room.layers().all();
   int order = app::order_on_top(others);
-  std::vector<WishedLayer> wished;
-  for (const protocol::TemplateLayer& told : of.layers) {
-    WishedLayer next;
+  std::vector<RequestedLayer> requested;
+  for (const protocol::TemplateLayer& template_layer : of.layers) {
+    RequestedLayer next;
     next.layer.model_id = model.id;
-    next.layer.name = app::name_in(told.name, told.labels, language);
-    next.layer.labels = app::labels_with(told.name, told.labels);
+    next.layer.name = app::name_in(template_layer.name, template_layer.labels, language);
+    next.layer.labels = app::labels_with(template_layer.name, template_layer.labels);
     const std::string plain = search_text(next.layer.name);
     for (const Layer& other : others)
       if (search_text(other.name) == plain)
         return fail(
-            ErrorCode::conflict, "Name taken",
+            ErrorCode::conflict, "Name already used",
             "The model has a layer \"" + other.name +
-                "\" already. Rename or delete it first, or use the template without a model.",
+                "\". Rename or delete that layer first, or use the template without a model.",
             "model");
-    auto slug = STRATA_TRY(slug_of({}, told.name));
+    auto slug = STRATA_TRY(slug_of({}, template_layer.name));
     next.layer.slug = slug;
     next.layer.kind = LayerKind::database;
-    next.layer.type = *parse_value_type(protocol::name(told.type));
+    next.layer.type = *parse_value_type(protocol::name(template_layer.type));
     next.layer.resolution = std::max(model.default_resolution, model.atlas.lowest_resolution);
     next.layer.order = order++;
     next.table = static_cast<std::size_t>(
         std::find_if(of.tables.begin(), of.tables.end(),
-                     [&](const auto& table) { return table.slug == told.table; }) -
+                     [&](const auto& table) { return table.slug == template_layer.table; }) -
         of.tables.begin());
     next.layer.palette =
         of.tables.at(next.table).terms ? terms_palette({}) : default_palette(next.layer.type, true);
-    wished.push_back(std::move(next));
+    requested.push_back(std::move(next));
   }
-  return wished;
+  return requested;
 }
 
-// Newest first, since columns of later tables name earlier ones.
+// Newest first, since columns of later tables name earlier tables.
 void take_back(const RouteContext& context, const std::vector<Table>& tables) {
   for (auto table = tables.rbegin(); table != tables.rend(); ++table)
     if (auto gone = context.store.tables().remove(table->id);
@@ -104,7 +105,7 @@ void take_back(const RouteContext& context, const std::vector<Table>& tables) {
 
 Result<std::vector<Layer>> make_layers(const RouteContext& context, const Request& request,
                                        const std::shared_ptr<room::Room>& room,
-                                       std::vector<WishedLayer> wished,
+                                       std::vector<RequestedLayer> requested,
                                        const std::vector<Table>& tables) {
   app::NewLayers layers(room, context.edits, request.author());
   std::vector<Layer> made;
@@ -112,7 +113,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
     layers.take_back();
     return tl::unexpected(problem);
   };
-  for (WishedLayer& next : wished) {
+  for (RequestedLayer& next : requested) {
     next.layer.table = tables.at(next.table).id;
     auto created = layers.add(std::move(next.layer),
                               [](const Layer& layer) -> Result<Layer> { return layer; });
@@ -144,19 +145,19 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
                 "There is no template `" + request.param("template").substr(0, 100) + "`.");
   auto tables = STRATA_TRY(app::new_tables(*of, project.id, body.language));
   std::shared_ptr<room::Room> room;
-  std::vector<WishedLayer> wished;
+  std::vector<RequestedLayer> requested;
   if (body.model) {
     auto opened = context.rooms.open(*body.model, request.role());
     if (!opened && opened.error().code != ErrorCode::not_found)
       return tl::unexpected(opened.error());
     if (!opened || (*opened)->model().project_id != project.id)
-      return fail(ErrorCode::invalid, "No such model",
+      return fail(ErrorCode::invalid, "Model not found",
                   "The project has no model `" + *body.model + "`.", "model");
     room = std::move(*opened);
-    auto layers = STRATA_TRY(wished_layers(*of, *room, body.language));
-    wished = std::move(layers);
+    auto layers = STRATA_TRY(requested_layers(*of, *room, body.language));
+    requested = std::move(layers);
   }
-  // The answer is kept with what is made last.
+  // The last creation stores the idempotent answer.
   const auto tables_alone = [](const std::vector<store::TableChange>& changes) {
     std::vector<Table> all;
     for (const auto& change : changes) all.push_back(change.table);
@@ -164,17 +165,18 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
   };
   auto changes = STRATA_TRY(context.store.tables().create_several(
       tables, false, request.user(), "template",
-      wished.empty() ? idempotent_response<std::vector<store::TableChange>>(request, tables_alone)
-                     : store::IdempotentResponse<std::vector<store::TableChange>>{
-                           .key = {}, .make = {}, .user = request.user()}));
+      requested.empty()
+          ? idempotent_response<std::vector<store::TableChange>>(request, tables_alone)
+          : store::IdempotentResponse<std::vector<store::TableChange>>{
+                .key = {}, .make = {}, .user = request.user()}));
   std::vector<Table> made;
   for (const auto& change : changes) {
     if (!change.problems.empty()) return tl::unexpected(change.problems.front().problem);
     made.push_back(change.table);
   }
   std::vector<Layer> layers;
-  if (!wished.empty()) {
-    auto added = make_layers(context, request, room, std::move(wished), made);
+  if (!requested.empty()) {
+    auto added = make_layers(context, request, room, std::move(requested), made);
     if (!added) {
       take_back(context, made);
       return tl::unexpected(added.error());

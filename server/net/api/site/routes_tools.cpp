@@ -46,7 +46,8 @@ Result<Response> list_tools(const RouteContext& context, const Request& request)
 Result<std::string> name_of(const Request& request) {
   std::string name = request.query_or("name", {});
   if (name.empty() || name.size() > kMaxToolNameLength)
-    return fail(ErrorCode::invalid, "Name missing", "A tool has a name of 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Name missing", "The name of a tool must have 1 to 200 bytes.",
+                "name");
   return name;
 }
 
@@ -56,7 +57,7 @@ Result<std::optional<ShapePart>> part_of(const Request& request) {
   if (part == "opaque") return ShapePart::opaque;
   if (part == "light") return ShapePart::light;
   if (part == "dark") return ShapePart::dark;
-  return fail(ErrorCode::invalid, "Unknown part", "`part` is opaque, light or dark.", "part");
+  return fail(ErrorCode::invalid, "Unknown part", "`part` must be opaque, light or dark.", "part");
 }
 
 Result<Response> create_tool(const RouteContext& context, const Request& request) {
@@ -67,7 +68,9 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
   const auto body = MappedFile::open(request.body_file);
   if (!body || body->bytes().empty())
     return fail(ErrorCode::malformed, "Empty body",
-                "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.", "body");
+                "The request has no body. Send a picture as the body: PNG, JPEG, TIFF, WebP, "
+                "BMP or TGA.",
+                "body");
   const auto picture = decode_picture(body->bytes(), kMaxPictureSide_px);
   if (!picture) return tl::unexpected(picture.error());
   const auto shape = STRATA_TRY(shape_of(*picture, part));
@@ -82,12 +85,12 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
   return answer(created);
 }
 
-// One that can be changed: that is not deleted.
+// Returns a tool that can be changed: one that is not deleted.
 Result<Tool> present_tool(const RouteContext& context, const Request& request) {
   auto tool = context.store.tools().find(request.param("tool"));
   if (tool && tool->deleted)
     return fail(ErrorCode::not_found, "Tool deleted",
-                "The tool `" + tool->name + "` was deleted: it can be read, but not changed.");
+                "The tool `" + tool->name + "` is deleted. You can read it, but not change it.");
   if (!tool) return tool;
   STRATA_TRY(check_if_match(request, tool->version));
   return tool;
@@ -120,7 +123,7 @@ Result<Response> tool_picture(const RouteContext& context, const Request& reques
   const Picture picture = picture_of(shape);
   Response response =
       bytes_response(encode_png(picture.rgba, picture.width, picture.height), "image/png");
-  // An id stands for one shape for ever; a slug may be given to another.
+  // An id belongs to one shape permanently; a slug may move to another shape.
   if (is_all_digits(request.param("tool")))
     response.with("Cache-Control", "private, max-age=31536000, immutable");
   return response;

@@ -1,4 +1,4 @@
-// What was deleted in a project and can be restored. Who may delete such things may restore them.
+// The trash of a project. A role that may delete such entities may restore them.
 #include <charconv>
 
 #include "app/change_notifier.h"
@@ -101,7 +101,7 @@ Result<Response> list_trash(const RouteContext& context, const Request& request)
   return response;
 }
 
-// Both numbers of `5-17`, the only one of `3`; nothing: neither.
+// Returns both numbers of `5-17` or the only one of `3`; nothing for other text.
 std::optional<std::vector<std::int64_t>> numbers_of(std::string_view text) {
   std::vector<std::int64_t> numbers;
   for (;;) {
@@ -149,7 +149,7 @@ Result<Response> restore(const RouteContext& context, const Request& request) {
     const auto restored = context.store.trash().restore(entry, answer);
     return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());
   }
-  // Through the room: those who look at the model are told.
+  // The room notifies the participants of the model.
   const auto room = STRATA_TRY(context.rooms.open(to_string(entry.model_id), request.role()));
   const auto restored = room->layers().restore(entry, answer);
   return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());

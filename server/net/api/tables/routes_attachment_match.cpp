@@ -21,14 +21,14 @@ namespace {
 
 constexpr const char* kKey = "key";
 
-// Records by what their column holds, as people write it in names.
+// Finds records by the value of a column, as people write it in file names.
 class Values {
  public:
   void add(const std::string& value, std::int64_t key) {
     exact_[value].insert(key);
     loose_[loose_name(value)].insert(key);
   }
-  // The records of a text; one where it is clear.
+  // Returns the records with this text; one record if the text is unambiguous.
   std::set<std::int64_t> find(std::string_view text) const {
     if (const auto same = exact_.find(std::string(text)); same != exact_.end()) return same->second;
     const auto similar = loose_.find(loose_name(text));
@@ -39,7 +39,7 @@ class Values {
   std::map<std::string, std::set<std::int64_t>> exact_, loose_;
 };
 
-// Names of the files that records have.
+// The names of the files of each record.
 using Names = std::map<std::int64_t, std::set<std::string>>;
 
 Result<Names> attached_names(const RouteContext& context, const Author& who, const Table& table,
@@ -70,13 +70,14 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(stored_table(context, request));
   const Column* column = find_column(table.columns, body.column);
   if (!column && body.column != kKey)
-    return fail(ErrorCode::invalid, "No such column",
+    return fail(ErrorCode::invalid, "Column not found",
                 table.name + " has no column `" + body.column + "`.", "column");
   const std::string word = column ? column->slug : kKey;
   if (!pattern.has(word))
-    return fail(ErrorCode::invalid, "Column not in the pattern",
-                "The pattern has no `{" + word + "}`, which says which record a file is of.",
-                "pattern");
+    return fail(
+        ErrorCode::invalid, "Column missing in pattern",
+        "The pattern has no `{" + word + "}`. The server needs it to find the record of each file.",
+        "pattern");
   store::RecordQuery query;
   query.limit = store::kMaxRecords;
   auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), query));
@@ -105,13 +106,13 @@ Result<Response> match(const RouteContext& context, const Request& request) {
       unmatched.push_back({{"name", sent}, {"reason", "several"}, {"words", reading->words}});
       continue;
     }
-    nlohmann::json told{{"name", sent}, {"key", *keys.begin()}, {"words", reading->words}};
+    nlohmann::json entry{{"name", sent}, {"key", *keys.begin()}, {"words", reading->words}};
     const bool is_there = names[*keys.begin()].contains(name);
     if (met.emplace(*keys.begin(), name).second && !is_there) {
-      matched.push_back(std::move(told));
+      matched.push_back(std::move(entry));
     } else {
-      told["reason"] = is_there ? "attached" : "twice";
-      duplicate.push_back(std::move(told));
+      entry["reason"] = is_there ? "attached" : "twice";
+      duplicate.push_back(std::move(entry));
     }
   }
   return json_response({{"matched", std::move(matched)},

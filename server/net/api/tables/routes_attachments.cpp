@@ -34,13 +34,14 @@ using Attached = store::Attached;
 using NewAttachment = store::NewAttachment;
 
 constexpr const char* kAccepted =
-    "Send the file as the body, with its `name` in the address, or one or several files in a multipart/form-data form.";
-// holds what stands before a picture's pixels, profiles and all
+    "Send the file as the body, with its `name` in the address, or send one or several files in a "
+    "multipart/form-data form.";
+// holds all metadata before a picture's pixels, such as color profiles
 constexpr std::size_t kHeadBytes = 1u << 20;
-constexpr std::uint64_t kAtOnceBytes = 4u << 20;  // answers that need no stream
+constexpr std::uint64_t kAtOnceBytes = 4u << 20;  // larger answers are streamed
 constexpr std::uint64_t kThumbnailFileBytes = 128u << 20;
 
-// Nothing that a file holds runs in our origin, whatever a browser makes of it.
+// No file can run scripts in the server's origin, even if a browser treats it as a page.
 constexpr const char* kSandbox = "sandbox; default-src 'none'";
 
 bool is_shown_in_place(std::string_view media_type) {
@@ -55,14 +56,14 @@ std::vector<std::uint8_t> head_of(const std::filesystem::path& file) {
   return head;
 }
 
-NewAttachment inspected(const Upload& upload, const std::string& wished_name) {
+NewAttachment inspected(const Upload& upload, const std::string& requested_name) {
   NewAttachment file;
   file.file = upload.file;
-  file.name = base_filename(wished_name.empty() ? upload.filename : wished_name);
+  file.name = base_filename(requested_name.empty() ? upload.filename : requested_name);
   if (file.name.empty()) file.name = "unnamed";
   const auto head = head_of(upload.file);
   file.media_type = sniff_media_type(head, file.name);
-  // A picture whose size cannot be told is kept all the same: it is the person's file.
+  // Stores a picture of unknown size, too: it is the user's file.
   const bool is_picture = is_raster_picture(file.media_type);
   if (const auto info = inspect_picture(head, 1 << 16); is_picture && info) {
     file.width = info->width;
@@ -71,7 +72,7 @@ NewAttachment inspected(const Upload& upload, const std::string& wished_name) {
   return file;
 }
 
-// Parts cut out of a form go with the answer.
+// Holds the extracted parts of a form until the answer is sent.
 class CutOut {
  public:
   CutOut(const std::vector<Upload>& uploads, const std::filesystem::path& body)
@@ -102,21 +103,22 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   if (const std::string ref = request.query_or("column", {}); !ref.empty()) {
     const Column* column = find_column(place.table.columns, ref);
     if (!column)
-      return fail(ErrorCode::invalid, "No such column",
+      return fail(ErrorCode::invalid, "Column not found",
                   place.table.name + " has no column `" + ref.substr(0, 100) + "`.", "column");
     column_id = column->id;
   }
-  auto version = STRATA_TRY(wished_record_version(context, request, place.table, key));
+  auto version = STRATA_TRY(expected_record_version(context, request, place.table, key));
   auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir, kAccepted));
   const CutOut cut_out(uploads, request.body_file);
   const std::string name = request.query_or("name", {});
   if (!name.empty() && uploads.size() > 1)
-    return fail(ErrorCode::invalid, "Name of several files",
-                "`name` is for one file; those of a form bring theirs.", "name");
+    return fail(ErrorCode::invalid, "Name for several files",
+                "`name` works for a single file only. In a form, each file has its own name.",
+                "name");
   const auto visibility = parse_visibility(request.query_or("visibility", "public"));
   if (!visibility)
     return fail(ErrorCode::invalid, "Unknown visibility",
-                "`visibility` is public, team or private.", "visibility");
+                "`visibility` must be public, team or private.", "visibility");
   std::vector<NewAttachment> files;
   for (const Upload& upload : uploads) {
     files.push_back(inspected(upload, name));
@@ -137,7 +139,7 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   return answer(attached);
 }
 
-// Column by column, each in its own order.
+// Lists column by column, each in its own order.
 Result<Response> list_attachments(const RouteContext& context, const Request& request) {
   auto key = STRATA_TRY(record_key(request));
   auto place = STRATA_TRY(record_place(context, request));
@@ -149,23 +151,24 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
   Table then;
   auto record = STRATA_TRY(stored_record(context, place.table, request.role(), key, at, &then));
   std::vector<std::pair<AttachmentId, const Column*>> ids;
-  std::vector<AttachmentId> wanted;
+  std::vector<AttachmentId> requested_ids;
   for (const Column& column : then.columns) {
     if (!holds_attachments(column.kind)) continue;
     const auto cell = record.values.find(column.id);
     if (cell == record.values.end()) continue;
     for (const auto& id : cell->second) {
       ids.emplace_back(id.get<AttachmentId>(), &column);
-      wanted.push_back(id.get<AttachmentId>());
+      requested_ids.push_back(id.get<AttachmentId>());
     }
   }
-  auto found = STRATA_TRY(context.store.attachments().of_table(then.id, request.author(), wanted));
+  auto found =
+      STRATA_TRY(context.store.attachments().of_table(then.id, request.author(), requested_ids));
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [id, column] : ids)
     for (const Attachment& attachment : found)
       if (attachment.id == id) {
         list.push_back(to_json(attachment));
-        list.back()["user"] = told_name(request, attachment.user);
+        list.back()["user"] = visible_name(request, attachment.user);
         list.back()["column"] = column->slug;
       }
   const std::size_t total = list.size();
@@ -182,25 +185,26 @@ Result<int> thumbnail_side(const Request& request) {
   const std::string& text = request.query.at("thumbnail");
   for (const int side : kSides)
     if (text == std::to_string(side)) return side;
-  return fail(ErrorCode::invalid, "Size not made", "`thumbnail` is 64, 128, 256, 512 or 1024.",
-              "thumbnail");
+  return fail(ErrorCode::invalid, "Invalid thumbnail size",
+              "`thumbnail` must be 64, 128, 256, 512 or 1024.", "thumbnail");
 }
 
 Result<Response> thumbnail(const RouteContext& context, const Attachment& attachment, int side) {
-  // Decoded pictures are large: one at a time, so that memory is bounded.
+  // Decoded pictures are large: decoding one at a time bounds the memory.
   static std::mutex decoding;
-  auto kept = STRATA_TRY(context.store.attachments().thumbnail(attachment, side));
-  if (kept) return bytes_response(std::move(*kept), "image/jpeg");
+  auto stored = STRATA_TRY(context.store.attachments().thumbnail(attachment, side));
+  if (stored) return bytes_response(std::move(*stored), "image/jpeg");
   constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff",
                                                    "image/webp", "image/bmp"};
   if (std::find(kTypes.begin(), kTypes.end(), attachment.media_type) == kTypes.end())
-    return fail(ErrorCode::unsupported, "No small picture",
-                "Small pictures are made of JPEG, PNG, TIFF, WebP and BMP pictures; this is " +
+    return fail(ErrorCode::unsupported, "No thumbnail",
+                "The server makes thumbnails of JPEG, PNG, TIFF, WebP and BMP pictures only. "
+                "This file is " +
                     attachment.media_type + ".",
                 "thumbnail");
   if (attachment.bytes > kThumbnailFileBytes)
     return fail(ErrorCode::invalid, "Picture too large",
-                "Small pictures are made of files of at most " +
+                "The server makes thumbnails of files of at most " +
                     std::to_string(kThumbnailFileBytes >> 20) + " MiB.",
                 "thumbnail");
   const std::lock_guard lock(decoding);
@@ -216,32 +220,33 @@ Result<Response> thumbnail(const RouteContext& context, const Attachment& attach
     picture.error().field = "thumbnail";
     return tl::unexpected(picture.error());
   }
-  // Where it cannot be kept (no room, database busy), it is made again next time.
+  // If it cannot be stored (disk full, database busy), the next request makes it again.
   (void)context.store.attachments().keep_thumbnail(attachment, side, *picture);
   return bytes_response(std::move(*picture), "image/jpeg");
 }
 
 Result<Response> content(const RouteContext& context, const Attachment& attachment,
-                         const AskedRange& asked) {
+                         const RequestedRange& requested) {
   Response response;
-  response.status = asked.is_part ? 206 : 200;
+  response.status = requested.is_part ? 206 : 200;
   response.with("Content-Type", attachment.media_type);
-  if (asked.is_part)
-    response.with("Content-Range", "bytes " + std::to_string(asked.range.begin) + "-" +
-                                       std::to_string(asked.range.end - 1) + "/" +
+  if (requested.is_part)
+    response.with("Content-Range", "bytes " + std::to_string(requested.range.begin) + "-" +
+                                       std::to_string(requested.range.end - 1) + "/" +
                                        std::to_string(attachment.bytes));
-  const std::uint64_t length = asked.range.end - asked.range.begin;
+  const std::uint64_t length = requested.range.end - requested.range.begin;
   if (length > kAtOnceBytes) {
     response.stream = Response::Stream{
         length,
-        [&store = context.store, attachment, range = asked.range](const Response::Sink& sink) {
+        [&store = context.store, attachment, range = requested.range](const Response::Sink& sink) {
           return store.attachments().read(attachment, range.begin, range.end, sink).has_value();
         }};
     return response;
   }
   response.bytes.reserve(length);
   STRATA_TRY(context.store.attachments().read(
-      attachment, asked.range.begin, asked.range.end, [&](std::span<const std::uint8_t> piece) {
+      attachment, requested.range.begin, requested.range.end,
+      [&](std::span<const std::uint8_t> piece) {
         response.bytes.insert(response.bytes.end(), piece.begin(), piece.end());
         return true;
       }));
@@ -254,8 +259,8 @@ Result<Response> read_attachment(const RouteContext& context, const Request& req
   const bool small = request.query.contains("thumbnail");
   int side = 0;
   if (small) {
-    auto asked = STRATA_TRY(thumbnail_side(request));
-    side = asked;
+    auto requested = STRATA_TRY(thumbnail_side(request));
+    side = requested;
   }
   const std::string etag =
       "\"" + attachment.sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
@@ -269,14 +274,14 @@ Result<Response> read_attachment(const RouteContext& context, const Request& req
     const auto if_range = request.header("if-range");
     const auto range =
         if_range.empty() || if_range == etag ? request.header("range") : std::string_view();
-    const auto asked = asked_range(range, attachment.bytes);
-    if (!asked) {
+    const auto requested = requested_range(range, attachment.bytes);
+    if (!requested) {
       Response refusal = problem_response(
-          {ErrorCode::range_not_satisfied, "No such bytes",
+          {ErrorCode::range_not_satisfied, "Range not available",
            "The file has " + std::to_string(attachment.bytes) + " bytes.", "Range"});
       return refusal.with("Content-Range", "bytes */" + std::to_string(attachment.bytes));
     }
-    response = content(context, attachment, *asked);
+    response = content(context, attachment, *requested);
     if (!response) return response;
     const char* way = is_shown_in_place(attachment.media_type) ? "inline" : "attachment";
     response
@@ -293,7 +298,7 @@ Result<Response> change_attachment(const RouteContext& context, const Request& r
   auto attachment = STRATA_TRY(context.store.attachments().find(id, request.author()));
   if (request.role() < Role::curator && request.user() != attachment.user)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "Who sees a file is said by curators and by who attached it.");
+                "Only curators and the person who attached a file can change its visibility.");
   auto body = STRATA_TRY(body_of<protocol::AttachmentPatch>(request));
   const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
   auto now = STRATA_TRY(context.store.attachments().show(

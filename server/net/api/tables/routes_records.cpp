@@ -32,7 +32,7 @@ constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
 
 constexpr std::size_t kMaxSortColumns = 16;
 
-// "name,-depth": descending after a minus. A column that is there already says nothing more.
+// "name,-depth": a minus means descending. A repeated column has no effect.
 Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& text) {
   std::vector<std::pair<std::string, bool>> order;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -45,16 +45,16 @@ Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& te
         std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
       order.emplace_back(std::move(word), descending);
     if (order.size() > kMaxSortColumns)
-      return fail(ErrorCode::invalid, "Too many columns to sort by",
-                  "Records are sorted by at most " + std::to_string(kMaxSortColumns) + " columns.",
-                  "sortby");
+      return fail(
+          ErrorCode::invalid, "Too many sort columns",
+          "Records can be sorted by at most " + std::to_string(kMaxSortColumns) + " columns.",
+          "sortby");
     begin = end + 1;
   }
   return order;
 }
 
-// Sorted by what they measure, such as the area that they have on the layer: all other order is the
-// database's.
+// Sorts by a measure, such as the area on the layer; the database does every other sorting.
 Result<store::RecordPage> page_by_measure(const RouteContext& context,
                                           const app::RecordPlace& place,
                                           const app::RecordMeasures& measures, std::size_t measure,
@@ -67,7 +67,7 @@ Result<store::RecordPage> page_by_measure(const RouteContext& context,
   query.limit = store::kMaxRecords;
   query.offset = 0;
   auto page = STRATA_TRY(context.store.records().page(place.table.id, seen_by, query));
-  // worked out once: a line may have thousands of places
+  // computed once: a line may have thousands of vertices
   std::vector<std::pair<double, Record>> by_value;
   by_value.reserve(page.records.size());
   for (Record& record : page.records) {
@@ -86,8 +86,8 @@ Result<store::RecordPage> page_by_measure(const RouteContext& context,
         std::ranges::equal_range(by_value, value, comes_before, &std::pair<double, Record>::first);
     const auto same =
         std::find_if(low, high, [key](const auto& each) { return each.second.key == key; });
-    // Where it is gone, of those with its value the ones with higher keys follow: that is how they
-    // stand, unless more was sorted by.
+    // If that record is gone, the records with the same value and higher keys follow: equal values
+    // are in key order, unless the request sorts by more columns.
     begin = same != high ? same + 1 : std::find_if(low, high, [key](const auto& each) {
       return each.second.key > key;
     });
@@ -103,8 +103,8 @@ Result<store::RecordPage> page_by_measure(const RouteContext& context,
   return page;
 }
 
-// The columns of `records_csv`, with values of their own types; under a layer the last one has
-// areas in a unit that people read.
+// Returns a workbook with the columns of `records_csv`, with typed values; under a layer the last
+// column has areas in a readable unit.
 Result<Response> records_book(const RouteContext& context, const store::RecordPage& page,
                               const app::RecordMeasures& measures,
                               const app::WordsOfTables& words) {
@@ -147,18 +147,18 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   store::RecordQuery query;
   auto order = STRATA_TRY(order_of(request.query_or("sortby", {})));
   query.order = std::move(order);
-  const auto language = STRATA_TRY(asked_language(request));
+  const auto language = STRATA_TRY(requested_language(request));
   query.language = language;
   const std::string terms = request.query_or("terms", "words");
   if (terms != "words" && terms != "keys")
-    return fail(ErrorCode::invalid, "Unknown choice", "`terms` is words or keys.", "terms");
+    return fail(ErrorCode::invalid, "Unknown choice", "`terms` must be words or keys.", "terms");
   if (auto filter = request.query.find("filter");
       filter != request.query.end() && !filter->second.empty()) {
     auto condition = query::parse_condition(filter->second, "filter", query::Names::columns);
     if (!condition) return tl::unexpected(condition.error());
     query.filter = std::move(*condition);
   }
-  // A table to work on elsewhere is all of it, unless a part is asked for.
+  // A table for work in another program is complete, unless the request limits it.
   const bool whole = format != SheetFormat::json && !request.query.contains("limit");
   query.limit = whole ? store::kMaxRecords : page.limit;
   query.offset = page.offset;
@@ -167,7 +167,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     auto sequence = STRATA_TRY(sequence_at(context.store, place.table, at->second));
     query.at = sequence;
   }
-  // Of the columns as they are now: what was a line and is none any more has no length.
+  // Uses the current columns: a column that no longer holds lines has no length.
   auto measures = STRATA_TRY(app::RecordMeasures::of_place(context, place, place.table.columns));
   const auto& names = measures.names();
   const auto measure =
@@ -184,10 +184,10 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     words = std::move(known);
   }
   if (page.after && records.last && !cursor_of(request, *records.last))
-    return fail(
-        ErrorCode::invalid, "Sorted by too much",
-        "The values by which this page ends are too long for an address; sort by fewer columns.",
-        "sortby");
+    return fail(ErrorCode::invalid, "Sort values too long",
+                "The sort values at the end of this page are too long for an address. Sort by "
+                "fewer columns.",
+                "sortby");
   Response response;
   switch (format) {
     case SheetFormat::xlsx:
@@ -249,8 +249,8 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
                                   const app::RecordPlace& place) {
   auto body = STRATA_TRY(body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes));
   if (body.records && (body.key || body.values))
-    return fail(ErrorCode::invalid, "One or several",
-                "Give either `records`, or `key` and `values` of one.", "records");
+    return fail(ErrorCode::invalid, "One record or several",
+                "Send either `records`, or the `key` and `values` of a single record.", "records");
   store::WriteRecords write;
   write.may_change = false;
   const bool is_list = body.records.has_value();
@@ -303,7 +303,7 @@ nlohmann::json report_of(const app::RecordRows& rows, const TableChange& change,
         const auto found = rows.heads.find(column.id);
         head = found == rows.heads.end() ? column.name : found->second;
       }
-    // Something else names a record that is not in the text.
+    // A relation of another table names a record that is missing in the text.
     add(problem.index ? rows.lines[*problem.index] : 1, head, problem.problem);
   }
   const bool refused = !problems.empty();
@@ -322,15 +322,14 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
                             const app::RecordPlace& place) {
   const std::string tried = request.query_or("dry_run", "false");
   if (tried != "true" && tried != "false")
-    return fail(ErrorCode::invalid, "Bad value", "`dry_run` is true or false.", "dry_run");
+    return fail(ErrorCode::invalid, "Invalid value", "`dry_run` must be true or false.", "dry_run");
   const auto words =
       STRATA_TRY(app::words_of(context.store, place.table.columns, request.role(), {}));
   auto rows = STRATA_TRY(app::read_records_csv(request.body, place.table, words));
   store::WriteRecords write;
   write.records = rows.records;
   write.op = "import";
-  // Where a row cannot even be read, the others are looked at all the same, so that one look finds
-  // all that is wrong.
+  // Checks the other rows even if one cannot be parsed, so that one check finds all mistakes.
   write.dry_run = tried == "true" || !rows.mistakes.empty();
   const auto answer = [&rows](const TableChange& change) {
     return json_response(report_of(rows, change, false));
@@ -342,7 +341,7 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
   if (refused) {
     const nlohmann::json report = report_of(rows, change, false);
     const auto& first = report.at("problems").front();
-    Response response = problem_response({ErrorCode::invalid, "Rows refused",
+    Response response = problem_response({ErrorCode::invalid, "Rows rejected",
                                           "Nothing was written. Line " +
                                               std::to_string(first.at("line").get<int>()) + ": " +
                                               first.at("detail").get<std::string>(),
@@ -361,7 +360,7 @@ Result<Response> create_records(const RouteContext& context, const Request& requ
   if (to_lower(request.header("content-type")).starts_with("text/csv"))
     return import_csv(context, request, place);
   if (request.query.contains("dry_run"))
-    return fail(ErrorCode::invalid, "Not for JSON", "`dry_run` is for records sent as text/csv.",
+    return fail(ErrorCode::invalid, "Not for JSON", "`dry_run` works for records in text/csv only.",
                 "dry_run");
   return create_from_json(context, request, place);
 }
@@ -370,7 +369,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   auto key = STRATA_TRY(record_key(request));
   auto body = STRATA_TRY(body_of<protocol::RecordPatch>(request));
   auto place = STRATA_TRY(record_place(context, request));
-  auto version = STRATA_TRY(wished_record_version(context, request, place.table, key));
+  auto version = STRATA_TRY(expected_record_version(context, request, place.table, key));
   auto values = STRATA_TRY(values_by_column(place.table, body.values, "values"));
   store::WriteRecords write;
   write.may_create = false;
@@ -380,7 +379,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
     return json_response(to_json(record, seen_by(change.table, role).columns))
         .with("ETag", etag_of(record.version));
   };
-  // What stays the same is no entry, and no record comes with it.
+  // A record without changes makes no entry, and `change` does not contain it.
   std::optional<Record> same;
   if (auto now = stored_record(context, place.table, request.role(), key, {}))
     same = std::move(*now);
@@ -396,7 +395,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   return keep(change);
 }
 
-// Nothing paints the key any more.
+// Call once nothing can paint the key.
 Result<Response> delete_retired(const RouteContext& context, const Request& request,
                                 const Table& table, std::int64_t key,
                                 std::optional<std::int64_t> version, const std::string& texels,
@@ -404,10 +403,11 @@ Result<Response> delete_retired(const RouteContext& context, const Request& requ
   auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
   const std::string where = app::where_painted(painted, {key});
   if (!where.empty() && texels == "refuse")
-    return fail(ErrorCode::conflict, "Record is painted",
-                "Record " + std::to_string(key) + " covers " + where +
-                    ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
-                "texels");
+    return fail(
+        ErrorCode::conflict, "Record has painted texels",
+        "Record " + std::to_string(key) + " covers " + where +
+            ". Choose what happens to these texels: texels=clear, or texels=reassign&to=KEY.",
+        "texels");
   STRATA_TRY(app::repaint_key(context, painted, key, to, request.author()));
   const auto answer = [](const TableChange&) { return empty_response(204); };
   auto change =
@@ -421,26 +421,26 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   auto key = STRATA_TRY(record_key(request));
   const std::string texels = request.query_or("texels", "refuse");
   if (texels != "refuse" && texels != "clear" && texels != "reassign")
-    return fail(ErrorCode::invalid, "Unknown choice", "`texels` is refuse, clear or reassign.",
+    return fail(ErrorCode::invalid, "Unknown choice", "`texels` must be refuse, clear or reassign.",
                 "texels");
   std::optional<std::int64_t> to;
   if ((texels == "reassign") != request.query.contains("to"))
-    return fail(ErrorCode::invalid, "Which record",
-                "`to` is the key that the texels get, with texels=reassign.", "to");
+    return fail(ErrorCode::invalid, "Record not specified",
+                "texels=reassign needs `to`, the key that the texels get.", "to");
   auto place = STRATA_TRY(record_place(context, request));
   const Table& table = place.table;
   if (texels == "reassign") {
     auto number = STRATA_TRY(parse_integer(request.query.at("to"), 0, kMaxRecordKey, "to"));
     auto missing = STRATA_TRY(context.store.records().missing(table.id, std::vector{number}));
     if (!missing.empty() || number == key)
-      return fail(ErrorCode::invalid, "No such record",
-                  "`to` is another record of " + table.name + ".", "to");
+      return fail(ErrorCode::invalid, "Record not found",
+                  "`to` must be another record of " + table.name + ".", "to");
     to = number;
   }
-  auto version = STRATA_TRY(wished_record_version(context, request, table, key));
-  // Before any texel is touched: may it go?
+  auto version = STRATA_TRY(expected_record_version(context, request, table, key));
+  // Checks that the record can be deleted, before any texel changes.
   STRATA_TRY(context.store.records().remove(table.id, key, version, request.user(), true));
-  // A stroke that began while there was a record must not paint it again.
+  // A stroke that began before the deletion must not paint the key again.
   const auto retired = context.rooms.retire_key(table.id, key);
   auto deleted = retired ? delete_retired(context, request, table, key, version, texels, to)
                          : Result<Response>(tl::unexpected(retired.error()));

@@ -84,7 +84,7 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
     const Column* title =
         body.title_column->empty() ? nullptr : find_column(table.columns, *body.title_column);
     if (!title && !body.title_column->empty())
-      return fail(ErrorCode::invalid, "No such column",
+      return fail(ErrorCode::invalid, "Column not found",
                   table.name + " has no column `" + *body.title_column + "`.", "title_column");
     table.title_column = title ? std::optional(title->id) : std::nullopt;
   }
@@ -108,7 +108,7 @@ Result<Response> delete_table(const RouteContext& context, const Request& reques
 
 // --- columns; If-Match takes the version of the table
 
-std::optional<std::int64_t> wished_version(const Request& request, const Table& table) {
+std::optional<std::int64_t> expected_version(const Request& request, const Table& table) {
   return request.header("if-match").empty() ? std::nullopt : std::optional(table.version);
 }
 
@@ -124,8 +124,8 @@ nlohmann::json column_json(const TableChange& change, ColumnId id) {
   nlohmann::json json{{"sequence", change.sequence ? change.sequence : change.table.sequence}};
   for (const Column& column : change.table.columns)
     if (column.id == id) json["column"] = to_json(column);
-  for (const char* told : {"converted", "lost", "lost_keys"})
-    if (change.record.contains(told)) json[told] = change.record.at(told);
+  for (const char* key : {"converted", "lost", "lost_keys"})
+    if (change.record.contains(key)) json[key] = change.record.at(key);
   return json;
 }
 
@@ -161,20 +161,19 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
   return answer(change);
 }
 
-// Null takes a default or a limit away, which the typed body cannot tell from a member that is
-// absent.
+// Null removes a default or a limit. The typed body cannot distinguish null from an absent member.
 Result<void> change(const RouteContext& context, const Request& request,
-                    const protocol::ColumnPatch& asked, const Table& table, Column& column) {
+                    const protocol::ColumnPatch& patch, const Table& table, Column& column) {
   const auto body = nlohmann::json::parse(request.body);
-  if (asked.name) column.name = *asked.name;
-  if (asked.slug) {
-    auto slug = STRATA_TRY(slug_of(asked.slug, column.name));
+  if (patch.name) column.name = *patch.name;
+  if (patch.slug) {
+    auto slug = STRATA_TRY(slug_of(patch.slug, column.name));
     column.slug = slug;
   }
-  if (asked.labels) column.labels = *asked.labels;
-  if (asked.kind) {
-    column.kind = *parse_column_kind(protocol::name(*asked.kind));
-    // What the new kind has no use for goes with the old one, unless it is asked for.
+  if (patch.labels) column.labels = *patch.labels;
+  if (patch.kind) {
+    column.kind = *parse_column_kind(protocol::name(*patch.kind));
+    // Clears the properties that the new kind does not use, unless the patch sets them.
     const bool is_number = column.kind == ColumnKind::integer || column.kind == ColumnKind::numeric;
     if (!is_number) column.unit.clear(), column.minimum.reset(), column.maximum.reset();
     if (column.kind != ColumnKind::enumeration) column.choices.clear();
@@ -182,20 +181,20 @@ Result<void> change(const RouteContext& context, const Request& request,
       column.target.reset();
     if (!body.contains("default")) column.default_value = nullptr;
   }
-  if (asked.unit) column.unit = *asked.unit;
-  if (asked.required) column.required = *asked.required;
-  if (asked.unique) column.unique = *asked.unique;
+  if (patch.unit) column.unit = *patch.unit;
+  if (patch.required) column.required = *patch.required;
+  if (patch.unique) column.unique = *patch.unique;
   if (body.contains("default")) column.default_value = body.at("default");
-  if (asked.comment) column.comment = *asked.comment;
-  if (asked.choices) column.choices = *asked.choices;
-  if (asked.target) {
+  if (patch.comment) column.comment = *patch.comment;
+  if (patch.choices) column.choices = *patch.choices;
+  if (patch.target) {
     auto target =
-        STRATA_TRY(table_of_project(context.store, table.project_id, *asked.target, "target"));
+        STRATA_TRY(table_of_project(context.store, table.project_id, *patch.target, "target"));
     column.target = target.id;
   }
-  if (body.contains("minimum")) column.minimum = asked.minimum;
-  if (body.contains("maximum")) column.maximum = asked.maximum;
-  if (asked.order) column.order = *asked.order;
+  if (body.contains("minimum")) column.minimum = patch.minimum;
+  if (body.contains("maximum")) column.maximum = patch.maximum;
+  if (patch.order) column.order = *patch.order;
   return {};
 }
 
@@ -209,7 +208,7 @@ Result<Response> show_column(const RouteContext& context, const Request& request
   };
   auto now = STRATA_TRY(context.store.tables().show_column(
       table.id, column.id, visibility, table.version, idempotent_response<Table>(request, answer)));
-  // Colours, lines and points that are drawn from it are others for who does not see it any more.
+  // Users who cannot see the column any longer get other colors, lines and points from it.
   context.rooms.records_changed(now.id);
   tell_table(context.live_sockets, protocol::TableEventEvent::changed, now, request.user());
   return answer(now);
@@ -224,8 +223,8 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
     protocol::ColumnPatch alone;
     alone.visibility = body.visibility;
     if (!(body == alone))
-      return fail(ErrorCode::invalid, "Visibility with other changes",
-                  "Say who sees a column in a call of its own.", "visibility");
+      return fail(ErrorCode::invalid, "Visibility and other changes",
+                  "Change the visibility of a column in a separate request.", "visibility");
     return show_column(context, request, table, *found, *body.visibility);
   }
   Column column = *found;
@@ -235,7 +234,7 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
     return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
   };
   auto done = context.store.tables().update_column(
-      table.id, column, wished_version(request, table), request.user(),
+      table.id, column, expected_version(request, table), request.user(),
       idempotent_response<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   context.changes.records_changed(*done, request.user());
@@ -248,21 +247,21 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
   STRATA_TRY(check_if_match(request, table.version));
   const auto answer = [](const TableChange&) { return empty_response(204); };
   auto done = context.store.tables().drop_column(table.id, column->id,
-                                                 wished_version(request, table), request.user(),
+                                                 expected_version(request, table), request.user(),
                                                  idempotent_response<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   context.changes.records_changed(*done, request.user());
   return answer(*done);
 }
 
-// A record that lies above itself cannot be: told, not refused, since excavation drawings have such
-// things to be found.
+// A record that is above itself is impossible. Reports such cycles instead of refusing them, since
+// excavation drawings contain them and people must find them.
 Result<Response> cycles(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(stored_table(context, request));
   auto column = STRATA_TRY(column_of(table, request));
   if (column->target != table.id)
-    return fail(ErrorCode::invalid, "No relation of its own",
-                "Cycles are those of a relation or term that names records of its own table.",
+    return fail(ErrorCode::invalid, "No relation to itself",
+                "Only a relation or term column that refers to its own table can have cycles.",
                 "column");
   store::RecordQuery query;
   query.limit = store::kMaxRecords;
@@ -282,15 +281,15 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
 Result<Response> classes(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(stored_table(context, request));
   auto column = STRATA_TRY(column_of(table, request));
-  const auto asked = request.query.find("method");
-  const std::string method = asked == request.query.end() ? "unique" : asked->second;
+  const auto parameter = request.query.find("method");
+  const std::string method = parameter == request.query.end() ? "unique" : parameter->second;
   const bool unique = method == "unique";
   if (!unique && method != "equal" && method != "quantile")
-    return fail(ErrorCode::invalid, "No such method", "Classes are equal, quantile or unique.",
-                "method");
+    return fail(ErrorCode::invalid, "Unknown method",
+                "The method must be equal, quantile or unique.", "method");
   int count = unique ? 20 : 5;
-  if (const auto wished = request.query.find("count"); wished != request.query.end()) {
-    auto number = parse_integer(wished->second, 1, 1000, "count");
+  if (const auto given = request.query.find("count"); given != request.query.end()) {
+    auto number = parse_integer(given->second, 1, 1000, "count");
     if (!number) return tl::unexpected(number.error());
     count = static_cast<int>(*number);
   }
@@ -309,9 +308,8 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
     }
   } else {
     if (column->kind != ColumnKind::integer && column->kind != ColumnKind::numeric)
-      return fail(ErrorCode::invalid, "Column holds no numbers",
-                  "'" + column->name + "' holds no numbers: its classes are its unique values.",
-                  "method");
+      return fail(ErrorCode::invalid, "Column without numbers",
+                  "'" + column->name + "' contains no numbers. Use the method unique.", "method");
     Expression number;
     number.op = Expression::Op::column;
     number.path = {column->slug};
@@ -360,9 +358,9 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
   if (!plan.vanishing.empty()) {
     auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
     if (const std::string where = app::where_painted(painted, plan.vanishing); !where.empty())
-      return fail(ErrorCode::conflict, "Record is painted",
-                  "This would take away records that are painted: " + where +
-                      ". Delete those records instead, which asks what to do with their texels.");
+      return fail(ErrorCode::conflict, "Record has painted texels",
+                  "This would delete records that have painted texels: " + where +
+                      ". Delete these records instead, and choose what happens to their texels.");
   }
   const auto answer = [](const TableChange& done) {
     return json_response({{"sequence", done.sequence},
@@ -378,7 +376,7 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
   return answer(done);
 }
 
-// --- surface of its keys
+// --- surface of the table's keys
 
 Result<Response> areas(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(stored_table(context, request));

@@ -27,21 +27,21 @@ using TableChange = store::TableChange;
 constexpr std::uint64_t kMaxTermsBytes = 32u << 20;
 constexpr std::size_t kMaxListNameLength = 200;
 
-// By its Content-Type.
+// Selects the format by the Content-Type.
 Result<TermList> read_terms(const Request& request) {
   const std::string type = to_lower(request.header("content-type"));
   const std::string kind = type.substr(0, std::min(type.find_first_of("; "), type.size()));
   if (kind == "text/csv") return read_terms_csv(request.body);
   if (kind == "text/turtle") return read_terms_skos(request.body, RdfSyntax::turtle);
   if (kind == "application/rdf+xml") return read_terms_skos(request.body, RdfSyntax::rdf_xml);
-  return fail(ErrorCode::unsupported, "Format not known",
-              "Terms come as text/csv, text/turtle or application/rdf+xml.", "Content-Type");
+  return fail(ErrorCode::unsupported, "Unknown format",
+              "Send terms as text/csv, text/turtle or application/rdf+xml.", "Content-Type");
 }
 
 Result<bool> is_dry_run(const Request& request) {
   const std::string tried = request.query_or("dry_run", "false");
   if (tried == "true" || tried == "false") return tried == "true";
-  return fail(ErrorCode::invalid, "Bad value", "`dry_run` is true or false.", "dry_run");
+  return fail(ErrorCode::invalid, "Invalid value", "`dry_run` must be true or false.", "dry_run");
 }
 
 nlohmann::json report_of(const TermList& list, const TableChange& change, bool dry_run) {
@@ -86,7 +86,7 @@ Result<Response> refusal(const TermList& list, const TableChange& change) {
                                 ? "\"" + first.at("code").get<std::string>() + "\": "
                                 : std::string();
   Response response = problem_response(
-      {ErrorCode::invalid, "Terms refused",
+      {ErrorCode::invalid, "Terms rejected",
        "Nothing was written. " + where + first.at("detail").get<std::string>(), "body"});
   auto body = nlohmann::json::parse(response.body);
   body["rows"] = report;
@@ -96,31 +96,31 @@ Result<Response> refusal(const TermList& list, const TableChange& change) {
 
 Result<Response> create_terms(const RouteContext& context, const Request& request) {
   auto dry_run = STRATA_TRY(is_dry_run(request));
-  store::NewTable wished;
-  wished.table.name = request.query_or("name", {});
-  if (wished.table.name.empty() || wished.table.name.size() > kMaxListNameLength)
+  store::NewTable new_table;
+  new_table.table.name = request.query_or("name", {});
+  if (new_table.table.name.empty() || new_table.table.name.size() > kMaxListNameLength)
     return fail(ErrorCode::invalid, "Name missing",
-                "`name` tells what the list is called, in 1 to 200 bytes.", "name");
-  auto slug = STRATA_TRY(slug_of({}, wished.table.name));
-  wished.table.slug = slug;
+                "Send the name of the list as `name`, with 1 to 200 bytes.", "name");
+  auto slug = STRATA_TRY(slug_of({}, new_table.table.name));
+  new_table.table.slug = slug;
   auto project = STRATA_TRY(stored_project(context, request));
-  wished.table.project_id = project.id;
+  new_table.table.project_id = project.id;
   auto list = STRATA_TRY(read_terms(request));
   std::vector<std::string> languages;
   for (const std::string& column : list.columns)
     if (const auto language = label_language(column)) languages.push_back(*language);
-  wished.table.columns = new_term_columns(languages);
+  new_table.table.columns = new_term_columns(languages);
   if (!list.mistakes.empty()) {
     if (dry_run) return json_response(report_of(list, {}, true));
     return refusal(list, {});
   }
-  wished.terms = list;
+  new_table.terms = list;
   const auto answer = [&list](const std::vector<TableChange>& changes) {
     return json_response(report_of(list, changes.front(), false), 201)
         .with("Location", "/api/v1/tables/" + changes.front().table.slug);
   };
   auto changes = context.store.tables().create_several(
-      {wished}, dry_run, request.user(), "import",
+      {new_table}, dry_run, request.user(), "import",
       idempotent_response<std::vector<TableChange>>(request, answer));
   if (!changes) return tl::unexpected(changes.error());
   if (dry_run) return json_response(report_of(list, changes->front(), true));
@@ -151,17 +151,17 @@ Result<Response> import_terms(const RouteContext& context, const Request& reques
 
 // --- reading
 
-// Which of the terms are told: those that have the words, and those above them.
+// Marks the terms to list: those that contain the words, and their ancestors.
 std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms,
                                    const std::vector<bool>& match) {
   std::map<std::int64_t, std::size_t> places;
   for (std::size_t i = 0; i < terms.size(); ++i) places[terms[i].key] = i;
-  std::vector<bool> told = match;
-  // Those below come later, so that from the end on each tells of itself before the one above it is
-  // asked.
+  std::vector<bool> included = match;
+  // Descendants come later in the list, so the loop from the end marks each term before its parent
+  // is visited.
   for (std::size_t i = terms.size(); i-- > 0;)
-    if (told[i] && terms[i].depth > 0) told[places.at(*terms[i].parent)] = true;
-  return told;
+    if (included[i] && terms[i].depth > 0) included[places.at(*terms[i].parent)] = true;
+  return included;
 }
 
 Response tree_response(const Request& request, const std::string& language,
@@ -171,11 +171,11 @@ Response tree_response(const Request& request, const std::string& language,
   for (const ListedTerm& listed : terms)
     if (listed.depth > 0) ++below[*listed.parent];
   const auto match = terms_with(terms, request.query_or("q", {}));
-  const auto told = with_those_above(terms, match);
+  const auto included = with_those_above(terms, match);
   nlohmann::json list = nlohmann::json::array();
   int total = 0;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (!told[i]) continue;
+    if (!included[i]) continue;
     const int place = total++;
     if (place < page.offset || place >= page.offset + page.limit) continue;
     const ListedTerm& listed = terms[i];
@@ -202,20 +202,22 @@ Response tree_response(const Request& request, const std::string& language,
 Result<Response> list_terms_of(const RouteContext& context, const Request& request) {
   const std::string format = request.query_or("f", "json");
   if (format != "json" && format != "csv" && format != "turtle")
-    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, csv or turtle.", "f");
+    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` must be json, csv or turtle.",
+                "f");
   auto separator = STRATA_TRY(csv_separator(request));
   auto shown = STRATA_TRY(page_of(request));
-  const auto language = STRATA_TRY(asked_language(request));
+  const auto language = STRATA_TRY(requested_language(request));
   auto table = STRATA_TRY(stored_table(context, request));
   if (!term_columns(table))
-    return fail(ErrorCode::conflict, "No list of terms",
-                table.name + " is a table of records. Read `/records` of it.");
+    return fail(ErrorCode::conflict, "Not a term list",
+                table.name + " is a table of records, not a term list. Read its `/records`.");
   store::RecordQuery all;
   all.limit = store::kMaxRecords;
   auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), all));
   const auto columns = term_columns(page.table);
   if (!columns)
-    return fail(ErrorCode::conflict, "No list of terms", table.name + " was changed meanwhile.");
+    return fail(ErrorCode::conflict, "Not a term list",
+                table.name + " was changed in the meantime.");
   const auto listed = list_terms(*columns, page.records);
   Response response;
   if (format == "json") {

@@ -1,5 +1,5 @@
 #version 450 core
-// Texels that are not covered but have a covered neighbour.
+// Selects texels that are not covered but have a covered neighbor.
 layout(binding = 0) uniform usampler2D coverage;
 layout(location = 0) out uint outline;
 

@@ -1,5 +1,6 @@
-"""Files of records over HTTP: photos and documents in and out, small pictures, ranges, undo and the past, a gigabyte in little memory, a full disk, and a folder
-of photos that is matched to records."""
+"""Files of records over HTTP: upload and download of photos and documents, thumbnails, ranges, undo
+and earlier states, a gigabyte in little memory, a full disk, and a folder of photos that is matched
+to records."""
 import hashlib
 import http.client
 import os
@@ -354,7 +355,8 @@ def test_a_full_disk(server):
 
 
 def test_a_gigabyte_in_little_memory(server):
-    """Streamed in, as a body and in a form, and out again: the server's memory hardly grows."""
+    """A gigabyte is streamed in, as a body and in a form, and out again: the server's memory hardly
+    grows."""
     pieces = [hashlib.sha256(bytes([n])).digest() * (PIECE // 32) for n in range(256)]
     wanted = hashlib.sha256()
     for n in range(GIGABYTE // PIECE):
@@ -387,7 +389,7 @@ def test_a_gigabyte_in_little_memory(server):
         return made
 
     with open(f"/proc/{server.process.pid}/clear_refs", "w", encoding="ascii") as file:
-        file.write("5")  # the greatest size so far is that of now
+        file.write("5")  # resets the peak size to the current size
     before = memory("VmRSS")
     first = send(3, b"", b"", {})
     second = send(

@@ -1,4 +1,5 @@
-"""Lines and points that records have on the surface: cracks by the metre, samples by number; over HTTP, in pictures, in tables, and on another version of the scan."""
+"""Lines and points of records on the surface: cracks by the meter, samples by number; over HTTP, in
+pictures, in tables, and on another version of the scan."""
 import csv
 import io
 import math
@@ -134,7 +135,7 @@ def test_write(server, model):
 
 
 def test_tables(server):
-    """What spreadsheets and reports get, and what comes back from them."""
+    """The data for spreadsheets and reports, and its import."""
     text = server.ok("GET", T + "/records?f=csv").body.decode("utf-8-sig")
     rows = list(csv.DictReader(io.StringIO(text)))
     near(float(rows[0]["length_m"]), 0.080)
@@ -170,7 +171,7 @@ def test_tables(server):
         )
         assert sheet[-1]["class"] == "total" and sheet[-1]["point_count"] == "2", sheet
         near(float(sheet[-1]["length_m"]), 0.080)
-    # The unit of a model is a fact about it: lengths follow, and nothing is written anew.
+    # The unit belongs to the model: lengths change with it, and no record is rewritten.
     etag = server.get(M).headers["ETag"]
     etag = server.ok("PATCH", M, {"unit": "cm"}, headers={"If-Match": etag}).headers["ETag"]
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.80)
@@ -178,7 +179,7 @@ def test_tables(server):
 
 
 def test_extents(server):
-    """Where records lie that have lines and points, and nothing painted."""
+    """The extent of records that have lines and points, and no texels."""
     extent = server.ok("POST", L + "/extent", {"keys": [1]}).json()
     assert (extent["records"], extent["painted"], extent["marked"], extent["area_m2"]) == (
         1,
@@ -196,7 +197,7 @@ def test_extents(server):
     }, both
     nowhere = server.ok("POST", L + "/extent", {"keys": [3]}).json()
     assert (nowhere["records"], nowhere["marked"]) == (1, 0) and "bounds" not in nowhere, nowhere
-    # With what is painted, together.
+    # Together with texels.
     server.ok(
         "POST",
         L + "/readings?radius_mm=2",
@@ -245,7 +246,7 @@ def test_pictures(server, camera):
 
 
 def test_live(server, model):
-    """Who is on the model hears of a line that somebody else writes."""
+    """People on the model receive a line that another person writes."""
     with LiveClient(server, "sheet") as viewer:
         viewer.hello(dpr=1, accept=["jpeg"])
         server.ok(
@@ -274,7 +275,7 @@ def test_history(server):
 
 
 def test_past_pictures(server, camera):
-    """A picture of the past shows the lines of when its edit was made."""
+    """A picture of an earlier time shows the lines of that time."""
 
     def dab(x):
         return server.ok(
@@ -305,7 +306,8 @@ def test_past_pictures(server, camera):
 
 
 def test_transfer(server):
-    """A second scan of the same wall, half as large: what lies on its half comes over, snapped to its surface."""
+    """A second scan of half the wall: lines and points on its half are transferred and snapped to
+    its surface."""
     half = folded_grid(size=60.0, fold=0.001)
     server.import_model(half, "half.ply", name="Half", unit="mm")
     other = server.get("/models/half").json()["id"]
@@ -333,7 +335,7 @@ def test_transfer(server):
     server.ok("POST", T + "/undo")
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
     server.ok("DELETE", "/models/half")
-    # brings back what lies on a model that is gone: it counts nowhere, and harms nobody
+    # restores lines on a deleted model: they are not counted, and do no harm
     server.ok("POST", T + "/redo")
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
     server.ok("PATCH", T + "/records/1", {"values": {"code": "C one"}})

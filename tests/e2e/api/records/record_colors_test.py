@@ -1,4 +1,5 @@
-"""Records on the surface: colours by a column, records that are highlighted, where they lie; over HTTP and in a live view."""
+"""Records on the surface: colors by a column, highlighted records, their extents; over HTTP and in
+a live view."""
 import math
 import urllib.parse
 
@@ -26,7 +27,9 @@ def dab(server, value, x, y, radius=10):
 
 
 def color_at(rows, key):
-    """The camera looks straight down on 100 mm, and sees 110 % of the sheet's diagonal whatever its side: so by the outermost painted pixels."""
+    """Returns the color at the record's place. The camera is perpendicular to the sheet of 100 mm
+    and shows 110 % of its diagonal, independent of its side: the scale comes from the outermost
+    painted pixels."""
     x, y = PLACES[key]
     height, width = len(rows), len(rows[0])
     return rows[round((0.5 - (y - 50) / 100 * SCALE) * height)][
@@ -38,7 +41,8 @@ SCALE = None
 
 
 def find_scale(server, camera):
-    """Of the picture's height, how much the sheet's side takes: from the width of the surface in the middle row."""
+    """Returns the sheet's side relative to the picture's height, from the width of the surface in
+    the middle row."""
     rows = pixels(
         server.ok(
             "POST", M + "/frame", {"camera": camera, "layers": [], "light": UNLIT, "format": "png"}
@@ -171,7 +175,7 @@ def test_columns(server, camera):
     assert set_palette(server, BY_STATE)["others"] == "#0000ffff"
     shown = colors(server, camera)
     assert [shown[key] for key in (1, 2, 3, 4)] == [RED, GREEN, RED, BLUE], shown
-    # Numbers: classes and a gradient; without a value, half transparent grey.
+    # Numbers: classes and a gradient; half transparent gray without a value.
     set_palette(
         server,
         {
@@ -197,7 +201,7 @@ def test_columns(server, camera):
         and shown[2] == (255, 255, 255)
         and near(shown[3], (64, 64, 64))
     ), shown
-    # A record changes, and with it what is drawn; a column that is dropped is told.
+    # A change of a record changes the picture; a dropped column is reported.
     set_palette(server, BY_STATE)
     server.ok("PATCH", "/tables/pieces/records/2", {"values": {"state": "loose"}})
     assert colors(server, camera)[2] == RED
@@ -299,7 +303,7 @@ def test_highlight(server, camera):
         M + "/frame",
         {"camera": camera, "highlights": [{"layer": "wet", "highlight": {"keys": [1]}}]},
     )
-    assert answer.status == 422 and "holds numbers" in answer.json()["detail"], answer
+    assert answer.status == 422 and "stores numbers" in answer.json()["detail"], answer
 
     extent = server.ok("POST", L + "/extent", {"filter": "state = 'loose' or state is null"}).json()
     assert (extent["records"], extent["painted"]) == (4, 3), extent  # the fifth is painted nowhere
@@ -320,7 +324,8 @@ def test_highlight(server, camera):
 
 
 def test_live(server, camera):
-    """What a person lights up is theirs alone, and follows the records. (What it looks like, the page's test sees.)"""
+    """A person's highlighted records are private, and follow the records. (The page's test checks
+    the look.)"""
     set_palette(server, BY_STATE)
     with LiveClient(server, "sheet") as live, LiveClient(server, "sheet") as other:
         for each in (live, other):
@@ -329,7 +334,8 @@ def test_live(server, camera):
             each.send({"op": "camera", "seq": 1, **camera})
 
         def next_picture(before, each=live):
-            """One that differs; what is sent after a rest is the whole picture or the part that changed."""
+            """Returns a different picture; after a pause the server sends the whole picture or the
+            changed part."""
             while True:
                 frame = each.receive_until("frame")
                 if frame["payload"] != before and frame["flags"] & LAST_RECTANGLE:
@@ -344,10 +350,10 @@ def test_live(server, camera):
         next_picture(None, other)
         highlight(filter="thickness >= 4", isolate=True)
         isolated = next_picture(colored)
-        # Somebody measures again: the third belongs to them now.
+        # Another person changes a value: the third record now also matches.
         server.ok("PATCH", "/tables/pieces/records/3", {"values": {"thickness": 9}})
         assert next_picture(isolated) != colored
-        # What cannot be lit is told, and the connection lives on.
+        # Records that cannot be highlighted are reported, and the connection stays open.
         highlight(filter="nothing = 1")
         problem = live.receive_until("problem")
         assert (problem["status"], problem["field"], problem["offset"]) == (
@@ -361,7 +367,7 @@ def test_live(server, camera):
         ):
             live.send({"op": "layers", "layers": [message]})
             assert live.receive_until("problem")["field"] == field
-        # A palette of this person's own, by another column.
+        # A personal palette, by another column.
         mine = {
             "mode": "linear",
             "column": "thickness",
@@ -371,7 +377,7 @@ def test_live(server, camera):
             {"op": "layers", "light": UNLIT, "layers": [{"layer": "pieces", "palette": mine}]}
         )
         assert next_picture(isolated)
-        # The other one saw nothing of it, but the colours that all see change with the records.
+        # The other person saw nothing of this, but the shared colors change with the records.
         server.ok("PATCH", "/tables/pieces/records/3", {"values": {"state": "firm"}})
         assert next_picture(None, other)
     server.ok("PATCH", "/tables/pieces/records/3", {"values": {"thickness": 2, "state": "loose"}})

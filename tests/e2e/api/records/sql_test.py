@@ -1,4 +1,5 @@
-"""What analysts read with SQL: areas as the statistics have them, after every edit; tables under people's names; and nothing else."""
+"""Analysts read with SQL: areas as in the statistics, after every edit; tables under their own
+names; and nothing else."""
 import csv
 import io
 import os
@@ -20,7 +21,7 @@ def near(a, b, share):
 
 
 def check_areas(server, reader, model=M):
-    """Every layer of the model: by key where keys are told apart, and in all."""
+    """Checks every layer of the model: by key if it has keys, and in total."""
     for layer in server.get(model + "/layers").json()["layers"]:
         statistics = server.get(f"{model}/layers/{layer['id']}/statistics").json()
         rows = reader.rows(f"SELECT * FROM areas WHERE layer_id = {layer['id']}")
@@ -70,7 +71,7 @@ def reader(server, port):
 
 
 def test_areas_of_a_project_from_before_sums_were_kept(server, reader):
-    """The demo project's layers were journalled without sums: they are counted once the server runs."""
+    """The journal of the demo project's layers has no sums: the running server counts them once."""
     wait_for(
         lambda: reader.rows("SELECT count(*) FROM layers WHERE NOT areas_current")[0]["count"]
         == "0",
@@ -96,7 +97,7 @@ def sheet(server):
 
 @pytest.mark.usefixtures("sheet")
 def test_edits(server, reader):
-    """Strokes, fills, erasing, undo: after each the areas are those of the statistics, at once."""
+    """After strokes, fills, erasing and undo, the areas equal those of the statistics at once."""
     layers = {}
     for body in (
         {"name": "Marks", "type": "u8"},
@@ -146,7 +147,7 @@ def test_edits(server, reader):
     assert [(row["op"], int(row["sequence"])) for row in history] == [
         (edit["op"], edit["sequence"]) for edit in told
     ], history
-    # A table's record, and what it covers; the unit of the model is a number like any other.
+    # A table's record and its area; the unit of the model is an ordinary number.
     joined = 'SELECT u."Code", a.area_m2 FROM areas a JOIN "Units" u USING (key) WHERE a.table_id = (SELECT table_id FROM tables WHERE "table" = \'Units\') ORDER BY key'
     before = reader.rows(joined)
     assert [row["Code"] for row in before] == ["SU 2", "SU 3"], before
@@ -158,7 +159,7 @@ def test_edits(server, reader):
 
 
 def test_places(server, reader):
-    """Analysts get places as text, and may call what makes it."""
+    """Analysts get places as text, and may call the function that makes it."""
     rows = reader.rows("SELECT * FROM areas WHERE model = 'Sheet'")
     assert rows and all(
         row["geometry_wkt"]
@@ -263,7 +264,7 @@ def test_tables(server, reader):
         == "1560~"
     )
 
-    # An analyst who keeps a table open does not keep people from changing it.
+    # An analyst's open table does not prevent changes by people.
     with subprocess.Popen(
         reader.command() + ["-At"],
         stdin=subprocess.PIPE,
@@ -292,7 +293,7 @@ def test_tables(server, reader):
         and len(columns(reader, "Calm")) == 5
     )
     assert hostile not in views(reader).values()
-    server.ok("POST", "/tables/hostile/undo")  # the dropped column comes back
+    server.ok("POST", "/tables/hostile/undo")  # restores the dropped column
     assert len(columns(reader, "Calm")) == 6, columns(reader, "Calm")
     server.ok("DELETE", "/tables/hostile")
     assert "Calm" not in views(reader).values()

@@ -1,5 +1,6 @@
-"""A day's work with the tables of a project, over HTTP: two trenches share their units, records come by hand and as CSV, keys are painted, changed, undone,
-read as they were, deleted with what is painted; and what bad input gets."""
+"""A day's work with the tables of a project, over HTTP: two trenches share their units; records are
+written by hand and as CSV; keys are painted, changed, undone, read as of earlier times, and deleted
+with their texels; and refusals of invalid input."""
 import csv
 import io
 from concurrent.futures import ThreadPoolExecutor
@@ -96,7 +97,7 @@ def live(server):
 
 
 def test_layers_of_two_models_share_a_table(server, table):
-    """Layers of two models name one table; what a layer is made with of its own is a table of its name."""
+    """Layers of two models name one table; a layer without one gets a table with its own name."""
     for model in ("north", "south"):
         layer = server.ok(
             "POST",
@@ -224,7 +225,7 @@ def test_paint_live(server, cameras):
 
 
 def test_edit_together(server):
-    """Who has a record open is told on all models of the project, and gone with the connection."""
+    """Editors of a record are shown on all models of the project, until they disconnect."""
     table = server.get(T).json()["id"]
     viewer = server.ok("POST", "/me/tokens", {"name": "looks on", "role": "viewer"}).json()[
         "secret"
@@ -262,12 +263,12 @@ def test_edit_together(server):
                 assert [
                     each["key"] for each in late.receive_until("record.editors")["records"]
                 ] == [1, 2]
-            edit(south, 1)  # somebody has it: nothing changes
+            edit(south, 1)  # already edited by another: no change
             edit(south, 1, take_over=True)
             for live in (north, south, looks_on):
                 assert live.receive_until("record.editors")["records"][0]["session"] == own
-            edit(north, 1, editing=False)  # it is no longer theirs
-        # They are gone, and with them what was theirs still.
+            edit(north, 1, editing=False)  # ends their own edit
+        # After a disconnection the rest of their edits end.
         for live in (south, looks_on):
             assert live.receive_until("record.editors")["records"] == [{"table": table, "key": 2}]
         for message, refusal in (
@@ -302,8 +303,8 @@ def test_delete_painted(server):
     assert abs(area(server, 1, NORTH) - sum(before)) < 1e-9
     assert server.get(T + "/records/2").status == 404
     reused = server.post(T + "/records", {"key": 2, "values": {"code": "x"}})
-    assert reused.status == 409 and reused.json()["title"] == "Key used before"
-    # the texels are the layer's: they can be taken back, and the record, too
+    assert reused.status == 409 and reused.json()["title"] == "Key already used"
+    # the texels belong to the layer: undo restores them, and the record can be restored, too
     server.ok("POST", NORTH + "/undo")
     assert [each["has_record"] for each in server.ok("GET", T + "/areas").json()["areas"]] == [
         True,
@@ -327,19 +328,20 @@ def test_delete_painted(server):
     server.ok("POST", T + "/undo")
     server.ok("POST", SOUTH + "/undo")
     assert area(server, 1, SOUTH) > 0
-    # What would take a painted record away is not undone.
+    # An undo that would delete a painted record is refused.
     server.ok("POST", T + "/records", {"key": 400, "values": {"code": "SU 400"}})
     server.ok(
         "POST", SOUTH + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 400}
     )
-    assert server.post(T + "/undo").json()["title"] == "Record is painted"
+    assert server.post(T + "/undo").json()["title"] == "Record has painted texels"
     server.ok("POST", SOUTH + "/undo")
     server.ok("POST", T + "/undo")
     assert 400 not in records(server)
 
 
 def test_delete_under_a_stroke(server, cameras):
-    """Who began to paint while there was a record does not paint it again when it is gone, and goes on where it comes back."""
+    """A stroke that began with a record does not paint it after its deletion, and continues after
+    its restore."""
     camera = cameras["north"]
     server.ok("POST", T + "/records", {"key": 500, "values": {"code": "SU 500"}})
     with LiveClient(server, "north") as live:
@@ -410,7 +412,7 @@ def test_bulk(server):
         "utf-8-sig"
     )
     assert with_comma.splitlines()[0].endswith(";area_m2") and ";0,75;" in with_comma, with_comma
-    # It goes in as it came out, and says that nothing is new.
+    # The export can be imported again, and the answer reports no change.
     unchanged = server.ok("POST", T + "/records", text, headers=CSV).json()
     assert (unchanged["unchanged"], unchanged["sequence"]) == (3, 0), unchanged
     assert (
@@ -467,7 +469,7 @@ def test_bulk(server):
 
 
 def test_a_map_brings_records(server):
-    """Names of a map that the legend lacks become records, under keys that no record has."""
+    """Names of a map that the legend lacks become records with new keys."""
     server.ok("POST", "/tables/notes/records", {"values": {"name": "by hand"}})
     features = [
         {
@@ -544,12 +546,12 @@ def test_change_columns(server):
 
 
 def test_change_at_once(server):
-    """Names, columns and records of one table, by three people."""
+    """Three people change the names, columns and records of one table."""
     server.ok("POST", "/projects/default/tables", {"name": "Busy"})
 
     def rename(n):
         answer = server.request("PATCH", "/tables/busy", {"name": f"Busy {n}"})
-        while answer.status == 412:  # a column came between
+        while answer.status == 412:  # another column was inserted
             answer = server.request("PATCH", "/tables/busy", {"name": f"Busy {n}"})
         assert answer.status == 200, answer
 
@@ -579,7 +581,7 @@ def test_circles(server):
 
 
 def test_widen(server, cameras, story):
-    """A layer whose keys have run out gets room for more: what is painted, its history and its undo stay."""
+    """A layer without free keys is widened: its texels, history and undo stay."""
     camera = cameras["north"]
     path = "/models/north/layers/few"
     server.ok(

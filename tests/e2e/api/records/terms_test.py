@@ -1,5 +1,6 @@
-"""Lists of terms over HTTP: as CSV and SKOS in and out, as a tree that is searched, painted in their own colours; what hostile files get; and templates, which make
-tables and layers at once."""
+"""Lists of terms over HTTP: import and export as CSV and SKOS, search in the tree, painting in
+their own colors; refusals of hostile files; and templates, which make tables and layers together.
+"""
 import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
@@ -90,7 +91,7 @@ def test_import_csv(server):
 
 
 def test_import_again(server):
-    """A second import changes by code, keeps keys, brings a language, and is one step of undo."""
+    """A second import changes terms by code, keeps keys, adds a language; it is one undo step."""
     text = (
         "code,label,label-de,parent\nsalt,Salt crystals,Salze,deposit\npitted,Pitted,Narbig,loss\n"
     )
@@ -113,10 +114,10 @@ def test_import_again(server):
     ]
     server.ok("POST", LIST + "/redo")
     for text, line, title in [
-        ("code,parent\nloss,worn\n", 2, "Terms in a circle"),
-        ("code,parent\nloss,\nx,y\n", 3, "No such parent"),
-        ("code,color\nloss,\nx,red\n", 3, "Bad colour"),
-        ("code\na\na\n", 3, "Code twice"),
+        ("code,parent\nloss,worn\n", 2, "Terms form a circle"),
+        ("code,parent\nloss,\nx,y\n", 3, "Parent not found"),
+        ("code,color\nloss,\nx,red\n", 3, "Invalid color"),
+        ("code\na\na\n", 3, "Duplicate code"),
     ]:
         refused = server.post(LIST + "/terms", text.encode(), headers=CSV)
         problems = refused.json()["rows"]["problems"]
@@ -127,7 +128,7 @@ def test_import_again(server):
         dry = server.ok("POST", LIST + "/terms?dry_run=true", text.encode(), headers=CSV).json()
         assert dry["problems"] == problems and dry["dry_run"]
     assert len(tree(server)) == 6
-    # A circle that is made by hand is listed, told, and does not hide its terms.
+    # A cycle made by hand is listed and reported, and does not hide its terms.
     server.ok("PATCH", LIST + "/records/1", {"values": {"parent": 2}})
     assert server.ok("GET", LIST + "/columns/parent/cycles").json()["cycles"] == [[1, 2]]
     assert len(tree(server)) == 6
@@ -157,8 +158,8 @@ def test_skos(server):
       <skos:Concept rdf:about="https://t.example/a"><skos:prefLabel xml:lang="en">A</skos:prefLabel></skos:Concept></rdf:RDF>"""
     made = server.ok("POST", PROJECT + "/terms?name=Letters", xml.encode(), headers=XML).json()
     letters = f"/tables/{made['table']['slug']}"
-    # By URI: the code changes, the key stays. Two preferred labels of one language, and a second
-    # broader term, are counted.
+    # By URI: the code changes, the key stays. Second preferred labels of one language and second
+    # broader terms are counted.
     more = (
         PREFIXES
         + """t:a a skos:Concept ; skos:notation "alpha" ; skos:prefLabel "A"@en, "Ah"@en .
@@ -259,7 +260,8 @@ def test_hostile(server):
 
 
 def test_colours(server, camera):
-    """A layer of terms has their colours while it has no palette of its own, and follows them."""
+    """A layer of terms has the terms' colors while it has no own palette, and follows their
+    changes."""
     layer = server.ok(
         "POST",
         "/models/wall/layers",
@@ -296,7 +298,7 @@ def test_colours(server, camera):
     assert (
         now.json()["palette"]["points"][0]["color"] == "#102030ff" and now.headers["ETag"] != etag
     ), now
-    # Renaming keeps it following; a palette of its own does not.
+    # Renaming the layer does not change this; a separate palette does.
     server.ok("PATCH", "/models/wall/layers/stone", {"name": "Stone now"})
     server.ok("PATCH", LIST + "/records/1", {"values": {"color": "#405060"}})
     assert (
@@ -378,7 +380,7 @@ def test_templates(server):
     ]:
         answer = server.post(f"{PROJECT}/templates/{path}", body)
         assert answer.status == status, f"{what}: {answer}"
-    # The layer's name is taken, the tables' are not: nothing is made.
+    # The layer's name is in use, the names of the tables are not: nothing is created.
     server.ok("POST", "/models/wall/layers", {"name": "treatments"})
     refused = server.post(PROJECT + "/templates/treatment", {"model": "wall"})
     assert refused.status == 409 and "Rename or delete" in refused.json()["detail"], refused

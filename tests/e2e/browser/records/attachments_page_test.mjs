@@ -1,6 +1,5 @@
-// Pictures and documents of records on the page: added in the form, seen in the table and on the
-// card of the surface, taken away, undone; and a folder of photos whose names say which records
-// they are of.
+// Pictures and documents of records on the page: added in the form, visible in the table and on the
+// card of the surface, removed, undone; and a folder of photos whose names match records.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -20,7 +19,7 @@ const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
-/** A picture that is all of one colour, so that two are two. */
+/** Makes a picture of one color, so that pictures differ. */
 function photo(name, red) {
   const path = join(folder, name);
   const data = Buffer.alloc(64 * 48 * 4);
@@ -41,7 +40,7 @@ const shown = (images) =>
     "thumbnails to be drawn",
   );
 let mouse = [0, 0];
-/** In shares of the stage; on the way it comes over something else. */
+/** In shares of the stage; the pointer passes over other content on its way. */
 async function rest_at(x, y) {
   const stage = await browser.stage_box();
   mouse = [stage.x + x * stage.width, stage.y + y * stage.height];
@@ -233,7 +232,7 @@ test("until the mouse rests on another, something is pressed or the view moves",
   await page.mouse.down();
   assert.equal(await glance.count(), 0);
   await page.mouse.up();
-  await card.getByText("SU 2").first().waitFor(); // the tap shows all of it
+  await card.getByText("SU 2").first().waitFor(); // the tap shows the whole card
   await button(words.tables.card_close).click();
   await rest_at(0.37, 0.57);
   await glance.getByText("SU 1", { exact: true }).waitFor();

@@ -1,6 +1,6 @@
-// The table of a layer's records: ten thousand rows, sorted, written into, refused, changed by two
-// at once, undone; new records, deleted ones, columns, and CSV both ways. What the page shows is
-// compared with what the server has.
+// The table of a layer's records: ten thousand rows, sorted, edited, refused, changed by two people
+// at once, undone; new and deleted records, columns, and CSV in both directions. The test compares
+// the page with the server's data.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../../support/js/browser.mjs";
@@ -112,7 +112,7 @@ test.beforeAll(async () => {
     table: "units",
     resolution: 2048,
   });
-  // The names of the records to choose from come only after something was typed.
+  // The names of records to choose from arrive only after some typing.
 
   const typed = new Promise((resolve) => (let_names_go = resolve));
   are_names = (url) =>
@@ -161,7 +161,7 @@ test("a click on a column's name sorts by it, again turns the order round", asyn
 test("cells are written into by kind", async () => {
   await write(1, "Depth", "2.5");
   await stored(1, "depth", 2.5);
-  await write(1, "Note", "Charcoal", "Tab"); // on to the next cell, which is a relation
+  await write(1, "Note", "Charcoal", "Tab"); // to the next cell, which is a relation
   await page.keyboard.type("SU 9999");
   let_names_go();
   await panel.getByRole("option", { name: /SU 9999/ }).waitFor();
@@ -182,7 +182,7 @@ test("cells are written into by kind", async () => {
   await write(1, "Sealed", "y");
   await stored(1, "sealed", true);
   await cell(2, "Note").click();
-  await page.keyboard.type("b"); // begins to write; the brush is not taken
+  await page.keyboard.type("b"); // starts to edit the cell; does not select the brush
   await page.keyboard.type("one");
   await page.keyboard.press("Enter");
   await stored(2, "note", "bone");
@@ -296,7 +296,7 @@ test("a new record by its form, with what is wrong at the field", async () => {
   await panel.getByText(words.tables.records(10_001)).waitFor();
   await cell(kMany + 1, "Code")
     .getByText("Pit")
-    .waitFor(); // brought into sight, and chosen
+    .waitFor(); // made visible, and chosen
 });
 
 test("the chosen record is painted with, and its area is seen in the table", async () => {
@@ -401,7 +401,7 @@ test("columns come, get names in other languages, change their kind and tell wha
   await dialog.getByLabel(words.labels.language(1), { exact: true }).fill("es_MX");
   await dialog.getByRole("textbox", { name: words.labels.label("es_MX") }).fill("Bolsas");
   await button(words.save).click();
-  await dialog.getByText('"es_MX" is no language tag such as `es` or `pt-BR`.').waitFor();
+  await dialog.getByText(/"es_MX" is not a language tag/).waitFor();
   assert.equal(
     await dialog.getByLabel(words.labels.language(1), { exact: true }).getAttribute("aria-invalid"),
     "true",

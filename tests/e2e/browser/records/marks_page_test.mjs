@@ -1,6 +1,6 @@
-// Lines and points on the surface: columns of them are made on the page, a crack is drawn by a drag
-// and by clicks, a sample by a click; the table measures them, the picture shows them, undo takes
-// them away, and the form of a record takes one out and leads to drawing more.
+// Lines and points on the surface: the page creates columns for them, a crack is drawn by dragging
+// and by clicks, a sample by a click; the table shows their lengths, the picture shows them, undo
+// removes them, and the form of a record can remove one and draw more.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";
@@ -31,7 +31,7 @@ const hides = (color, what) =>
 const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
 const length_of = ({ coordinates }) =>
   coordinates.slice(1).reduce((sum, place, at) => sum + distance(place, coordinates[at]), 0);
-/** What a pixel of the page is on the object, as the scale bar tells it. */
+/** Returns the length of a page's pixel on the object, according to the scale bar. */
 async function metres_per_pixel() {
   const { width } = await page.locator("strata-stage .scale i").boundingBox();
   return metres_of(await page.locator("strata-stage .scale").innerText()) / width;
@@ -275,7 +275,7 @@ test("a drag along the silhouette is one line on the surface that was begun", as
   await page.keyboard.press("Escape");
   frame = await browser.stage_box();
   const scale = camera.width / frame.width;
-  /** Where the pot begins in a row of the picture, in pixels of the page. */
+  /** Returns the pot's edge in a row of the picture, in pixels of the page. */
   const edge_at = async (y) => {
     const path = [
       [1, y * scale],
@@ -316,10 +316,10 @@ test("a drag along the silhouette is one line on the surface that was begun", as
     along_m > 0.5 * way_m && along_m < 2.5 * way_m,
     `${along_m} m where ${way_m} m were drawn`,
   );
-  // From place to place it goes along the surface, which is seen at a slant: a step may be long,
-  // but leads neither through the pot nor to what lies behind.
+  // Between places the line follows the surface, which is seen at an angle: a step may be long, but
+  // passes neither through the pot nor to surfaces behind it.
   const places = along[0].coordinates;
-  const radius = ([x, y]) => Math.hypot(x, y) * metres_per; // the pot stands on the axis of z
+  const radius = ([x, y]) => Math.hypot(x, y) * metres_per; // the pot's axis is z
   const steps = places.slice(1).map((place, at) => [places[at], place]);
   const longest = Math.max(...steps.map(([from, to]) => distance(from, to))) * metres_per;
   assert.ok(longest < 80 * (await metres_per_pixel()), `a step of ${longest} m`);

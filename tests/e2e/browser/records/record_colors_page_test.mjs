@@ -1,6 +1,5 @@
-// Records on the model: coloured by what a column says, with patterns, for this person or for all;
-// rows that are chosen and rows that a filter finds stand out, alone where that is wanted, and the
-// camera goes to them.
+// Records on the model: colored by a column's values, with patterns, for this person or for all;
+// chosen rows and rows of a filter are highlighted, or shown alone, and the camera moves to them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";
@@ -11,7 +10,7 @@ import { texts_of } from "../../support/js/texts.mjs";
 const words = texts_of("en");
 
 const kSherds = 14;
-const kEnough = 1500; // pixels of a sherd or more
+const kEnough = 1500; // pixels of a visible sherd
 const [kLoose, kFirm] = ["#ff00ff", "#00e0ff"];
 
 const base = "/models/demo-pot";

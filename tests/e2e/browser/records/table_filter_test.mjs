@@ -1,5 +1,5 @@
-// The table of records as a tool among others: the keys of the page while it has the keyboard, a
-// filter for each column, and files; areas and cross-tables as copies and files.
+// The table of records together with the other tools: the page's keys while the table has the
+// keyboard focus, a filter for each column, and files; areas and cross-tables as copies and files.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -47,7 +47,7 @@ const saved = async (click) => {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 };
-/** The page's tool in hand. */
+/** The page's current tool. */
 const tool = () =>
   page.locator("strata-tool-rail button[aria-pressed=true]").getAttribute("aria-label");
 
@@ -265,7 +265,7 @@ test("by keys alone", async () => {
   await page.keyboard.press("Enter");
   await sheet.getByRole("dialog").waitFor();
   const value = sheet.getByRole("checkbox", { name: /^SU 1/ });
-  await value.waitFor(); // the values are counted first
+  await value.waitFor(); // after the values are counted
   await value.focus();
   await page.keyboard.press("Space");
   await page.keyboard.press("Enter");

@@ -1,6 +1,6 @@
-// A list of terms on the page: made by a template, chosen from the tree by typing and by keys,
-// painted in its colour, as the legend has it; lists from SKOS, looked at before they are written,
-// imported again, saved; and what is refused.
+// A list of terms on the page: created by a template, chosen from the tree by typing and by keys,
+// painted in its color, with the legend's; lists from SKOS, previewed before the import, imported
+// again, saved; and refusals.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -40,7 +40,7 @@ const drop = (on, name, text) =>
     [name, text],
   );
 const pixels = async (color) => {
-  await page.mouse.move(5, 5); // the brush's circle is no paint
+  await page.mouse.move(5, 5); // the brush's circle would be counted
   return browser.count(rgb(color));
 };
 const statistics = (layer) => server.json("GET", `${base}/layers/${layer}/statistics`);
@@ -152,7 +152,7 @@ test("the arrow keys go through the tree, fold and unfold it", async () => {
           .getElementById(input.getAttribute("aria-activedescendant") ?? "")
           ?.innerText.trim() ?? "",
     );
-  await search.press("ArrowLeft"); // from the one that is chosen to the one above
+  await search.press("ArrowLeft"); // from the chosen term to its parent
   assert.equal(await active(), "Coming off");
   await search.press("ArrowLeft");
   await wait_for(

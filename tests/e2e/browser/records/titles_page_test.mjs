@@ -1,5 +1,5 @@
-// A table chooses the column that its records are called by, which may be a term; terms in a
-// record's form stand as in the brush, in a list that opens when it is asked for.
+// A table chooses its title column, which may be one of terms; a record's form shows terms as the
+// brush does, in a list that opens on request.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../../support/js/browser.mjs";
@@ -75,7 +75,7 @@ test("records are called by the column that their table chooses, and terms open 
   const grid = page.locator("strata-table-panel");
   await grid.getByText("Zinc").first().waitFor();
 
-  // By the tree, not by the codes, nor by the keys.
+  // In the order of the tree, not of the codes or keys.
   await grid
     .getByRole("columnheader", { name: /^Damage/ })
     .getByRole("button", { name: /^Damage/ })
@@ -89,7 +89,7 @@ test("records are called by the column that their table chooses, and terms open 
     "the rows in the order of the tree",
   );
 
-  // The title becomes the term.
+  // The column of terms becomes the title.
   await grid
     .getByRole("columnheader", { name: /^Damage/ })
     .getByRole("button", { name: /column/i })
@@ -107,7 +107,7 @@ test("records are called by the column that their table chooses, and terms open 
     .waitFor();
   await shot("chosen");
 
-  // The form: nothing opens by itself, and the list is the tree.
+  // The form: no list opens automatically, and the list is the tree.
   await grid
     .getByRole("button", { name: words.tables.edit })
     .or(grid.locator(".chosen").getByRole("button").nth(1))

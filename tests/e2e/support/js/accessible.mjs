@@ -1,5 +1,4 @@
-// What a person with a keyboard, a reader of the screen, strong light or a small window needs of
-// whatever the page shows now.
+// Checks of a page for people with a keyboard, a screen reader, strong light or a small window.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
@@ -10,7 +9,7 @@ const kAxe = readFileSync(
 );
 load_module("axe-core");
 
-/** The serious and critical findings of axe-core, a line each. `rules`: only these. */
+/** Returns the serious and critical findings of axe-core, one per line. `rules`: only these. */
 export async function findings(page, rules = null) {
   if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
   const violations = await page.evaluate(
@@ -37,8 +36,8 @@ export async function findings(page, rules = null) {
 }
 
 /**
- * Of these rules all findings, however grave, and rules that axe-core does not ask by itself, a
- * line each.
+ * Returns all findings of these rules, of any severity, also of rules that axe-core does not apply
+ * by default, one per line.
  */
 export async function violations(page, rules) {
   if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
@@ -57,7 +56,7 @@ export async function violations(page, rules) {
   );
 }
 
-/** Sees through the roots of elements. */
+/** Also searches in shadow roots. */
 const kDeep = `
   const deep_all = (root = document) => [...root.querySelectorAll("*")].flatMap((each) => [each, ...(each.shadowRoot ? deep_all(each.shadowRoot) : [])]);
   const deep_active = () => { let at = document.activeElement; while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement; return at; };
@@ -67,8 +66,8 @@ const kDeep = `
 const evaluate = (page, body) => page.evaluate(`(() => { ${kDeep} ${body} })()`);
 
 /**
- * What is wider than its room: the document, dialogs and menus as wholes, words that leave their
- * control, and buttons of a dialog or of the tour that do not stand in one row.
+ * Returns the elements that are wider than their container: the document, whole dialogs and menus,
+ * words outside their control, and buttons of a dialog or of the tour in more than one row.
  */
 export const overflows = (page) =>
   evaluate(
@@ -113,8 +112,8 @@ export const active = (page) =>
   evaluate(page, "const at = deep_active(); return at === document.body ? '' : told(at);");
 
 /**
- * Goes through all stops of the Tab key; what they do not reach, and those whose focus is not seen.
- * What goes by itself meanwhile, as notices do, need not be reached.
+ * Visits all stops of the Tab key; returns the controls that it does not reach, and those without
+ * visible focus. Elements that disappear during the walk, such as notices, are not required.
  */
 export async function walk(page) {
   await evaluate(

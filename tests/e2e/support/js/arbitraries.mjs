@@ -1,13 +1,12 @@
-// Values for fast-check out of JSON Schemas, good ones and bad ones. The good ones are good as far
-// as members, types and limits go; what a schema cannot say (which layers there are, what a
-// condition looks like) is given by hand: `words.by_name` for members and parameters,
-// `words.by_schema` for the contract's components.
+// Values for fast-check from JSON Schemas, valid and invalid ones. Valid values follow members,
+// types and limits; the caller gives values that a schema cannot describe (existing layers, the
+// syntax of a condition): `words.by_name` for members and parameters, `words.by_schema` for the
+// contract's components.
 import { load_module } from "./modules.mjs";
 
 export const fc = load_module("fast-check");
 
-// beyond the fewest that a schema allows: long lists are a matter of limits, which have tests of
-// their own
+// in addition to the minimum of a schema: other tests cover the limits of long lists
 const kManyItems = 3;
 const kStrangeTexts = [
   "",
@@ -127,8 +126,8 @@ function number_of({ type, minimum = -1e6, exclusiveMinimum, maximum = 1e6 }) {
 }
 
 /**
- * With some of the optional members, seldom with all: most of them exclude one another in ways that
- * a schema does not say.
+ * Objects with some of the optional members, rarely with all: most of them exclude one another in
+ * ways that a schema does not describe.
  */
 function object_of(contract, schema, words) {
   const members = Object.entries(schema.properties ?? {});
@@ -168,8 +167,8 @@ function object_of(contract, schema, words) {
 }
 
 /**
- * `oneOf` and `anyOf` beside `properties` say which members go together: each choice becomes a
- * schema of its own.
+ * `oneOf` and `anyOf` next to `properties` list the allowed combinations of members: each choice
+ * becomes a separate schema.
  */
 function choices_of(contract, schema) {
   const word = schema.oneOf ? "oneOf" : "anyOf";
@@ -220,7 +219,7 @@ export function arbitrary_of(contract, schema, words) {
   }
 }
 
-/** Every place in a JSON value, as the way to it. */
+/** Returns every place in a JSON value, as the path to it. */
 function places_of(value, way = []) {
   if (value === null || typeof value !== "object") return [way];
   return [way, ...Object.entries(value).flatMap(([name, item]) => places_of(item, [...way, name]))];
@@ -235,7 +234,7 @@ function with_change(value, [name, ...rest], change) {
   return copy;
 }
 
-/** The value with one thing wrong somewhere: another value, a member gone, or one too many. */
+/** The value with one error: another value, a missing member, or an additional one. */
 export function damaged(arbitrary) {
   return fc
     .tuple(

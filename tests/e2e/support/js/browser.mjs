@@ -1,5 +1,5 @@
-// Real Chromium on the real page. Without Chromium or playwright-core the tests are skipped loudly
-// by hand and fail in CI.
+// Real Chromium with the real page. Without Chromium or playwright-core the tests are skipped
+// loudly by hand and fail in CI.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -28,10 +28,10 @@ function load_playwright() {
   return load_module("playwright-core");
 }
 
-/** Call it first: nothing is left behind then when something is missing. */
+/** Call it first, so that a missing program leaves no data behind. */
 export const require_browser = () => void load_playwright();
 
-/** What the console says when a test takes the server away, whatever each connection was at. */
+/** Console messages after a test stops the server, in any state of the connections. */
 export const kOfLostServer = [
   "WebSocket connection",
   "ERR_CONNECTION_REFUSED",
@@ -41,22 +41,22 @@ export const kOfLostServer = [
   "ERR_CONNECTION_CLOSED",
 ];
 
-/** What Redoc says of two schemas of the contract at `/docs`; it leaves out a part of them. */
+/** Redoc's message about two schemas of the contract at `/docs`; it leaves out a part of them. */
 export const kOfRedoc = ["oneOf and anyOf are not supported on the same level"];
 
-/** Runs in the page, before everything of its own. */
+/** Runs in the page, before the page's own scripts. */
 function seen_tour() {
   try {
     localStorage.setItem("strata.tour_over", "true");
   } catch {
-    // A page that keeps nothing, such as about:blank.
+    // A page without storage, such as about:blank.
   }
 }
 
 export class Browser {
   /**
-   * `tour`: the tour of the model's page offers itself, as to who comes for the first time; without
-   * it this person has seen it.
+   * `tour`: the page offers the tour of the model's page, as on a first visit; otherwise this
+   * person has seen it.
    */
   static async open({ tour = false, ...options } = {}) {
     const { chromium } = load_playwright();
@@ -112,7 +112,7 @@ export class Browser {
     await this.page.getByRole("heading", { name: /^(Models|Projects)$/ }).waitFor();
   }
 
-  /** The model page with its first picture. */
+  /** Opens the model page and waits for its first picture. */
   async drawn() {
     await wait_for(() => this.frames().then((count) => count > 0), "the first picture");
   }
@@ -135,7 +135,7 @@ export class Browser {
     return decode_png(await this.page.screenshot(clip ? { clip } : {}));
   }
 
-  /** No request of the page is under way, what came of the last is drawn, and the stage is still. */
+  /** Waits until the page has no open request, the results are drawn, and the stage is still. */
   async idle() {
     await this.page.waitForFunction(async () => {
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
@@ -148,7 +148,7 @@ export class Browser {
     );
   }
 
-  /** A screenshot of what no longer changes: two in a row are the same. */
+  /** Returns a screenshot of the stable page: two in a row are the same. */
   async settled(take = () => this.page.screenshot()) {
     await this.idle();
     let last = null;
@@ -177,7 +177,7 @@ export class Browser {
     await this.page.mouse.up();
   }
 
-  /** They lie over the stage, and some go without help. */
+  /** Closes the notices, which cover the stage; some close automatically. */
   async close_notices() {
     const close = this.page.locator("strata-notices").getByRole("button", { name: "Close" });
     await wait_for(async () => {
@@ -194,7 +194,7 @@ export class Browser {
     await this.page.mouse.move(box.x + x * box.width, box.y + y * box.height);
   }
 
-  /** Pixels of the stage that have the hue of a colour, however it is lit. */
+  /** Counts the pixels of the stage with the hue of a color, in any light. */
   async count(color) {
     return count_hue(await this.picture(await this.stage_box()), color);
   }

@@ -1,7 +1,6 @@
-// Calls of the contract's operations as fast-check makes them: most are good, the others have
-// something wrong with them. A call says what to send in words, so that a failing one can be read:
-// {path: {model: "wall"}, query: [["at", "3"]], headers, body: {json} | {text} | {hex} | {file} |
-// null}.
+// Calls of the contract's operations by fast-check: most are valid, others have an error. A call
+// describes its content in words, so that a failing one is readable: {path: {model: "wall"}, query:
+// [["at", "3"]], headers, body: {json} | {text} | {hex} | {file} | null}.
 import { arbitrary_of, damaged, fc, strange_number, strange_text } from "./arbitraries.mjs";
 import {
   content_of,
@@ -14,10 +13,10 @@ import {
   words,
 } from "./vocabulary.mjs";
 
-/** One time in so many; otherwise null. */
+/** Once in `times` cases; otherwise null. */
 const once_in = (times, arbitrary) =>
   fc.oneof({ weight: times - 1, arbitrary: fc.constant(null) }, { weight: 1, arbitrary });
-/** In addresses, whose heads are of 8 KiB at most; beyond that no operation is reached. */
+/** For addresses, whose heads have at most 8 KiB; longer ones reach no operation. */
 const strange_word = fc.oneof(
   strange_text.map((text) => text.slice(0, 300)),
   strange_number.map(String),
@@ -46,7 +45,7 @@ function body_of(contract, operation, { words: own = words, content = {} }) {
     : fc.oneof(fc.constant({ type: null, body: null }), ...kinds);
 }
 
-/** Those whose parameters depend on one another have some that go together. */
+/** Operations with dependent parameters have some matching combinations. */
 function query_of(operation, own) {
   const parameters = operation.parameters.filter((each) => each.in === "query");
   const each = parameters.map(({ name, schema, required }) => {
@@ -73,7 +72,7 @@ function headers_of(operation) {
     .map(([headers, accept]) => ({ ...headers, Accept: accept }));
 }
 
-/** One thing that is wrong with the whole call. */
+/** One error of the whole call. */
 const mishap = fc.oneof(
   fc.record({ what: one("a parameter replaced"), n: fc.nat(), text: strange_word }),
   fc.record({ what: one("a parameter dropped", "a parameter twice"), n: fc.nat() }),

@@ -1,5 +1,5 @@
-// Cases in a real browser, which @playwright/test runs: those of a file tell one story of one
-// server, in their order, and the first that fails ends it.
+// Cases in a real browser, which @playwright/test runs: the cases of a file are one sequence on one
+// server, in their order; the first failure ends it.
 import { Browser, require_browser } from "./browser.mjs";
 import { load_module } from "./modules.mjs";
 import { StrataServer } from "./strata-server.mjs";
@@ -21,7 +21,7 @@ export const test = playwright.test.extend({
     },
     { scope: "worker" },
   ],
-  /** Somebody at the page: a `Browser`. */
+  /** A person's page: a `Browser`. */
   desk: [
     async ({ server: _server }, use) => {
       const desk = await Browser.open();
@@ -33,7 +33,7 @@ export const test = playwright.test.extend({
   page: ({ desk }, use) => use(desk.page),
 });
 
-/** After each case: what the server wrote, beside the trace and the picture of a failure. */
+/** After a failed case: attaches the server's log, in addition to the trace and the picture. */
 export async function attach_log(info, server) {
   if (server && info.status !== info.expectedStatus)
     await info.attach("log of the server", {

@@ -1,5 +1,5 @@
-// The server's own contract (openapi.json) as something to call and to hold answers against:
-// contract.py does the latter for the tests in Python with less of JSON Schema.
+// The server's own contract (openapi.json), for making calls and checking answers. For the tests in
+// Python, contract.py checks answers with less of JSON Schema.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
@@ -16,8 +16,8 @@ const media_type_of = (headers) =>
   (headers["content-type"] ?? "").split(";")[0].trim().toLowerCase();
 
 /**
- * What a parameter's text says, by the type of its schema; text that is none of its type stays
- * text, so that the schema refuses it.
+ * Parses a parameter's text by the type of its schema; text of another type stays text, so that the
+ * schema refuses it.
  */
 function read_parameter(schema, text) {
   if (schema.type === "boolean") return { true: true, false: false }[text] ?? text;
@@ -39,7 +39,7 @@ export class Contract {
     );
   }
 
-  /** What a reference within the document stands for; anything else is what it is. */
+  /** Returns the target of a reference within the document; returns other nodes unchanged. */
   resolve(node) {
     while (node.$ref)
       node = node.$ref
@@ -73,7 +73,7 @@ export class Contract {
     };
   }
 
-  /** What a schema of the document says against a value. */
+  /** Returns the faults of a value by a schema of the document. */
   faults_of(schema, value) {
     if (!this.compiled.has(schema)) {
       const text = JSON.stringify(schema).replaceAll('"$ref":"#/', '"$ref":"contract#/');
@@ -88,7 +88,7 @@ export class Contract {
         );
   }
 
-  /** What is wrong with an answer: {status, headers, body: Buffer}. */
+  /** Returns the faults of an answer: {status, headers, body: Buffer}. */
   faults_of_answer(operation, { status, headers, body }) {
     if (status >= 500) return [`${status} is the server's own fault`];
     const described = operation.responses.get(status);
@@ -126,9 +126,8 @@ export class Contract {
   }
 
   /**
-   * What the contract has against a request's parameters and JSON: such a request must not be
-   * carried out. A parameter without a value may
-   *       count as absent.
+   * Returns the contract's faults of a request's parameters and JSON: the server must not execute
+   * such a request. A parameter without a value may count as absent.
    */
   faults_of_request(operation, { query, headers, body }) {
     const faults = [];

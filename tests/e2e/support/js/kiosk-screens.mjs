@@ -1,12 +1,12 @@
-// Every screen of a kiosk, and one way to each: for the sheet of all screens (contact_sheet.mjs).
-// kiosk_test.mjs holds what must be true of them.
+// Every screen of a kiosk, with a way to it: for the sheet of all screens (contact_sheet.mjs).
+// kiosk_test.mjs tests them.
 import { wait_for } from "./strata-server.mjs";
 
 const kIdle_s = 30; // of the site's tour
 
 /**
- * In this order, in the first language of the tour (make_kiosk_site), whose link is worthless in
- * the end. The page's clock is theirs from the first one on.
+ * In this order, in the first language of the tour (make_kiosk_site), whose link is revoked at the
+ * end. From the first screen on they control the page's clock.
  */
 export function kiosk_screens_of({ page }, server, { path, kiosk }) {
   const button = (name) => page.getByRole("button", { name, exact: true });

@@ -1,4 +1,4 @@
-// The page's development dependencies, for tests that lie outside of its folder.
+// The page's development dependencies, for tests outside its folder.
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";

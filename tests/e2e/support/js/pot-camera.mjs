@@ -1,6 +1,9 @@
-// A camera of the demo pot's own, as the protocol has cameras.
+// A camera for the demo pot, in the format of the protocol.
 
-/** Looks at the pot (105 × 99 × 91 mm, up is z) from a little above, turned by an angle. */
+/**
+ * Returns a camera that sees the pot (105 × 99 × 91 mm, up is z) from slightly above, rotated by an
+ * angle.
+ */
 export function pot_camera(width, height, angle = 0, distance = 240) {
   const [elevation, center] = [0.25, [0, 0, 45]];
   const back = [

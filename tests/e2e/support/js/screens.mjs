@@ -1,11 +1,11 @@
-// Every screen of the page, and one way to each: what holds something against all of them goes it
-// (accessibility_test.mjs), and so does what takes their pictures (contact_sheet.mjs).
+// Every screen of the page, with a way to it, for checks of all screens (accessibility_test.mjs)
+// and for their pictures (contact_sheet.mjs).
 import assert from "node:assert/strict";
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 import { texts_of } from "./texts.mjs";
 
-const english = texts_of("en"); // Bea's, whatever language the other page is in
+const english = texts_of("en"); // Bea's, for any language of the other page
 
 const kGroup = "Students of the summer school in Northern Archaeology 2026";
 const kGoneLayer = "Condition before the cleaning";
@@ -22,8 +22,8 @@ const kPhoto = encode_png({
 const file_of = (name, mimeType, content) => ({ name, mimeType, buffer: Buffer.from(content) });
 
 /**
- * A site with a bit of everything on a server that has the demo; `bea` becomes the browser of
- * somebody else at its model.
+ * Makes a site with content of every kind on a server that has the demo; `bea` becomes the browser
+ * of another person at its model.
  */
 export async function make_site(server, bea) {
   const { models } = await server.json("GET", "/models");
@@ -127,9 +127,9 @@ export async function bea_at({ server, bea, model }) {
 }
 
 /**
- * All screens and dialogs, in the words of a language, in this order and from the window of a desk.
- * Each begins where `start` left the page and is left by `end`; `keyboard`: the Tab key is to be
- * walked through it.
+ * Returns all screens and dialogs, with the texts of a language, in this order and in the window of
+ * a desk. Each begins where `start` left the page, and `end` leaves it; `keyboard`: the test visits
+ * it with the Tab key.
  */
 export function screens_of({ page }, w, { server, bea, ...site }) {
   const exact = (name) => ({ name, exact: true });
@@ -164,7 +164,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
   const of_layer = (layer, name) => from_menu(w.layers.options(layer), name);
   const account = (name) => from_menu(w.account.menu("owner"), name);
   const choose_layer = (name) => button(w.layers.select(name)).click();
-  /** Of a layer that has names in several languages. */
+  /** Selects a layer that has names in several languages. */
   const choose_named = ({ name, labels }) => {
     const names = [...new Set([name, ...Object.values(labels)])].map((each) =>
       w.layers.select(each),
@@ -183,11 +183,11 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
   };
   /**
-   * Once the stage and its picture have the window's shape: after that has changed, what is touched
-   * is what is seen there then.
+   * Waits until the stage and its picture have the window's shape, so that a tap meets the visible
+   * content.
    */
   const at_stage = async (x, y) => {
-    // until the page has heard of it
+    // until the page has the change
     await page.evaluate(
       () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
     );
@@ -737,7 +737,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await server.json("PATCH", `/models/${site.model}/views/${view.id}`, {
           camera: { ...view.camera, section: [[0.6, 0.6, 0.5, 0]] },
         });
-        // Until the page has heard of the change, the button leads to what the view showed before.
+        // Until the page has the change, the button still opens the view's previous state.
         const section = page.locator("strata-view-panel").getByText(w.view.section_of_view(1));
         await wait_for(
           async () => {
@@ -949,7 +949,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       start: async () => {
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
         await site.fill_as_bea("finds");
-        // of which the page hears when the edit is durable
+        // the page gets it when the edit is durable
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
         await page.getByRole("button", { name: w.review.title }).click();
         await page
@@ -966,8 +966,8 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
           all: true,
         });
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: false });
-        // Heard of while the next screen is walked through, it would be a control that the keyboard
-        // never reaches.
+        // Otherwise it would arrive during the walk through the next screen, as a control that the
+        // keyboard does not reach.
         await page.getByRole("button", { name: w.review.title }).waitFor({ state: "detached" });
       },
       keyboard: true,

@@ -1,11 +1,12 @@
-// A small site that has one of everything: a nearly flat wall and another version of it, layers of
-// each kind, tables, terms, files, a look, a tool. `spare` makes one more of a kind, for calls that
-// take something away.
+// A small site with content of every kind: a nearly flat wall and another version of it, layers of
+// each kind, tables, terms, files, a surface image, a brush shape. `spare` makes one more of a
+// kind, for calls that delete something.
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 
 const kSide = 12; // cells of the wall, which is 100 mm wide
-// of the texture that the wall covers: 60 000 texels are quick to read, and a raster is still whole
+// share of the texture that the wall covers: 60 000 texels are quick to read, and a raster is
+// complete
 const kTextureShare = 0.12;
 
 /** An ASCII PLY with texture coordinates, and a number at each vertex. */
@@ -87,7 +88,7 @@ export const kLayers = ["cracks", "moisture", "units", "risk"];
 export const kColumnSlugs = kColumns.map(({ name }) => name.toLowerCase());
 
 export class Site {
-  /** By name, what calls send that is not JSON. */
+  /** Content of calls that is not JSON, by name. */
   files = {
     "wall.ply": Buffer.from(wall()),
     "picture.png": picture(24, 16),
@@ -142,7 +143,7 @@ export class Site {
     await server.json("POST", "/projects", { name: "Site" });
     await server.json("POST", "/users", { user: "guest" });
     await server.json("POST", "/groups", { name: "Students", members: ["guest"] });
-    // Of people whom no call changes: who is disabled, say, has no invitation any more.
+    // For people that no call changes: a disabled person, for example, has no invitation.
     this.invitations = [];
     for (const user of ["newcomer", "other-newcomer"])
       this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
@@ -246,7 +247,7 @@ export class Site {
       );
   }
 
-  /** A layer and a table of which there is something to redo. */
+  /** DEL */
   #view(name) {
     const camera = {
       view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
@@ -317,7 +318,7 @@ export class Site {
     }
   }
 
-  /** One more of a kind, of its own, as a path names it. */
+  /** Makes another thing of a kind, and returns its name in paths. */
   async spare(kind) {
     const { server } = this;
     const name = `Spare ${++this.#made}`;

@@ -1,4 +1,4 @@
-// The words of the page in one of its languages, as the page itself has them.
+// The page's texts in one of its languages, from the page's own sources.
 import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
 

@@ -1,9 +1,9 @@
-// What the contract's schemas cannot say to those who make calls of them: which things the site
-// has, what conditions and cells look like, and what an operation wants besides.
+// Additions to the contract's schemas for making calls: the things on the site, the syntax of
+// conditions and cells, and the requirements of operations.
 import { fc, strange_text } from "./arbitraries.mjs";
 import { kColumnSlugs, kLayers } from "./site.mjs";
 
-/** Stands in a path for something that is made for this call alone. */
+/** In a path: a thing that is made for this call only. */
 const kPassword = "seven blue herons at noon";
 export const kSpare = "(a spare one)";
 
@@ -20,7 +20,7 @@ const point = fc.tuple(
   one(0, 0.5, 20),
 );
 const pixel = fc.tuple(fc.integer({ min: 0, max: 160 }), fc.integer({ min: 0, max: 120 }));
-/** Straight at the wall, orthographic, 160 × 120 mm. */
+/** Perpendicular to the wall, orthographic, 160 × 120 mm. */
 const camera = fc
   .record({ x: fc.integer({ min: 30, max: 70 }), width: one(160, 320), section: fc.boolean() })
   .map(({ x, width, section }) => ({
@@ -100,7 +100,7 @@ const by_schema = {
   Palette: palette,
   At: at,
   CellValues: cells,
-  Resolution: one(2048), // the smallest: larger ones are the same code and take long to paint
+  Resolution: one(2048), // the smallest: larger ones use the same code and take long to paint
 };
 export const words = {
   by_schema,
@@ -120,7 +120,7 @@ export const words = {
     property: mostly("quality"),
     rays: one(16),
     order: one(-1, 0, 7),
-    // all other changes would be refused (428); versions_test.py demands it
+    // true would make all other changes fail (428); versions_test.py tests it
     require_if_match: one(false),
     language: mostly("es", "en"),
   },
@@ -206,7 +206,7 @@ const json = (schema_words) => ({
     by_name: { ...words.by_name, ...schema_words.by_name },
   },
 });
-const world = "4,0,0,-4,2,90"; // of the picture of 24 × 16 pixels
+const world = "4,0,0,-4,2,90"; // for the picture of 24 × 16 pixels
 const scratch = { path: { table: one("scratch") } };
 const units_layer = {
   path: { model: one("wall"), layer: one("units", "units", "units", "cracks") },
@@ -257,8 +257,9 @@ const tour = {
 const what_of_texels = one({}, { texels: "clear" }, { texels: "reassign", to: "2" });
 
 /**
- * What an operation wants that its schema and the words above do not say. What takes something away
- * takes a spare one; what changes how things are called or kept is done to what others do not need.
+ * Requirements of operations that are neither in their schema nor above. Calls that delete
+ * something use a spare one; calls that change names or storage use things that other calls do not
+ * need.
  */
 export const particulars = {
   login: json({ by_name: { token: fc.oneof(one("(the owner's token)"), strange_text) } }),
@@ -355,7 +356,7 @@ export const particulars = {
   get_job_file: { path: { job: mostly("(a figure's job)", "(a figure's job)", "(a job)") } },
   make_figure: {
     path: { model: one("wall") },
-    // Small ones: larger ones are the same code and take long to draw.
+    // Small ones: larger ones use the same code and take long to draw.
     ...json({
       by_name: {
         dpi: one(50, 60, 20),
@@ -489,7 +490,7 @@ export const particulars = {
   }),
 };
 
-// Folder names, tokens, tags: what a proxy or a script may send along.
+// Folder names, tokens, tags: headers that a proxy or a script may add.
 export const header_words = {
   "If-Match": one('"v1"', "*", '"v999"', "v1", '""'),
   "Idempotency-Key": fc.oneof(fc.uuid(), one("the same", "k".repeat(255))),

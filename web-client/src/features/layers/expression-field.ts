@@ -311,7 +311,7 @@ export class StrataExpressionField extends LitElement {
   }
 }
 
-const kWantsCondition = "A condition is wanted, not a number";
+const kWantsCondition = "Expected a condition, not a number";
 /** Names that only computed layers can use cannot be tried out before the layer exists. */
 const isForComputing = (error: ApiError): boolean =>
   kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));
