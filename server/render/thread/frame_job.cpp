@@ -222,7 +222,8 @@ bool FrameJob::has_layers(GpuScene& scene) const {
 
 Result<void> FrameJob::start_sample(GpuScene& scene) {
   const FrameRequest& request = task_.request;
-  camera_ = jittered(request.camera, request.width, request.height, sample_offset(sample_, samples_));
+  camera_ =
+      jittered(request.camera, request.width, request.height, sample_offset(sample_, samples_));
   sample_view_->images = request.style.images;
   sample_view_->lighting = request.style.light;
   progress_ = {};
