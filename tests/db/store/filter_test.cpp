@@ -473,7 +473,7 @@ TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
       {"term = 'x'", "as in term.code", 0},
       {"above = 3", "ask a_contains", 0},
       {"a_contains(name, (1))", "not keys of records", 11},
-      {"a_contains(above, (1.5))", "whole numbers", 19},
+      {"a_contains(above, (1.5))", "whole number", 19},
       {"t_before(name, '1560')", "not times", 9},
       {"depth like '1%'", "'depth' holds numbers, not texts", 0},
       {"exp(depth * 1000 + 9000) > 1", "", 0}};

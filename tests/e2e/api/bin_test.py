@@ -325,7 +325,7 @@ def test_records(site):
     refused = site.ask("ada", "POST", f"{BIN}/{entry['id']}/restore")
     assert (
         refused.status == 409
-        and f"Record {taken['key']} has this value" in refused.json()["detail"]
+        and f"Record {taken['key']} already has this value" in refused.json()["detail"]
     ), refused
     site.ok("ada", "PATCH", f"/tables/units/records/{taken['key']}", {"values": {"name": "SU 9"}})
     assert site.ok("ada", "POST", f"{BIN}/{entry['id']}/restore").json() == {

@@ -250,7 +250,7 @@ def test_shapefile_refusals(server):
             ".dbf is incomplete",
         ),
         ("two maps", {"a_shp": good, "b_shp": good}, {"value": 1}, 422, "a.shp, b.shp"),
-        ("no map", {"a_dbf": table, "a_prj": b"x"}, {"value": 1}, 415, "a.dbf is no map by itself"),
+        ("no map", {"a_dbf": table, "a_prj": b"x"}, {"value": 1}, 415, "a.dbf is not a map on its own"),
         ("a picture", {"a_png": png(1, 1, lambda x, y: (1, 2, 3))}, {"value": 1}, 415, "picture"),
         ("degrees", {"a_shp": good, "a_prj": b'GEOGCS["WGS 84"]'}, {"value": 1}, 422, "longitude"),
         ("a value that does not fit", {"a_shp": good}, {"value": 300}, 422, "300"),

@@ -131,7 +131,7 @@ def test_bad_files(folder):
         ([chain, chain], "not the key of the certificate"),
         ([chain, other], "not the key of the certificate"),
         ([chain, make_certificate(folder, "rsa", "rsa")[1]], "not the key of the certificate"),
-        ([chain, locked], "without a passphrase"),
+        ([chain, locked], "has a passphrase"),
     ]
     data = tempfile.mkdtemp(dir=folder)
     os.chmod(data, 0o755)

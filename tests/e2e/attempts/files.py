@@ -132,7 +132,7 @@ def archives(server, section):
             "http://127.0.0.1:1/x",
         )
     ]
-    assert all("not among the files" in why for _, why in ends), ends
+    assert all("does not contain this file" in why for _, why in ends), ends
     obj = (
         b"mtllib ../../../../../../../../etc/passwd\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
     )

@@ -234,7 +234,7 @@ test("who may only paint adds no names to the legend, and paints those that are 
   });
   const refused = await as_annotator("attribute=STATE");
   assert.equal(refused.status, 403);
-  assert.match((await refused.json()).detail, /lacks: Moss/);
+  assert.match((await refused.json()).detail, /does not contain: Moss/);
   assert.equal((await layer("few")).palette.points.length, 1);
   assert.equal((await statistics("few")).texels, 0);
   assert.equal((await as_annotator("attribute=ID")).status, 200);
@@ -245,7 +245,7 @@ test("what is no map, and numbers for vertices", async () => {
   await give("notes.doc");
   await page.getByRole("alert").getByText(words.maps.unknown("notes.doc")).waitFor();
   await give("walls.dbf");
-  await page.getByRole("alert").getByText("walls.dbf is no map by itself").waitFor();
+  await page.getByRole("alert").getByText("walls.dbf is not a map on its own").waitFor();
   await give("values.csv");
   await page.getByText(words.maps.vertices_hint).waitFor();
   await button(words.maps.paint).click();

@@ -180,6 +180,7 @@ TEST_F(Refine, its_buffers_are_gone_with_it) {
   renderer_.draw(request_);
   const auto before = renderer_->gpu_bytes_used();
   refined();
+  renderer_->finish();  // the job ends after its answer
   EXPECT_EQ(renderer_->gpu_bytes_used(), before);
 }
 

@@ -290,7 +290,7 @@ TEST_F(MeshScans, bad_files_are_refused_and_the_fault_is_named) {
   const Outcome alone = import({"mask_bali/mask.gltf"});
   ASSERT_TRUE(alone.report.contains("problem"));
   EXPECT_THAT(alone.report["problem"].get<std::string>(),
-              HasSubstr("mask-gltf-2.0_separated-valid.bin\", which is not among"));
+              HasSubstr("mask-gltf-2.0_separated-valid.bin\", but the upload does not contain"));
 }
 
 TEST_F(MeshScans, the_repairs_of_known_defects_are_counted) {

@@ -73,7 +73,7 @@ TEST(ObjMaterials, pictures_that_are_missing_or_no_pictures_are_named) {
   EXPECT_THAT(
       loaded->repairs[1].what,
       HasSubstr(
-          "texture not read: text.png: The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA"));
+          "texture not read: text.png: The picture is not a JPEG, PNG, TIFF, WebP, BMP or TGA"));
 }
 
 TEST(ObjMaterials, names_in_another_encoding_are_found_and_told_as_utf8) {

@@ -290,7 +290,7 @@ test("a new record by its form, with what is wrong at the field", async () => {
   await shot("record-form");
   await dialog.getByLabel("Depth").fill("3");
   await button(words.save).click();
-  await dialog.getByText(/Record 1 has this value/).waitFor();
+  await dialog.getByText(/Record 1 already has this value/).waitFor();
   await dialog.getByLabel("Code").fill("Pit");
   await button(words.save).click();
   await panel.getByText(words.tables.records(10_001)).waitFor();

@@ -187,7 +187,7 @@ test("the same template again is refused in plain words, and nothing is made", a
   await button(words.templates.make_of("Stone condition")).click();
   await templates
     .getByRole("alert")
-    .getByText(/already/)
+    .getByText(/The model has a layer "Stone condition"/)
     .waitFor();
   await shot("template-refused");
   await templates.getByRole("button", { name: words.close }).click();
