@@ -140,7 +140,7 @@ def main():
                 and abs(row["area"] - 9) < 1e-6
             ), row
         assert (
-            "cut short" in rows["cut.glb"]["refused"]
+            "the file is incomplete" in rows["cut.glb"]["refused"]
             and "nothing.ply" in rows["nothing.ply"]["refused"]
         ), rows
         assert "cut.glb" in told.stdout and "refused" in told.stdout, told.stdout
