@@ -128,8 +128,8 @@ struct Renderer::Impl {
     struct Simple {
       Done<T> done;
       std::function<Result<T>(GpuScene&)> work;
-      Step step(GpuScene& scene) {
-        done(work(scene));
+      Step step(GpuScene& at) {
+        done(work(at));
         return Step::done;
       }
       void abort(const Error& problem) { done(tl::unexpected(problem)); }
@@ -138,7 +138,7 @@ struct Renderer::Impl {
   }
 
   void add_layer(ModelHandle model, ValueType type, int resolution,
-                 std::shared_ptr<const TileMirror> mirror, Done<LayerHandle> done) {
+                 const std::shared_ptr<const TileMirror>& mirror, Done<LayerHandle> done) {
     post_simple<LayerHandle>(std::move(done),
                              [this, model, type, resolution, mirror](GpuScene& at) {
                                auto handle = at.add_layer(model, type, resolution, mirror);
@@ -317,7 +317,7 @@ void Renderer::finish() {
 
 void Renderer::run_on_gpu_thread_for_test(std::function<void()> work) {
   std::promise<void> ran;
-  impl_->post_simple<void>([&](Result<void>) { ran.set_value(); },
+  impl_->post_simple<void>([&](const Result<void>&) { ran.set_value(); },
                            [&](GpuScene&) -> Result<void> {
                              work();
                              return {};

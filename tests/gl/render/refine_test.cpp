@@ -49,7 +49,8 @@ class Refine : public testing::Test {
     Means mean(static_cast<std::size_t>(kWidth) * kHeight * 3, 0.0);
     render::FrameRequest request = request_;
     for (int i = 0; i < side * side; ++i) {
-      const double x = (i % side + 0.5) / side - 0.5, y = (i / side + 0.5) / side - 0.5;
+      const int column_of = i % side, row_of = i / side;
+      const double x = (column_of + 0.5) / side - 0.5, y = (row_of + 0.5) / side - 0.5;
       request.camera = request_.camera;
       for (int column = 0; column < 4; ++column) {
         auto& p = request.camera.projection[column];
@@ -122,7 +123,7 @@ TEST_F(Refine, flat_colors_are_the_same) {
   std::size_t flat = 0;
   for (int y = 2; y < kHeight - 2; ++y)
     for (int x = 2; x < kWidth - 2; ++x) {
-      const auto at = static_cast<std::size_t>(4 * (y * kWidth + x));
+      const auto at = std::size_t{4} * static_cast<std::size_t>(y * kWidth + x);
       if (!same_around(at)) continue;
       ++flat;
       for (std::size_t c = 0; c < 3; ++c)
@@ -156,7 +157,7 @@ TEST_F(Refine, a_newer_request_of_its_view_ends_it) {
   auto ended = std::make_shared<std::promise<Result<render::SharedFrame>>>();
   auto end = ended->get_future();
   renderer_->draw(refinement,
-                  [ended](Result<render::SharedFrame> frame) { ended->set_value(frame); });
+                  [ended](const Result<render::SharedFrame>& frame) { ended->set_value(frame); });
   const render::Frame news = renderer_.draw(request_);
   EXPECT_EQ(news.width, kWidth);
   const auto result = end.get();
