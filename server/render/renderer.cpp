@@ -138,17 +138,17 @@ struct Renderer::Impl {
   }
 
   void add_layer(ModelHandle model, ValueType type, int resolution,
-                 const std::shared_ptr<const TileMirror>& mirror, Done<LayerHandle> done) {
-    post_simple<LayerHandle>(std::move(done),
-                             [this, model, type, resolution, mirror](GpuScene& at) {
-                               auto handle = at.add_layer(model, type, resolution, mirror);
-                               if (handle) {
-                                 const auto layer = at.layer(*handle);
-                                 std::lock_guard lock(mutex);
-                                 layer_bytes[*handle] = (*layer)->textures().bytes();
-                               }
-                               return handle;
-                             });
+                 std::shared_ptr<const TileMirror> mirror, Done<LayerHandle> done) {
+    post_simple<LayerHandle>(
+        std::move(done), [this, model, type, resolution, mirror = std::move(mirror)](GpuScene& at) {
+          auto handle = at.add_layer(model, type, resolution, mirror);
+          if (handle) {
+            const auto layer = at.layer(*handle);
+            std::lock_guard lock(mutex);
+            layer_bytes[*handle] = (*layer)->textures().bytes();
+          }
+          return handle;
+        });
   }
 
   // Removals are never refused: a full queue must not prevent freeing memory. After a lost context
