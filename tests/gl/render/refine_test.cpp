@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <future>
+#include <thread>
 #include <vector>
 
 #include "render/view/accumulation.h"
@@ -150,18 +152,30 @@ TEST_F(Refine, the_picture_of_the_view_stays_and_takes_rectangles) {
 }
 
 TEST_F(Refine, a_newer_request_of_its_view_ends_it) {
+  // The GPU thread begins when both wait.
+  std::promise<void> holds, release;
+  std::thread holder([&] {
+    renderer_->run_on_gpu_thread_for_test([&] {
+      holds.set_value();
+      release.get_future().wait();
+    });
+  });
+  holds.get_future().wait();
+  const auto draw = [&](const render::FrameRequest& request) {
+    auto drawn = std::make_shared<std::promise<Result<render::SharedFrame>>>();
+    renderer_->draw(request,
+                    [drawn](const Result<render::SharedFrame>& frame) { drawn->set_value(frame); });
+    return drawn->get_future();
+  };
   render::FrameRequest refinement = request_;
-  refinement.samples = render::kMaxSamples;
-  refinement.width *= 4;
-  refinement.height *= 4;
-  auto ended = std::make_shared<std::promise<Result<render::SharedFrame>>>();
-  auto end = ended->get_future();
-  renderer_->draw(refinement,
-                  [ended](const Result<render::SharedFrame>& frame) { ended->set_value(frame); });
-  const render::Frame news = renderer_.draw(request_);
-  EXPECT_EQ(news.width, kWidth);
-  const auto result = end.get();
-  ASSERT_FALSE(result) << "64 samples were drawn before one picture";
+  refinement.samples = kSamples;
+  auto refined = draw(refinement);
+  auto news = draw(request_);
+  release.set_value();
+  holder.join();
+  ASSERT_TRUE(news.get());
+  const auto result = refined.get();
+  ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::superseded);
 }
 
