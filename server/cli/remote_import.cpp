@@ -59,7 +59,7 @@ size_t collect(char* data, size_t size, size_t count, void* body) {
   return size * count;
 }
 
-// A local server's certificate has its public name, and no network lies in between.
+// A local server's certificate has its public name, and there is no network in between.
 bool is_this_machine(const std::string& base) {
   for (const char* host : {"https://127.0.0.1", "https://localhost", "https://[::1]"})
     if (base.starts_with(host)) {

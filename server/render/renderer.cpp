@@ -93,19 +93,16 @@ struct Renderer::Impl {
     const auto answer = [this, task](const Result<SharedFrame>& frame) {
       refinements.answer(*task, frame);
     };
-    auto frame =
-        std::make_shared<FrameJob>(FrameTask{task->request, {{task->request.view, answer}}, {}});
-    Job job{[this, task, frame] {
-              return refinements.continues(*task) ? frame->step(*scene) : Step::done;
-            },
-            [frame](const Error& problem) { frame->abort(problem); }};
-    if (thread.post(Lane::idle, std::move(job))) return;
-    thread.post_reply([frame] {
-      frame->abort({ErrorCode::busy,
-                    "GPU queue full",
-                    "Too many pictures wait for their refinement. Try again in a moment.",
-                    {}});
-    });
+    struct Refinement {
+      Refinements& all;
+      std::shared_ptr<Refinements::Task> task;
+      FrameJob frame;
+      Step step(GpuScene& at) { return all.continues(*task) ? frame.step(at) : Step::done; }
+      void abort(const Error& problem) { frame.abort(problem); }
+    };
+    FrameTask frame{task->request, {{task->request.view, answer}}, {}};
+    post(Lane::idle,
+         std::make_shared<Refinement>(Refinement{refinements, task, FrameJob(std::move(frame))}));
   }
 
   // Posts a job object with `step(GpuScene&)` and `abort`; answers it if the queue is full.

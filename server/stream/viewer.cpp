@@ -49,6 +49,10 @@ struct Viewer::Impl {
     adapt_window();
   }
 
+  void rest_after(std::chrono::milliseconds pause) {
+    rests_at = std::max(rests_at, Clock::now() + pause);
+  }
+
   void adapt_window() { flow.set_window(options.window > 0 ? options.window : link.window()); }
 
   // A drawn picture on its way to the encoder.
@@ -83,8 +87,7 @@ struct Viewer::Impl {
   bool closed = false;
   Clock::time_point last_camera{};  // time of the newest camera
   Clock::time_point last_act{};     // time of the newest camera or edit
-  Clock::time_point last_change{};  // when somebody last changed what the picture shows
-  Clock::time_point last_not_refined{};
+  Clock::time_point rests_at{};     // if nothing changes until then
   bool quiet_timer_runs = false, rest_timer_runs = false;
   std::chrono::milliseconds retry_in = kFirstRetry;
   Stats stats;
@@ -224,6 +227,7 @@ void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool mov
     if (impl_->closed) return;
     impl_->flow.on_camera(camera_seq, camera, moving);
     impl_->last_camera = impl_->last_act = Clock::now();
+    impl_->rest_after(kRestAfterCamera);
   }
   if (moving) wait_for_quiet();
   step();
@@ -233,51 +237,44 @@ void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool mov
 // Runs one timer for each viewer: if it fires too early, because cameras came after its start, it
 // is set again for the rest.
 void Viewer::wait_for_quiet() {
-  std::chrono::milliseconds left;
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->quiet_timer_runs || impl_->closed || !impl_->flow.wants_quiet_timer()) return;
-    left = std::chrono::ceil<std::chrono::milliseconds>(impl_->last_camera + kQuietAfter -
-                                                        Clock::now());
-    impl_->quiet_timer_runs = left > 0ms;
-    if (left <= 0ms) impl_->flow.on_quiet();
+    if (waits_until(impl_->last_camera + kQuietAfter, &Impl::quiet_timer_runs,
+                    &Viewer::wait_for_quiet))
+      return;
+    impl_->flow.on_quiet();
   }
-  if (left <= 0ms) return step();
-  TimerThread::shared().after(left, [self = weak_from_this()] {
-    auto viewer = self.lock();
-    if (!viewer) return;
-    {
-      std::lock_guard lock(viewer->impl_->mutex);
-      viewer->impl_->quiet_timer_runs = false;
-    }
-    viewer->wait_for_quiet();
-  });
+  step();
 }
 
-// One timer for each viewer, as above.
 void Viewer::wait_for_rest() {
-  std::chrono::milliseconds left;
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->rest_timer_runs || impl_->closed || !impl_->flow.wants_rest_timer()) return;
-    const auto rests_at =
-        std::max({impl_->last_camera + kRestAfterCamera, impl_->last_change + kRestAfterChange,
-                  impl_->last_not_refined + kRestAfterChange});
-    left = std::chrono::ceil<std::chrono::milliseconds>(rests_at - Clock::now());
-    impl_->rest_timer_runs = left > 0ms;
+    if (waits_until(impl_->rests_at, &Impl::rest_timer_runs, &Viewer::wait_for_rest)) return;
     // Over a slow link the next camera would wait for the refined picture.
-    if (left <= 0ms && impl_->link.has_room()) impl_->flow.on_rest();
+    if (impl_->link.has_room()) impl_->flow.on_rest();
   }
-  if (left <= 0ms) return step();
-  TimerThread::shared().after(left, [self = weak_from_this()] {
+  step();
+}
+
+// Sets a timer that calls `then`, unless `time` has passed. Under the lock.
+bool Viewer::waits_until(std::chrono::steady_clock::time_point time, bool Impl::*timer_runs,
+                         void (Viewer::*then)()) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(time - Clock::now());
+  if (left <= 0ms) return false;
+  impl_.get()->*timer_runs = true;
+  TimerThread::shared().after(left, [self = weak_from_this(), timer_runs, then] {
     auto viewer = self.lock();
     if (!viewer) return;
     {
       std::lock_guard lock(viewer->impl_->mutex);
-      viewer->impl_->rest_timer_runs = false;
+      viewer->impl_.get()->*timer_runs = false;
     }
-    viewer->wait_for_rest();
+    (viewer.get()->*then)();
   });
+  return true;
 }
 
 void Viewer::acts() {
@@ -290,7 +287,7 @@ void Viewer::set_style(render::ViewStyle style) {
     std::lock_guard lock(impl_->mutex);
     if (style == impl_->style) return;  // surface images or layers of other views changed
     impl_->style = std::move(style);
-    impl_->last_camera = Clock::now();
+    impl_->rest_after(kRestAfterCamera);
     impl_->flow.on_style();
   }
   step();
@@ -300,7 +297,7 @@ void Viewer::set_style(render::ViewStyle style) {
 void Viewer::changed(const render::FrameRequest::Box& box, std::int64_t sequence) {
   {
     std::lock_guard lock(impl_->mutex);
-    impl_->last_change = Clock::now();
+    impl_->rest_after(kRestAfterChange);
     impl_->flow.on_change(box, sequence);
   }
   step();
@@ -310,7 +307,7 @@ void Viewer::changed(const render::FrameRequest::Box& box, std::int64_t sequence
 void Viewer::changed_everywhere(std::int64_t sequence) {
   {
     std::lock_guard lock(impl_->mutex);
-    impl_->last_change = Clock::now();
+    impl_->rest_after(kRestAfterChange);
     impl_->flow.on_change_everywhere(sequence);
   }
   step();
@@ -432,7 +429,7 @@ void Viewer::on_not_refined(std::uint64_t ticket, const Error& problem) {
     const bool again = !is_refusal(problem) && problem.code != ErrorCode::out_of_memory &&
                        problem.code != ErrorCode::too_large;
     if (impl_->closed || !impl_->flow.on_not_refined(ticket, again)) return;
-    impl_->last_not_refined = Clock::now();
+    impl_->rest_after(kRestAfterChange);
   }
   step();
   wait_for_rest();

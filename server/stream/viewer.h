@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -66,6 +67,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   Stats stats() const;
 
  private:
+  struct Impl;
   Viewer();
   void add_view();
   bool on_view(std::uint64_t generation,
@@ -79,9 +81,10 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void on_encoded(const Jpegs& jpegs, double encode_ms);
   void wait_for_quiet();
   void wait_for_rest();
+  bool waits_until(std::chrono::steady_clock::time_point time, bool Impl::*timer_runs,
+                   void (Viewer::*then)());
   void retry_later(std::function<void(Viewer&)> action);
 
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -203,7 +203,10 @@ Result<void> FrameJob::start_refinement(GpuScene& scene, ModelHandle model) {
   const auto pixels =
       static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height);
   // Nothing is evicted for it.
-  if (!has_layers(scene) || !scene.memory().fits(pixels * kRefinementBytesPerPixel))
+  if (!has_layers(scene))
+    return fail(ErrorCode::out_of_memory, "Picture not refined",
+                "A layer of the picture left the GPU because memory is short.");
+  if (!scene.memory().fits(pixels * kRefinementBytesPerPixel))
     return tl::unexpected(
         scene.memory().used_up(pixels * kRefinementBytesPerPixel, "a refined picture"));
   samples_ = request.samples;
