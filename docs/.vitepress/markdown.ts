@@ -1,5 +1,4 @@
-// Pages of the guide link to files of the source that are not part of the guide, for readers of the
-// repository. In the guide these links become plain text.
+// How the Markdown of the guide differs from what VitePress makes of it.
 import { posix } from "node:path";
 import type { MarkdownRenderer } from "vitepress";
 
@@ -9,18 +8,10 @@ function isOutside(page: string, target: string): boolean {
   return path.startsWith("..") || path.startsWith("developer/");
 }
 
-/** Cells of a table say by a class, and not by a style, on which side they are aligned. */
-export function alignedByClass(md: MarkdownRenderer): void {
-  md.core.ruler.push("aligned-by-class", (state) => {
-    for (const token of state.tokens) {
-      const side = /^text-align:(\w+)$/.exec(token.attrGet("style") ?? "")?.[1];
-      if (!side) continue;
-      token.attrs = (token.attrs ?? []).filter(([name]) => name !== "style");
-      token.attrJoin("class", `align-${side}`);
-    }
-  });
-}
-
+/**
+ * Pages of the guide link to files of the source that are not part of the guide, for readers of the
+ * repository. In the guide these links become plain text.
+ */
 export function linksWithinTheGuide(md: MarkdownRenderer): void {
   md.core.ruler.push("links-within-the-guide", (state) => {
     const page = (state.env as { relativePath?: string }).relativePath ?? "";
@@ -32,6 +23,18 @@ export function linksWithinTheGuide(md: MarkdownRenderer): void {
         if (token.type === "link_close") isDropped = false;
         return !drops;
       });
+    }
+  });
+}
+
+/** Aligns the cells of tables by a class, because a style would break the security policy. */
+export function alignedByClass(md: MarkdownRenderer): void {
+  md.core.ruler.push("aligned-by-class", (state) => {
+    for (const token of state.tokens) {
+      const side = /^text-align:(\w+)$/.exec(token.attrGet("style") ?? "")?.[1];
+      if (!side) continue;
+      token.attrs = (token.attrs ?? []).filter(([name]) => name !== "style");
+      token.attrJoin("class", `align-${side}`);
     }
   });
 }
