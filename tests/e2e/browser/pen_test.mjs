@@ -46,6 +46,7 @@ test.beforeAll(async () => {
 });
 
 test("the pen paints with the hand beside it, which neither paints nor turns", async () => {
+  await tilda.idle(); // the tool's panel changes the size of the picture
   const stood = await camera();
   await pen("mouseMoved", [0.4, 0.5]);
   await touch("touchStart", [0.7, 0.7]);
@@ -59,6 +60,7 @@ test("the pen paints with the hand beside it, which neither paints nor turns", a
   await pen("mouseReleased", [0.46, 0.5], { button: "left", buttons: 0, clickCount: 1 });
   await touch("touchEnd");
   await tilda.saved();
+  await tilda.idle();
   await wait_for(async () => (await edits()) > before, "the stroke to be saved");
   const { edits: done } = await server.json(
     "GET",
@@ -119,7 +121,7 @@ test("away with the pen: two fingers move the model, one turns it, and neither p
   const moves = (gesture) => async () => {
     const from = await camera();
     await gesture();
-    await new Promise((resolve) => setTimeout(resolve, 200));
+    await tilda.idle();
     return (await camera()) !== from;
   };
   const pinch = async () => {

@@ -796,7 +796,8 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await page
           .locator("strata-shape-picker input[type=file]")
           .setInputFiles(file_of("leaf.png", "image/png", kPhoto));
-        await page.locator("strata-shape-dialog dialog[open]").waitFor();
+        // once the picture is read
+        await page.locator("strata-shape-dialog").getByRole("radio", { checked: true }).waitFor();
       },
       end: close_dialog,
       keyboard: true,
