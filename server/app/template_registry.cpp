@@ -157,9 +157,9 @@ Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, Pr
       return fail(problem.code, problem.title, template_table.slug + ": " + problem.detail,
                   problem.field);
     };
-    if (template_table.terms.has_value() == template_table.columns.has_value())
+    if (!template_table.terms && !template_table.columns)
       return refuse({ErrorCode::invalid, "Terms or columns",
-                     "A table must have either `terms` or `columns`, but not both.", "tables"});
+                     "A table must have `terms`, `columns` or both.", "tables"});
     store::NewTable made;
     made.table.project_id = project_id;
     made.table.name = name_in(template_table.name, template_table.labels, language);
@@ -174,8 +174,10 @@ Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, Pr
         if (const auto known = label_language(slug)) languages.push_back(*known);
       made.table.columns = new_term_columns(languages);
       made.terms = std::move(*terms);
-    } else {
+    }
+    if (template_table.columns) {
       std::set<std::string> slugs;
+      for (const Column& column : made.table.columns) slugs.insert(column.slug);
       for (const protocol::ColumnCreate& column : *template_table.columns) {
         auto fits = column_of(column, language);
         if (!fits) return refuse(fits.error());

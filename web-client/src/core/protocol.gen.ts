@@ -1859,7 +1859,7 @@ export interface TemplateTerm {
   pattern?: "solid" | "hatch" | "dots" | "outline";
 }
 
-/** Table of a template. It has either terms or columns. */
+/** Table of a template. It has terms, columns, or both. Columns of a term list come after those that every list has. */
 export interface TemplateTable {
   name: string;
   /** Name of the table in columns and layers of the template. */

@@ -1781,7 +1781,7 @@ nlohmann::json to_json(const TemplateTerm& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateTerm> = Schema::TemplateTerm;
 
-// Table of a template. It has either terms or columns.
+// Table of a template. It has terms, columns, or both. Columns of a term list come after those that every list has.
 struct TemplateTable {
   std::string name;
   std::string slug;  // Name of the table in columns and layers of the template.

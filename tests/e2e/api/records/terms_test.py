@@ -331,10 +331,14 @@ def test_templates(server):
     made = server.ok("POST", PROJECT + "/templates/stone-condition", use, headers=keyed).json()
     assert [each["name"] for each in made["tables"]] == [
         "Términos del estado de la piedra",
+        "Materiales de la piedra",
+        "Medidas en la piedra",
         "Observaciones de la piedra",
     ], made
     assert [each["name"] for each in made["layers"]] == [
         "Estado de la piedra",
+        "Material de la piedra",
+        "Medidas en la piedra",
         "Observaciones de la piedra",
     ]
     assert all(each["visible"] for each in made["layers"])
@@ -358,16 +362,25 @@ def test_templates(server):
     again = server.ok("POST", PROJECT + "/templates/stone-condition", use, headers=keyed).json()
     assert [each["id"] for each in again["layers"]] == [each["id"] for each in made["layers"]]
     terms = server.ok("GET", "/tables/stone-condition-terms/terms?q=flaking").json()["terms"]
-    assert [each["label"] for each in terms] == ["Desprendimiento", "Descamación"] and terms[1][
-        "labels"
-    ]["en"] == "Flaking", terms
+    assert [each["label"] for each in terms] == [
+        "Desprendimiento",
+        "Desplacado",
+        "Descamación",
+    ] and terms[2]["labels"]["en"] == "Flaking", terms
+    # A list has columns to draw in, after those of every list.
+    kinds = [
+        (each["name"], each["kind"])
+        for each in server.ok("GET", "/tables/stone-condition-terms/columns").json()["columns"]
+    ]
+    assert kinds[-2:] == [("Líneas", "line"), ("Puntos", "point")], kinds
+    assert server.get("/tables/stone-condition-terms").json()["kind"] == "terms"
     columns = server.ok("GET", "/tables/stone-observations/columns").json()["columns"]
     assert (columns[0]["slug"], columns[0]["name"], columns[0]["target"]) == (
         "term",
         "Término",
         made["tables"][0]["id"],
     ), columns[0]
-    assert made["layers"][0]["palette"]["points"][0]["label"] == "Grietas"
+    assert made["layers"][0]["palette"]["points"][1]["label"] == "Grieta"
     tables, layers = (
         server.get(PROJECT + "/tables").json()["total"],
         server.get("/models/wall/layers").json()["total"],
@@ -388,9 +401,9 @@ def test_templates(server):
         server.get(PROJECT + "/tables").json()["total"],
         server.get("/models/wall/layers").json()["total"],
     ) == (tables, layers + 1)
-    for name in ("treatment", "excavation-units", "wall-painting"):
+    for name, count in [("treatment", 2), ("excavation-units", 2), ("wall-painting", 4)]:
         made = server.ok("POST", f"{PROJECT}/templates/{name}", {}).json()
-        assert made["layers"] == [] and len(made["tables"]) == 2
+        assert made["layers"] == [] and len(made["tables"]) == count
     units = {
         each["slug"]: each for each in server.ok("GET", "/tables/units/columns").json()["columns"]
     }

@@ -94,12 +94,38 @@ test("a template makes its tables and layers, and the first layer is painted on 
   by_code = (code) => terms.find((each) => each.code === code);
 });
 
+test("a crack is drawn and a point is set at once, and the term has them", async () => {
+  const notice = (text) => page.locator("strata-notices").getByText(text).last().waitFor();
+  await page.keyboard.press("d");
+  await browser.drag([
+    [0.42, 0.6],
+    [0.5, 0.58],
+    [0.58, 0.6],
+  ]);
+  await notice(/drawn for “Crack”/);
+  await page.keyboard.press("s");
+  const box = await browser.stage_box();
+  await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.65 * box.height);
+  await notice(words.marks.point_set("Crack"));
+  const { values } = await server.json(
+    "GET",
+    `/tables/stone-condition-terms/records/${by_code("crack").key}`,
+  );
+  assert.deepEqual([values.lines.length, values.points.length], [1, 1]);
+  await shot("term-lines");
+  await page.keyboard.press("b");
+});
+
 test("the brush shows the list as a tree", async () => {
+  // A long list is folded, except above the chosen term.
+  assert.equal(await term("Crack").getAttribute("aria-selected"), "true");
+  await term("Detachment").locator(".fold").click();
+  await term("Scaling").locator(".fold").click();
   await term("Flaking").waitFor();
-  assert.equal(await term("Coming off").getAttribute("aria-expanded"), "true");
+  assert.equal(await term("Scaling").getAttribute("aria-expanded"), "true");
   assert.deepEqual(
     await term("Flaking").evaluate((row) => [row.ariaLevel, row.ariaPosInSet, row.ariaSetSize]),
-    ["2", "1", "4"],
+    ["3", "1", "2"],
   );
   assert.equal(await term("Flaking").getAttribute("title"), by_code("flaking").definition);
   await shot("term-tree");
@@ -114,7 +140,7 @@ test("a term is found by typing and taken by Enter", async () => {
       .getByRole("treeitem")
       .allInnerTexts()
       .then((all) => all.map((text) => text.trim())),
-    ["Coming off", "Flaking"],
+    ["Detachment", "Scaling", "Flaking"],
   );
   assert.equal(await term("Flaking").getAttribute("aria-selected"), "true");
   await shot("term-found");
@@ -143,7 +169,7 @@ test("what is painted has the term's key and its colour, and the legend names it
 
 test("the arrow keys go through the tree, fold and unfold it", async () => {
   await search.press("Escape");
-  await term("Cracks").waitFor();
+  await term("Crack").waitFor();
   const active = () =>
     search.evaluate(
       (input) =>
@@ -153,31 +179,32 @@ test("the arrow keys go through the tree, fold and unfold it", async () => {
           ?.innerText.trim() ?? "",
     );
   await search.press("ArrowLeft"); // from the chosen term to its parent
-  assert.equal(await active(), "Coming off");
+  assert.equal(await active(), "Scaling");
   await search.press("ArrowLeft");
   await wait_for(
     async () => (await term("Flaking").count()) === 0,
     "those below to be folded away",
   );
   await search.press("ArrowDown");
-  assert.equal(await active(), "Loss");
+  assert.equal(await active(), "Features induced by material loss");
   await search.press("ArrowUp");
   await search.press("ArrowRight");
-  await term("Powdering").waitFor();
+  await term("Flaking").waitFor();
   await search.press("ArrowRight");
   await search.press("ArrowDown");
-  assert.equal(await active(), "Powdering");
+  assert.equal(await active(), "Contour scaling");
   await search.press("Enter");
-  await brush.locator(".now").getByText("Powdering").waitFor();
+  await brush.locator(".now").getByText("Contour scaling").waitFor();
 });
 
 test("what nothing is called is told, and a click on a fold hides what is below", async () => {
   await search.fill("qwertz");
   await brush.getByText(words.terms.none_found).waitFor();
   await button(words.terms.show_all).click();
-  await term("Cracks").locator(".fold").click();
+  await term("Crack").waitFor();
+  await term("Crack and deformation").locator(".fold").click();
   await wait_for(
-    async () => (await term("Hairline crack").count()) === 0,
+    async () => (await term("Crack").count()) === 0,
     "the cracks to be folded",
   );
 });
@@ -195,7 +222,7 @@ test("the same template again is refused in plain words, and nothing is made", a
     (await server.json("GET", `${base}/layers`)).layers.filter(({ name }) =>
       name.startsWith("Stone"),
     ).length,
-    2,
+    4,
   );
 });
 
@@ -230,13 +257,14 @@ test("a SKOS file is looked at first, and is not written while one of its terms 
     (await server.json("GET", `/projects/${project}/tables`)).tables
       .filter(({ kind }) => kind === "terms")
       .map(({ name }) => name);
-  assert.deepEqual(await lists(), ["Stone condition terms"]);
+  const of_template = ["Stone condition terms", "Stone materials", "Stone measures"];
+  assert.deepEqual((await lists()).sort(), of_template);
   await button(words.terms_dialog.import).click();
   await wait_for(async () => (await importer.count()) === 0, "the list to be made");
   await layers.locator("li.selected").getByText("glaze terms").first().waitFor();
   await term("Crazing").waitFor();
   assert.equal(await term("Crazing").getAttribute("aria-level"), "2");
-  assert.deepEqual((await lists()).sort(), ["Stone condition terms", "glaze terms"]);
+  assert.deepEqual((await lists()).sort(), [...of_template, "glaze terms"]);
 });
 
 test("more terms go into the list from its table, and the tree follows", async () => {

@@ -162,7 +162,14 @@ export class StrataTemplateDialog extends LitElement {
       const layers = made.layers.map(completeLayer);
       for (const layer of layers) session.layers.put(layer);
       const first = layers.find(({ kind }) => kind === "database");
-      if (first) session.addCreated(first);
+      if (first) {
+        session.addCreated(first);
+        const key = firstTermKey(
+          template,
+          made.layers.findIndex(({ id }) => id === first.id),
+        );
+        if (key !== null) session.painting.setBrush((brush) => brush.setValue(first, key));
+      }
       notices.show("success", words.made(made.tables.length, layers.length));
       this._dialog.close();
     } catch (error) {
@@ -180,6 +187,16 @@ export class StrataTemplateDialog extends LitElement {
  */
 const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string =>
   labelOf({ name, labels });
+
+/**
+ * The first term below another one, in the list of a layer: people draw a crack, not the family of
+ * cracks. The server numbers the terms of a new list in their order. Null: not a list, or flat.
+ */
+export function firstTermKey({ layers, tables }: Template, layer: number): number | null {
+  const terms = tables.find(({ slug }) => slug === layers[layer]?.table)?.terms ?? [];
+  const place = terms.findIndex(({ parent }) => parent !== undefined);
+  return place < 0 ? null : place + 1;
+}
 
 const contents = ({ terms, columns }: TemplateTable): string =>
   terms ? words.terms(terms.length) : words.columns(columns?.length ?? 0);
