@@ -141,7 +141,7 @@ web_client_stamp() {
     protocol/generated/openapi.json -type f 2>/dev/null | sort | stamp_of
 }
 guide_stamp() {
-  find docs -path docs/node_modules -prune -o -path docs/.vitepress/cache -prune -o -path docs/.vitepress/dist -prune -o \
+  find docs web-client/src/shell/*.css -path docs/node_modules -prune -o -path docs/.vitepress/cache -prune -o -path docs/.vitepress/dist -prune -o \
     -type f -print | sort | stamp_of
 }
 page_is_current() {

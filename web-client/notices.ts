@@ -1,7 +1,7 @@
-// Writes `third-party-notices.txt` into the build: the licenses of the npm packages whose code is
-// in the build.
+// Writes `third-party-notices.txt` into the build: the licenses of the npm packages whose code or
+// fonts are in the build.
 import { existsSync, readdirSync, readFileSync } from "node:fs";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import type { Plugin } from "vite";
 
 const kFolder = /^(.*\/node_modules\/((?:@[^/]+\/)?[^/]+))\//;
@@ -14,13 +14,19 @@ function noticeOf(folder: string): string {
 }
 
 export function thirdPartyNotices(): Plugin {
+  let root = "";
   return {
     name: "third-party-notices",
     apply: "build",
+    configResolved: (config) => {
+      root = config.root;
+    },
     generateBundle(_, bundle) {
       const packages = new Map<string, string>();
-      for (const chunk of Object.values(bundle))
-        for (const id of chunk.type === "chunk" ? Object.keys(chunk.modules) : []) {
+      for (const part of Object.values(bundle))
+        for (const id of part.type === "chunk"
+          ? Object.keys(part.modules)
+          : part.originalFileNames.map((name) => resolve(root, name))) {
           // Rollup marks the modules that it generates from CommonJS with a zero byte.
           const found = kFolder.exec(id.replaceAll("\\", "/").replace(/^\0/, ""));
           if (found) packages.set(found[2]!, found[1]!);

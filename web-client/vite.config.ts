@@ -1,5 +1,6 @@
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vitest/config";
+import { compactStyles } from "./compact-styles";
 import { compressedBeside } from "./compress";
 import { thirdPartyNotices } from "./notices";
 import { operationsWithoutScript } from "./operations";
@@ -11,7 +12,7 @@ const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
 const unused = fileURLToPath(new URL("src/docs/unused.ts", import.meta.url));
 
 export default defineConfig({
-  plugins: [operationsWithoutScript(), thirdPartyNotices(), compressedBeside()],
+  plugins: [compactStyles(), operationsWithoutScript(), thirdPartyNotices(), compressedBeside()],
   resolve: {
     alias: {
       "@redocly/openapi-core/lib/bundle": unused,

@@ -49,7 +49,8 @@ def main():
     if os.path.exists(page):
         with open(page, encoding="utf-8") as file:
             notices = file.read()
-        for name in ("lit-html ", "redoc ", "react ", "styled-components "):
+        fonts = ("@fontsource-variable/inter ", "@fontsource-variable/source-serif-4 ")
+        for name in ("lit-html ", "redoc ", "react ", "styled-components ", *fonts):
             assert name in notices, f"{name}has no notice"
     print(f"{len(heads)} heads")
 

@@ -96,6 +96,10 @@ def check_texts(archive, program):
         listed = run(program, *path, "--help", text=True).partition("Subcommands:")[2]
         return set(re.findall(r"^  ([a-z]\S*)", listed, re.M))
 
+    copyright_of = text("./usr/share/doc/strata/copyright")
+    for words in ("Permission is hereby granted", "SIL OPEN FONT LICENSE", "The Inter Project"):
+        assert words in copyright_of, f"{words} is not in the copyright file"
+
     service, settings = text("./lib/systemd/system/strata.service"), text("./etc/default/strata")
     assert "ExecStart=/usr/bin/strata serve\n" in service
     assert "User=strata\n" in service and "EnvironmentFile=-/etc/default/strata\n" in service

@@ -6,6 +6,7 @@ import { join } from "node:path";
 import { kRoot, missing } from "../support/js/modules.mjs";
 
 const kMost = 200_000;
+const kMostFonts = 100_000; // of the fonts that it requests at once
 const dist = join(kRoot, "web-client", "dist");
 const list = join(dist, ".vite", "manifest.json");
 if (!existsSync(list)) missing("the page is not built");
@@ -52,6 +53,15 @@ for (const language of ["en", "de", "es"])
 const kiosk = weight("index.html", "src/kiosk/main.ts");
 console.log(`a kiosk: ${kiosk} bytes`);
 assert.ok(kiosk <= kMost);
+
+const document = readFileSync(join(dist, "index.html"), "utf8");
+const fonts = [...document.matchAll(/href="\/(assets\/[^"]+\.woff2)"/g)].map(
+  ([, file]) => statSync(join(dist, file)).size,
+);
+const font_bytes = fonts.reduce((sum, each) => sum + each, 0);
+console.log(`fonts: ${font_bytes} bytes in ${fonts.length} files`);
+assert.equal(fonts.length, 2);
+assert.ok(font_bytes <= kMostFonts);
 
 // Encoded files have the content of the plain ones, and every script has a source map.
 const { brotliDecompressSync, gunzipSync } = await import("node:zlib");

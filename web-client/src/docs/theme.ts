@@ -15,9 +15,9 @@ export const kTheme: NonNullable<Options["theme"]> = {
     },
   },
   typography: {
-    fontFamily: "system-ui, sans-serif",
-    headings: { fontFamily: "system-ui, sans-serif" },
-    code: { color: "#8f1d1a", fontFamily: "ui-monospace, monospace" },
+    fontFamily: "var(--sans)",
+    headings: { fontFamily: "var(--sans)" },
+    code: { color: "#8f1d1a", fontFamily: "var(--mono)" },
   },
   sidebar: { width: "300px" },
 };

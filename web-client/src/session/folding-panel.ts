@@ -18,37 +18,37 @@ export const foldingStyles = [
     .heading {
       display: flex;
       align-items: center;
-      gap: 0.5rem;
+      gap: var(--space-2);
     }
     h2 {
       flex: 1;
-      font-size: 1.08rem;
+      font-size: var(--text-large);
     }
     h2 button {
       width: 100%;
       justify-content: flex-start;
-      gap: 0.5rem;
-      min-height: 2.25rem;
-      margin-left: -0.5rem;
-      padding: 0 0.5rem;
+      gap: var(--space-2);
+      min-height: var(--control);
+      margin-left: calc(-1 * var(--space-2));
+      padding: 0 var(--space-2);
       font: inherit;
     }
     h2 svg.glyph {
       transform: rotate(90deg);
-      transition: transform 120ms;
+      transition: transform var(--fast);
     }
     h2 button[aria-expanded="true"] svg.glyph {
       transform: rotate(180deg);
     }
     .number {
-      font: 600 0.82rem var(--sans, inherit);
+      font: 600 var(--text-small) var(--sans, inherit);
       color: var(--ink-soft);
     }
     .parts {
       display: grid;
       grid-template-columns: minmax(0, 1fr);
-      gap: 0.625rem;
-      margin-top: 0.5rem;
+      gap: var(--space-2);
+      margin-top: var(--space-2);
     }
     .segments {
       display: flex;

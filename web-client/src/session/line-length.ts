@@ -36,5 +36,5 @@ export function lengthSoFar(
     width: `${kLength.width}px`,
     "justify-content": place.left < end[0] ? "end" : "start",
   };
-  return html`<div class="length numeric" aria-hidden="true" ${styled(at)}><b>${formatLength(metres)}</b></div>`;
+  return html`<div class="length" aria-hidden="true" ${styled(at)}><b>${formatLength(metres)}</b></div>`;
 }

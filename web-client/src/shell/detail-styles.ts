@@ -4,13 +4,13 @@ import { css } from "lit";
 
 export const detailStyles = css`
   h3 {
-    margin: 2px 0 -0.5rem;
-    font: 600 1rem var(--serif);
+    margin: var(--space-half) 0 calc(-1 * var(--space-2));
+    font: 600 var(--text-large) var(--serif);
   }
   dl {
     display: grid;
     grid-template-columns: minmax(9.375rem, auto) 1fr;
-    gap: 0.4375rem 1.125rem;
+    gap: var(--space-2) var(--space-4);
     margin: 0;
   }
   dt {
@@ -21,10 +21,10 @@ export const detailStyles = css`
     overflow-wrap: anywhere;
   }
   .parts section + section {
-    margin-top: 1rem;
+    margin-top: var(--space-4);
   }
   .parts h3 {
-    margin: 2px 0 0.5rem;
+    margin: var(--space-half) 0 var(--space-2);
     break-after: avoid;
   }
   dl.keys {
@@ -33,18 +33,18 @@ export const detailStyles = css`
   .keys > div {
     display: grid;
     grid-template-columns: minmax(6.875rem, 44%) 1fr;
-    gap: 1.125rem;
-    padding-bottom: 0.4375rem;
+    gap: var(--space-4);
+    padding-bottom: var(--space-2);
     break-inside: avoid;
   }
   .guides {
     display: flex;
     flex-wrap: wrap;
-    gap: 0.5rem 1.25rem;
-    margin: 1.25rem 0 0;
+    gap: var(--space-2) var(--space-5);
+    margin: var(--space-5) 0 0;
   }
   .version {
-    margin: 1.25rem 0 0;
+    margin: var(--space-5) 0 0;
     color: var(--ink-soft);
   }
   .keys dt {
@@ -54,7 +54,7 @@ export const detailStyles = css`
   @media (min-width: 2560px) {
     .parts {
       columns: 2;
-      column-gap: 3rem;
+      column-gap: var(--space-12);
     }
   }
   @media (max-width: 560px) {

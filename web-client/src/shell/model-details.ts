@@ -72,7 +72,7 @@ export class StrataModelDetails extends LitElement {
     ];
     return html`<strata-dialog wide prose heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <dl>
-        ${rows.map(([name, value]) => (value ? html`<dt>${name}</dt><dd class="numeric">${value}</dd>` : nothing))}
+        ${rows.map(([name, value]) => (value ? html`<dt>${name}</dt><dd>${value}</dd>` : nothing))}
         ${
           model.source_files.length > 0
             ? html`<dt>${words.files}</dt>
@@ -85,7 +85,7 @@ export class StrataModelDetails extends LitElement {
                           ? html`<a class="text" href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}>${file.name}</a>`
                           : file.name
                       }
-                      <span class="hint numeric">${formatBytes(file.bytes)}</span>
+                      <span class="hint">${formatBytes(file.bytes)}</span>
                     </div>`,
                 )}
                 ${mayDownload(this.viewer, model) ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}

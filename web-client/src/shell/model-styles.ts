@@ -35,8 +35,8 @@ export const modelStyles = css`
     grid-area: header;
     display: flex;
     align-items: center;
-    gap: 0.5rem;
-    padding: 0 0.75rem;
+    gap: var(--space-2);
+    padding: 0 var(--space-3);
     border-bottom: var(--edge) solid var(--line);
     background: var(--surface);
   }
@@ -44,16 +44,16 @@ export const modelStyles = css`
     display: grid;
     place-items: center;
     flex: none;
-    padding: 4px;
-    border-radius: 0.5625rem;
+    padding: var(--space-1);
+    border-radius: var(--radius);
   }
   .logo {
     width: 2rem;
     height: 2rem;
   }
   h1 {
-    font-size: 1.15rem;
-    padding-left: 0.375rem;
+    font-size: var(--text-title-3);
+    padding-left: var(--space-2);
   }
   .tools {
     display: contents;
@@ -90,22 +90,22 @@ export const modelStyles = css`
     background: var(--news);
   }
   .scale-chip {
-    min-height: 1.75rem;
-    padding: 0 0.75rem;
+    min-height: var(--control-small);
+    padding: 0 var(--space-3);
     border-color: transparent;
-    border-radius: 99px;
+    border-radius: var(--radius-round);
     background: var(--warn-soft);
     color: var(--warn);
-    font-size: 0.84rem;
+    font-size: var(--text-small);
     font-weight: 600;
   }
   .saving {
     display: flex;
     align-items: center;
-    gap: 0.375rem;
-    padding: 4px 0.6875rem 4px 0.5rem;
-    border-radius: 99px;
-    font-size: 0.86rem;
+    gap: var(--space-2);
+    padding: var(--space-1) var(--space-3) var(--space-1) var(--space-2);
+    border-radius: var(--radius-round);
+    font-size: var(--text-small);
     color: var(--ink-soft);
     white-space: nowrap;
   }
@@ -129,10 +129,10 @@ export const modelStyles = css`
     transform: translateX(-50%);
     display: flex;
     align-items: center;
-    gap: 0.75rem;
+    gap: var(--space-3);
     width: max-content;
     max-width: calc(100% - 1.75rem);
-    padding: 0.5rem 0.5rem 0.5rem 0.875rem;
+    padding: var(--space-2) var(--space-2) var(--space-2) var(--space-3);
     border: var(--edge) solid var(--warn);
     border-radius: var(--radius);
     background: var(--warn-soft);
@@ -144,7 +144,7 @@ export const modelStyles = css`
   }
   .readings {
     display: grid;
-    gap: 0.5rem;
+    gap: var(--space-2);
     justify-items: end;
     pointer-events: none;
     position: absolute;
@@ -181,10 +181,10 @@ export const modelStyles = css`
     position: relative; /* visually hidden content would lengthen the page otherwise */
     height: 100%;
     overflow: hidden auto;
-    padding: 0 0.875rem 1.5rem;
+    padding: 0 var(--space-3) var(--space-6);
   }
   aside section {
-    padding: 0.9375rem 0 1.0625rem;
+    padding: var(--space-4) 0 var(--space-4);
   }
   aside section + section {
     border-top: var(--edge) solid var(--line);
@@ -221,12 +221,12 @@ export const modelStyles = css`
       max-height: 44dvh;
       border-left: 0;
       border-top: var(--edge) solid var(--line);
-      border-radius: 1rem 1rem 0 0;
+      border-radius: var(--radius-large) var(--radius-large) 0 0;
       box-shadow: var(--shadow-above);
       z-index: 2;
     }
     .scroll {
-      padding: 0 1rem 0.625rem;
+      padding: 0 var(--space-4) var(--space-2);
     }
     strata-tool-rail {
       padding-bottom: max(0.375rem, env(safe-area-inset-bottom));
@@ -240,17 +240,17 @@ export const modelStyles = css`
       display: inline;
     }
     .people {
-      padding: 0 2px 0 0.5625rem;
+      padding: 0 var(--space-half) 0 var(--space-2);
     }
     .saving {
-      padding: 4px 0.375rem;
+      padding: var(--space-1) var(--space-2);
     }
     header {
-      gap: 2px;
-      padding: 0 0.375rem;
+      gap: var(--space-half);
+      padding: 0 var(--space-2);
     }
     h1 {
-      font-size: 1.02rem;
+      font-size: var(--text-large);
     }
     .readings {
       right: 0.625rem;

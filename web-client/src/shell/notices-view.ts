@@ -23,7 +23,7 @@ export class StrataNotices extends LitElement {
         left: 4.75rem; /* next to the tools and above the scale bar */
         bottom: calc(4.75rem + var(--beneath, 0px)); /* height of the content below the picture */
         display: grid;
-        gap: 0.5rem;
+        gap: var(--space-2);
         width: min(27.5rem, calc(100vw - 5.5rem));
         pointer-events: none;
       }
@@ -37,15 +37,15 @@ export class StrataNotices extends LitElement {
       .notice {
         display: flex;
         align-items: flex-start;
-        gap: 0.625rem;
-        padding: 0.6875rem 0.5rem 0.6875rem 0.875rem;
+        gap: var(--space-2);
+        padding: var(--space-3) var(--space-2) var(--space-3) var(--space-3);
         border: var(--edge) solid var(--line);
         border-left: 4px solid var(--calm);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);
         pointer-events: auto;
-        animation: rise 160ms ease-out;
+        animation: rise var(--fast) ease-out;
       }
       .notice.problem {
         border-left-color: var(--danger);
@@ -56,7 +56,7 @@ export class StrataNotices extends LitElement {
       .words {
         flex: 1;
         min-width: 0;
-        padding-top: 2px;
+        padding-top: var(--space-half);
         overflow-wrap: anywhere;
       }
       .words strong {
@@ -64,11 +64,11 @@ export class StrataNotices extends LitElement {
       }
       .words p {
         color: var(--ink-soft);
-        font-size: 0.9rem;
+        font-size: var(--text-small);
       }
       button.icon {
         width: 1.75rem;
-        min-height: 1.75rem;
+        min-height: var(--control-small);
       }
       button svg.glyph {
         width: 1rem;

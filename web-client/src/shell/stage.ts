@@ -107,11 +107,11 @@ export class StrataStage extends LitElement {
         pointer-events: none;
       }
       .length b {
-        padding: 3px 9px;
-        border-radius: 99px;
+        padding: var(--space-1) var(--space-2);
+        border-radius: var(--radius-round);
         background: var(--mark-ground);
         color: var(--mark-light);
-        font-size: 0.82rem;
+        font-size: var(--text-small);
         font-weight: 600;
         white-space: nowrap;
       }
@@ -128,11 +128,11 @@ export class StrataStage extends LitElement {
         left: 18px;
         bottom: 16px;
         color: var(--on-stage);
-        font-size: 0.8rem;
+        font-size: var(--text-tiny);
         font-weight: 600;
         pointer-events: none;
-        padding: 3px 8px 5px;
-        border-radius: 5px;
+        padding: var(--space-1) var(--space-2) var(--space-1);
+        border-radius: var(--radius-tiny);
         background: var(--on-stage-ground);
       }
       .scale small {
@@ -318,6 +318,6 @@ export class StrataStage extends LitElement {
       session.view.camera.unitPerPixel(depth) * session.view.scale * metresPer(session.shownUnit);
     const bar = scaleBar(metresPerPx, kScaleBarPx);
     const lowered = session.together.followed || session.together.leading;
-    return html`<div class="scale numeric ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}${session.model.scale_verified ? nothing : html`<small>${texts.home.scale_open}</small>`}</div>`;
+    return html`<div class="scale ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}${session.model.scale_verified ? nothing : html`<small>${texts.home.scale_open}</small>`}</div>`;
   }
 }

@@ -74,7 +74,7 @@ export class StrataApp extends LitElement {
         inset: 0;
         z-index: 40;
         display: grid;
-        padding: 20px;
+        padding: var(--space-5);
         background: var(--drop);
         pointer-events: none;
       }
@@ -82,13 +82,13 @@ export class StrataApp extends LitElement {
         display: grid;
         place-content: center;
         justify-items: center;
-        gap: 6px;
+        gap: var(--space-2);
         border: 2px dashed var(--accent);
-        border-radius: 18px;
+        border-radius: var(--radius-large);
         color: var(--accent);
       }
       .drop-target b {
-        font: 600 1.6rem var(--serif);
+        font: 600 var(--text-title-1) var(--serif);
       }
       .drop-target svg.glyph {
         width: 44px;

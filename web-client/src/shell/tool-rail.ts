@@ -35,8 +35,8 @@ export class StrataToolRail extends LitElement {
         display: flex;
         flex-direction: column;
         align-items: center;
-        gap: 4px;
-        padding: 0.625rem 0.5rem;
+        gap: var(--space-1);
+        padding: var(--space-2) var(--space-2);
         background: var(--surface);
         border-right: var(--edge) solid var(--line);
       }
@@ -57,23 +57,23 @@ export class StrataToolRail extends LitElement {
       }
       hr:not(strata-menu > hr) {
         width: 1.75rem;
-        margin: 5px 0;
+        margin: var(--space-1) 0;
         border: 0;
         border-top: var(--edge) solid var(--line);
       }
       kbd {
         margin-left: auto;
-        padding-left: 1.125rem;
+        padding-left: var(--space-4);
         color: var(--ink-soft);
-        font: 0.8rem var(--mono);
+        font: var(--text-tiny) var(--mono);
       }
       @media (max-width: 820px) {
         :host {
           flex-direction: row;
           justify-content: safe center;
           overflow-x: auto;
-          gap: 2px;
-          padding: 0.375rem;
+          gap: var(--space-half);
+          padding: var(--space-2);
           border-right: 0;
           border-top: var(--edge) solid var(--line);
           --fade: 2.125rem;
@@ -97,8 +97,8 @@ export class StrataToolRail extends LitElement {
           justify-content: end;
           box-sizing: border-box;
           width: var(--turns);
-          margin-right: -0.375rem;
-          padding-right: 0.375rem;
+          margin-right: calc(-1 * var(--space-2));
+          padding-right: var(--space-2);
           background: var(--surface);
         }
         .turns hr:last-child {
@@ -118,7 +118,7 @@ export class StrataToolRail extends LitElement {
         hr:not(strata-menu > hr) {
           width: 0;
           height: 1.625rem;
-          margin: 0 3px;
+          margin: 0 var(--space-1);
           border-left: var(--edge) solid var(--line);
           border-top: 0;
         }

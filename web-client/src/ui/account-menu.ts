@@ -39,19 +39,19 @@ export class StrataAccountMenu extends LitElement {
         height: 1.875rem;
         border-radius: 50%;
         color: var(--mark-light);
-        font-size: 0.76rem;
+        font-size: var(--text-tiny);
         font-weight: 700;
         letter-spacing: 0.02em;
       }
       .who {
         display: grid;
         max-width: 16.25rem;
-        padding: 0.5rem 0.875rem 0.625rem;
+        padding: var(--space-2) var(--space-3) var(--space-2);
         overflow-wrap: anywhere;
       }
       .who span {
         color: var(--ink-soft);
-        font-size: 0.86rem;
+        font-size: var(--text-small);
       }
     `,
   ];

@@ -7,7 +7,7 @@ export const addFromStyles = css`
   .add {
     display: flex;
     flex-wrap: wrap;
-    gap: 6px 8px;
+    gap: var(--space-2) var(--space-2);
   }
   .add select {
     flex: 1 1 190px;

@@ -21,15 +21,15 @@ export class StrataCopyField extends LitElement {
       :host {
         position: relative; /* for visually hidden content */
         display: flex;
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       input[type="text"] {
         flex: 1;
         min-width: 0;
-        font: 0.84rem var(--mono);
+        font: var(--text-small) var(--mono);
       }
       button {
-        min-height: 2.375rem;
+        min-height: var(--control);
       }
     `,
   ];

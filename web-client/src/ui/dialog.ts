@@ -67,7 +67,7 @@ export class StrataDialog extends LitElement {
         max-height: calc(100dvh - 1.5rem);
         padding: 0;
         border: var(--edge) solid var(--line);
-        border-radius: 0.875rem;
+        border-radius: var(--radius-large);
         background: var(--surface);
         color: var(--ink);
         box-shadow: var(--shadow);
@@ -95,7 +95,7 @@ export class StrataDialog extends LitElement {
         background: var(--veil);
       }
       :host([aside]) dialog {
-        margin: 4.125rem 0.875rem auto auto;
+        margin: 4.125rem var(--space-3) auto auto;
       }
       :host([aside]) dialog::backdrop {
         background: var(--thin-veil);
@@ -110,20 +110,20 @@ export class StrataDialog extends LitElement {
       .head {
         display: flex;
         align-items: flex-start;
-        gap: 0.75rem;
-        padding: 1.25rem 0.875rem 0 1.5rem;
+        gap: var(--space-3);
+        padding: var(--space-5) var(--space-3) 0 var(--space-6);
       }
       h2 {
         flex: 1;
-        padding-top: 3px;
-        font-size: 1.3rem;
+        padding-top: var(--space-1);
+        font-size: var(--text-title-2);
         text-wrap: balance;
         overflow-wrap: anywhere;
       }
       .content {
         display: grid;
-        gap: 1rem;
-        padding: 0.875rem 1.5rem 1.25rem;
+        gap: var(--space-4);
+        padding: var(--space-3) var(--space-6) var(--space-5);
         overflow: auto;
         outline-offset: -2px;
       }
@@ -134,8 +134,8 @@ export class StrataDialog extends LitElement {
         display: flex;
         flex-wrap: wrap;
         justify-content: flex-end;
-        gap: 0.625rem;
-        padding: 0.875rem 1.5rem 1.125rem;
+        gap: var(--space-2);
+        padding: var(--space-3) var(--space-6) var(--space-4);
         border-top: var(--edge) solid var(--line);
       }
       footer.empty {
@@ -143,17 +143,17 @@ export class StrataDialog extends LitElement {
       }
       @media (max-width: 560px) {
         footer {
-          gap: 6px;
-          padding: 0.75rem 0.875rem 0.875rem;
+          gap: var(--space-2);
+          padding: var(--space-3) var(--space-3) var(--space-3);
         }
         .way-out,
         ::slotted(button[slot="actions"]) {
-          padding: 0 0.5rem !important;
+          padding: 0 var(--space-2) !important;
         }
         dialog {
           width: 100vw;
           margin: auto 0 0;
-          border-radius: 1rem 1rem 0 0;
+          border-radius: var(--radius-large) var(--radius-large) 0 0;
         }
         :host([wide]) dialog,
         :host([broad]) dialog,

@@ -34,8 +34,8 @@ export class StrataFileChoice extends LitElement {
       div {
         display: flex;
         align-items: center;
-        gap: 0.75rem;
-        padding: 0.75rem;
+        gap: var(--space-3);
+        padding: var(--space-3);
         border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius-small);
       }

@@ -38,23 +38,23 @@ export class StrataLabelsField extends LitElement {
       :host,
       .rows {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       .rows > div {
         display: grid;
         grid-template-columns: 6.5rem minmax(0, 1fr) auto;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       textarea {
         grid-column: 2;
-        min-height: 2.75rem;
+        min-height: var(--control-touch);
       }
       button.add {
         justify-self: start;
         min-height: 2rem;
       }
       .caption {
-        margin-bottom: -1px;
+        margin-bottom: calc(-1 * var(--space-half));
       }
     `,
   ];

@@ -29,7 +29,7 @@ export class StrataLightPad extends LitElement {
         display: grid;
         grid-template-columns: 7rem 1fr;
         align-items: center;
-        gap: 0.875rem;
+        gap: var(--space-3);
       }
       .pad {
         position: relative;
@@ -54,7 +54,7 @@ export class StrataLightPad extends LitElement {
         top: var(--y);
         width: 1.25rem;
         height: 1.25rem;
-        margin: -0.625rem 0 0 -0.625rem;
+        margin: calc(-1 * var(--space-2)) 0 0 calc(-1 * var(--space-2));
         border: 2px solid var(--mark-light);
         border-radius: 50%;
         background: var(--accent);
@@ -72,7 +72,7 @@ export class StrataLightPad extends LitElement {
         .handle {
           width: 1.75rem;
           height: 1.75rem;
-          margin: -0.875rem 0 0 -0.875rem;
+          margin: calc(-1 * var(--space-3)) 0 0 calc(-1 * var(--space-3));
         }
       }
     `,
@@ -97,7 +97,7 @@ export class StrataLightPad extends LitElement {
       >
         <span class="handle"></span>
       </div>
-      <p class="hint">${texts.view.light_pad_hint}<br /><span class="numeric">${texts.view.light_from(from, above)}</span></p>`;
+      <p class="hint">${texts.view.light_pad_hint}<br /><span>${texts.view.light_from(from, above)}</span></p>`;
   }
 
   private choose(point: PadPoint): void {

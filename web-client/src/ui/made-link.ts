@@ -21,8 +21,8 @@ export class StrataMadeLink extends LitElement {
       }
       div[role] {
         display: grid;
-        gap: 0.75rem;
-        padding: 0.875rem;
+        gap: var(--space-3);
+        padding: var(--space-3);
         border-radius: var(--radius);
         background: var(--calm-soft);
         overflow-wrap: anywhere;

@@ -29,7 +29,7 @@ export class StrataMenu extends LitElement {
         position: fixed;
         inset: auto;
         margin: 0;
-        padding: 5px;
+        padding: var(--space-1);
         width: max-content;
         min-width: 11.25rem;
         max-height: calc(100dvh - 1rem);
@@ -62,7 +62,7 @@ export class StrataMenu extends LitElement {
         pointer-events: none; /* clicks belong to the button */
       }
       ::slotted(hr) {
-        margin: 5px 0;
+        margin: var(--space-1) 0;
         border: 0;
         border-top: var(--edge) solid var(--line);
       }

@@ -37,12 +37,12 @@ export class StrataOrderedChoice extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
         min-width: 0;
       }
       ol {
         display: grid;
-        gap: 4px;
+        gap: var(--space-1);
         margin: 0;
         padding: 0;
         list-style: none;
@@ -51,8 +51,8 @@ export class StrataOrderedChoice extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr) auto;
         align-items: center;
-        gap: 2px 0.5rem;
-        padding: 2px 2px 2px 0.625rem;
+        gap: var(--space-half) var(--space-2);
+        padding: var(--space-half) var(--space-half) var(--space-half) var(--space-2);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
         background: var(--raised);
@@ -63,9 +63,9 @@ export class StrataOrderedChoice extends LitElement {
       .name {
         display: flex;
         align-items: center;
-        gap: 0.5rem;
+        gap: var(--space-2);
         min-width: 0;
-        font-size: 0.93rem;
+        font-size: var(--text-body);
         overflow-wrap: anywhere;
       }
       .buttons {
@@ -83,17 +83,17 @@ export class StrataOrderedChoice extends LitElement {
         grid-column: 1 / -1;
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(min(100%, 9.375rem), 1fr));
-        gap: 0.375rem;
-        padding: 0 0.5rem 0.5rem 0;
+        gap: var(--space-2);
+        padding: 0 var(--space-2) var(--space-2) 0;
       }
       .more input[type="text"] {
         min-height: 2.125rem;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       @media (pointer: coarse) {
         .buttons button.icon {
           width: 2.5rem;
-          min-height: 2.75rem;
+          min-height: var(--control-touch);
         }
       }
     `,

@@ -6,8 +6,8 @@ import { css } from "lit";
 export const panelLineStyles = css`
   ul {
     display: grid;
-    gap: 2px;
-    margin: 0 -0.5rem;
+    gap: var(--space-half);
+    margin: 0 calc(-1 * var(--space-2));
     padding: 0;
     list-style: none;
   }
@@ -16,10 +16,10 @@ export const panelLineStyles = css`
     grid-template-columns: auto minmax(0, 1fr) auto;
     justify-content: stretch;
     align-items: start;
-    gap: 1px 0.625rem;
+    gap: var(--space-half) var(--space-2);
     width: 100%;
     min-height: 0;
-    padding: 0.5rem;
+    padding: var(--space-2);
     text-align: left;
     white-space: normal;
   }
@@ -33,21 +33,21 @@ export const listHeadStyles = css`
   :host {
     display: grid;
     grid-template-columns: minmax(0, 1fr);
-    gap: 0.625rem;
+    gap: var(--space-2);
   }
   .row {
     flex-wrap: wrap;
-    min-height: 1.875rem;
+    min-height: var(--control-small);
   }
   h3 {
     flex: 1;
-    font-size: 0.8rem;
+    font-size: var(--text-tiny);
     font-weight: 600;
     color: var(--ink-soft);
   }
   ul {
     display: grid;
-    gap: 2px;
+    gap: var(--space-half);
     margin: 0;
     padding: 0;
     list-style: none;
@@ -57,18 +57,18 @@ export const listHeadStyles = css`
 /** Rows of such a list: a button with a name, as wide as the panel, and its menu. */
 export const listRowStyles = css`
   ul {
-    margin-left: -0.5rem;
+    margin-left: calc(-1 * var(--space-2));
   }
   li {
     display: grid;
     grid-template-columns: minmax(0, 1fr) auto;
     align-items: start;
-    gap: 2px;
+    gap: var(--space-half);
   }
   li > button {
     display: grid;
     justify-content: stretch;
-    padding: 0.4375rem 0.5rem;
+    padding: var(--space-2) var(--space-2);
     text-align: start;
     white-space: normal;
   }

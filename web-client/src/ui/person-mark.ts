@@ -14,7 +14,7 @@ export const personMarkStyles = css`
     border-radius: 50%;
     background: var(--mark-settled);
     color: var(--mark-light);
-    font-size: 0.72rem;
+    font-size: var(--text-tiny);
     font-weight: 700;
     letter-spacing: 0.02em;
   }

@@ -64,8 +64,8 @@ export const rowListStyles = css`
     display: flex;
     flex-wrap: wrap;
     align-items: center;
-    gap: 4px 0.75rem;
-    padding: 0.5rem 0;
+    gap: var(--space-1) var(--space-3);
+    padding: var(--space-2) 0;
   }
   .rows > li + li {
     border-top: var(--edge) solid var(--line);
@@ -77,12 +77,12 @@ export const rowListStyles = css`
   .rows .about {
     display: grid;
     flex: 1 1 12rem;
-    gap: 2px;
+    gap: var(--space-half);
     min-width: 0;
   }
   .rows .about > .row {
     flex-wrap: wrap;
-    gap: 4px 0.5rem;
+    gap: var(--space-1) var(--space-2);
   }
   .rows b {
     font-weight: 600;
@@ -96,7 +96,7 @@ export const rowListStyles = css`
     display: flex;
     flex-wrap: wrap;
     align-items: center;
-    gap: 0.5rem;
+    gap: var(--space-2);
   }
   .rows select {
     width: auto;
@@ -104,7 +104,7 @@ export const rowListStyles = css`
   .rows > li > .error,
   .rows > li > .done {
     flex-basis: 100%;
-    font-size: 0.86rem;
+    font-size: var(--text-small);
   }
   .rows > li > .done {
     color: var(--calm);

@@ -17,13 +17,13 @@ export class StrataStatusPage extends LitElement {
         display: grid;
         place-items: center;
         min-height: 100dvh;
-        padding: 1.5rem;
+        padding: var(--space-6);
         text-align: center;
       }
       div {
         display: grid;
         justify-items: center;
-        gap: 0.875rem;
+        gap: var(--space-3);
         max-width: 27.5rem;
       }
       .logo {
@@ -31,7 +31,7 @@ export class StrataStatusPage extends LitElement {
         height: 3.25rem;
       }
       h1 {
-        font-size: 1.45rem;
+        font-size: var(--text-title-2);
       }
       p {
         color: var(--ink-soft);

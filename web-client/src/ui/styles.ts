@@ -40,9 +40,9 @@ export const sharedStyles = css`
     display: inline-flex;
     align-items: center;
     justify-content: center;
-    gap: 0.5em;
-    min-height: 2.25rem;
-    padding: 0 0.875rem;
+    gap: var(--space-2);
+    min-height: var(--control);
+    padding: 0 var(--space-3);
     border: var(--edge) solid var(--line);
     border-radius: var(--radius-small);
     background: var(--raised);
@@ -69,14 +69,18 @@ export const sharedStyles = css`
     font-weight: 600;
   }
   button.primary:hover:not(:disabled) {
-    filter: brightness(1.08);
-    border-color: var(--accent);
+    border-color: var(--accent-strong);
+    background: var(--accent-strong);
   }
   button.danger {
     border-color: var(--danger);
     background: var(--danger);
     color: var(--danger-ink);
     font-weight: 600;
+  }
+  button.danger:hover:not(:disabled) {
+    border-color: var(--danger-strong);
+    background: var(--danger-strong);
   }
   button.quiet {
     border-color: transparent;
@@ -95,7 +99,7 @@ export const sharedStyles = css`
   }
   button.link {
     min-height: 0;
-    padding: 2px 0;
+    padding: var(--space-half) 0;
     border: 0;
     background: none;
     color: var(--accent);
@@ -111,13 +115,35 @@ export const sharedStyles = css`
   select,
   textarea {
     width: 100%;
-    min-height: 2.375rem;
-    padding: 0.375rem 0.625rem;
+    min-height: var(--control);
+    padding: var(--space-1) var(--space-2);
     border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
-    background: var(--raised);
+    background-color: var(--field);
+    transition: border-color var(--fast);
+  }
+  input[type="text"]:hover:enabled,
+  input[type="password"]:hover:enabled,
+  select:hover:enabled,
+  textarea:hover:enabled {
+    border-color: var(--ink-soft);
+  }
+  /* The arrow is two triangles in the color of the text. */
+  select:not([multiple]) {
+    appearance: none;
+    padding-right: var(--space-6);
+    background-image:
+      linear-gradient(45deg, transparent 50%, currentColor 50%),
+      linear-gradient(-45deg, transparent 50%, currentColor 50%);
+    background-position:
+      right 0.8125rem top 55%,
+      right 0.5625rem top 55%;
+    background-repeat: no-repeat;
+    background-size: 0.25rem 0.25rem;
+    text-overflow: ellipsis;
   }
   textarea {
+    padding: var(--space-2);
     resize: vertical;
     min-height: 4rem;
   }
@@ -139,40 +165,56 @@ export const sharedStyles = css`
   input[type="checkbox"],
   input[type="radio"] {
     flex: none;
-    width: 0.8125rem;
-    height: 0.8125rem;
+    width: 1rem;
+    height: 1rem;
+    margin: 0;
+    accent-color: var(--accent);
   }
+  /* A well of color: the color fills the whole control. */
   input[type="color"] {
-    width: 2.375rem;
-    height: 2.375rem;
+    width: var(--control);
+    height: var(--control);
     flex: none;
-    padding: 3px;
+    padding: 0;
     border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
-    background: var(--raised);
+    background: var(--field);
+    overflow: hidden;
     cursor: pointer;
+    transition: border-color var(--fast);
+  }
+  input[type="color"]:hover:enabled {
+    border-color: var(--ink);
+  }
+  input[type="color"]::-webkit-color-swatch-wrapper {
+    padding: 0;
+  }
+  input[type="color"]::-webkit-color-swatch {
+    border: 0;
+    border-radius: 0;
+  }
+  input[type="color"]::-moz-color-swatch {
+    border: 0;
+    border-radius: 0;
   }
   label.field {
     display: grid;
-    gap: 5px;
-    font-size: 0.93rem;
+    gap: var(--space-1);
+    font-size: var(--text-body);
   }
   label.field > span:not(.number),
   .caption {
-    font-size: 0.8rem;
+    font-size: var(--text-tiny);
     font-weight: 600;
     color: var(--ink-soft);
   }
   .hint {
-    font-size: 0.82rem;
+    font-size: var(--text-small);
     color: var(--ink-soft);
   }
   .error {
-    font-size: 0.86rem;
+    font-size: var(--text-small);
     color: var(--danger);
-  }
-  .numeric {
-    font-variant-numeric: tabular-nums;
   }
   .grow {
     flex: 1;
@@ -181,11 +223,23 @@ export const sharedStyles = css`
   .row {
     display: flex;
     align-items: center;
-    gap: 0.625rem;
+    gap: var(--space-2);
   }
   .ellipsis {
     overflow: hidden;
     text-overflow: ellipsis;
+    white-space: nowrap;
+  }
+  kbd {
+    display: inline-block;
+    min-width: 1.375rem;
+    padding: 0 var(--space-1);
+    border: var(--edge) solid var(--line-strong);
+    border-bottom-width: calc(var(--edge) + 1px);
+    border-radius: var(--radius-tiny);
+    background: var(--raised);
+    font: 500 var(--text-tiny) / 1.7 var(--sans);
+    text-align: center;
     white-space: nowrap;
   }
   .swatch {
@@ -193,26 +247,26 @@ export const sharedStyles = css`
     flex: none;
     width: 1rem;
     height: 1rem;
-    border-radius: 4px;
+    border-radius: var(--radius-tiny);
     box-shadow: inset 0 0 0 1px var(--swatch-rim);
   }
   .segments {
     display: inline-flex;
     flex-wrap: wrap;
     max-width: 100%;
-    padding: 2px;
+    padding: var(--space-half);
     border: var(--edge) solid var(--line);
     border-radius: var(--radius-small);
     background: var(--paper);
   }
   .segments button {
     flex: 1;
-    min-height: 1.875rem;
-    padding: 0 0.625rem;
+    min-height: var(--control-small);
+    padding: 0 var(--space-2);
     border: 0;
-    border-radius: 4px;
+    border-radius: var(--radius-tiny);
     background: transparent;
-    font-size: 0.88rem;
+    font-size: var(--text-small);
   }
   .segments button[aria-checked="true"],
   .segments button[aria-pressed="true"] {
@@ -223,7 +277,7 @@ export const sharedStyles = css`
   }
   .visibility {
     display: grid;
-    gap: 0.375rem;
+    gap: var(--space-2);
     justify-items: start;
   }
   @media (max-width: 560px) {
@@ -234,8 +288,8 @@ export const sharedStyles = css`
     }
     .visibility .segments button {
       flex-direction: column;
-      gap: 2px;
-      padding: 0.375rem 4px;
+      gap: var(--space-half);
+      padding: var(--space-2) var(--space-1);
       line-height: 1.2;
       white-space: normal;
     }
@@ -267,8 +321,13 @@ export const sharedStyles = css`
     }
   }
   @media (forced-colors: active) {
-    .swatch {
+    .swatch,
+    input[type="color"] {
       forced-color-adjust: none;
+    }
+    select:not([multiple]) {
+      appearance: auto;
+      background-image: none;
     }
     [aria-pressed="true"],
     [aria-checked="true"],
@@ -277,23 +336,22 @@ export const sharedStyles = css`
       outline-offset: -3px;
     }
     :focus-visible {
-      outline: 3px solid CanvasText;
-      outline-offset: 2px;
+      outline: var(--focus);
     }
   }
   @media (pointer: coarse) {
     button,
     .button {
-      min-height: 2.75rem;
+      min-height: var(--control-touch);
     }
     button.icon {
-      width: 2.75rem;
+      width: var(--control-touch);
     }
   }
   label.check {
     display: flex;
     align-items: center;
-    gap: 0.5625rem;
+    gap: var(--space-2);
   }
 `;
 
@@ -301,7 +359,7 @@ export const sharedStyles = css`
 export const formStyles = css`
   form {
     display: grid;
-    gap: 0.875rem;
+    gap: var(--space-3);
   }
 `;
 
@@ -312,14 +370,14 @@ export const formStyles = css`
 export const linkMakingStyles = css`
   form {
     display: grid;
-    gap: 0.75rem;
-    padding: 0.875rem;
+    gap: var(--space-3);
+    padding: var(--space-3);
     border: var(--edge) solid var(--line);
     border-radius: var(--radius);
   }
   .fields {
     display: grid;
-    gap: 0.75rem;
+    gap: var(--space-3);
   }
 `;
 
@@ -328,7 +386,7 @@ export const choicesStyles = css`
   .choices {
     display: grid;
     grid-template-columns: 1fr 1fr;
-    gap: 0.75rem;
+    gap: var(--space-3);
     align-items: start;
   }
   .choices .full {
@@ -344,13 +402,13 @@ export const numberFieldStyles = css`
     min-width: 0;
     border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
-    background: var(--raised);
+    background: var(--field);
     cursor: text;
   }
   .number input[type="text"] {
     flex: 1;
     min-width: 2.5rem;
-    min-height: calc(2.375rem - 2 * var(--edge));
+    min-height: calc(var(--control) - 2 * var(--edge));
     border: 0;
     background: none;
     text-align: right;
@@ -360,10 +418,10 @@ export const numberFieldStyles = css`
     order: 1;
     flex: 0 1 auto;
     max-width: 60%;
-    padding-right: 0.625rem;
+    padding-right: var(--space-2);
     overflow: hidden;
     color: var(--ink-soft);
-    font-size: 0.85rem;
+    font-size: var(--text-small);
     text-overflow: ellipsis;
     white-space: nowrap;
     pointer-events: none;
@@ -372,7 +430,7 @@ export const numberFieldStyles = css`
     display: none;
   }
   .number:has(> span:not(:empty)) input {
-    padding-right: 0.3125rem;
+    padding-right: var(--space-1);
   }
   .number:focus-within {
     outline: var(--focus);
@@ -383,12 +441,6 @@ export const numberFieldStyles = css`
   .number:has(:disabled) {
     opacity: var(--unavailable);
     cursor: default;
-  }
-  @media (forced-colors: active) {
-    .number:focus-within {
-      outline: 3px solid CanvasText;
-      outline-offset: 2px;
-    }
   }
 `;
 
@@ -407,7 +459,7 @@ export const dragStyles = css`
     right: 0;
     top: -5px;
     height: 3px;
-    border-radius: 2px;
+    border-radius: var(--radius-tiny);
     background: var(--accent);
   }
   .grip {
@@ -423,11 +475,11 @@ export const dragStyles = css`
 /** A word or two about the adjacent content. */
 export const chipStyles = css`
   .chip {
-    padding: 1px 0.5rem;
-    border-radius: 99px;
+    padding: var(--space-half) var(--space-2);
+    border-radius: var(--radius-round);
     background: var(--calm-soft);
     color: var(--calm);
-    font-size: 0.76rem;
+    font-size: var(--text-tiny);
     font-weight: 600;
     white-space: nowrap;
   }
@@ -437,16 +489,16 @@ export const chipStyles = css`
 export const filesStyles = css`
   .part {
     display: grid;
-    gap: 0.375rem;
+    gap: var(--space-2);
   }
   .found {
-    padding: 0.5625rem 0.75rem;
+    padding: var(--space-2) var(--space-3);
     border-radius: var(--radius-small);
     background: var(--calm-soft);
-    font-size: 0.9rem;
+    font-size: var(--text-small);
   }
   textarea {
-    font: 0.95rem var(--mono);
+    font: var(--text-body) var(--mono);
   }
   progress {
     width: 100%;

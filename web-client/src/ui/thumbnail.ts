@@ -51,7 +51,7 @@ export class StrataThumbnail extends LitElement {
         height: 100%;
         object-fit: cover;
         opacity: 0;
-        transition: opacity 240ms;
+        transition: opacity var(--slow);
       }
       canvas.drawn {
         opacity: 1;
@@ -62,7 +62,7 @@ export class StrataThumbnail extends LitElement {
         display: grid;
         place-items: center;
         color: var(--on-stage);
-        font-size: 0.85rem;
+        font-size: var(--text-small);
       }
     `,
   ];

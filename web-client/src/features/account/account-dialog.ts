@@ -55,23 +55,23 @@ export class StrataAccountDialog extends LitElement {
     css`
       section {
         display: grid;
-        gap: 0.75rem;
+        gap: var(--space-3);
       }
       section + section {
-        padding-top: 1.125rem;
+        padding-top: var(--space-4);
         border-top: var(--edge) solid var(--line);
       }
       h3 {
-        font-size: 1rem;
+        font-size: var(--text-large);
       }
       form {
         display: grid;
-        gap: 0.75rem;
+        gap: var(--space-3);
       }
       .beside {
         display: flex;
         align-items: end;
-        gap: 0.625rem;
+        gap: var(--space-2);
       }
       .beside > label {
         flex: 1;
@@ -87,14 +87,14 @@ export class StrataAccountDialog extends LitElement {
       }
       .choices small {
         display: block;
-        margin-top: 5px;
+        margin-top: var(--space-1);
       }
       pre {
         margin: 0;
-        padding: 0.5625rem 0.6875rem;
+        padding: var(--space-2) var(--space-3);
         border-radius: var(--radius-small);
         background: var(--surface);
-        font: 0.8rem/1.5 var(--mono);
+        font: var(--text-tiny)/1.5 var(--mono);
         white-space: pre-wrap;
         overflow-wrap: anywhere;
       }

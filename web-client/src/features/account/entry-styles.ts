@@ -7,23 +7,23 @@ export const entryStyles = css`
     display: grid;
     place-items: center;
     min-height: 100dvh;
-    padding: 1.25rem;
+    padding: var(--space-5);
   }
   main {
     width: min(26.25rem, 100%);
   }
   .card {
     display: grid;
-    gap: 1.125rem;
-    padding: 2.25rem 2.125rem 2rem;
+    gap: var(--space-4);
+    padding: var(--space-8) var(--space-8) var(--space-8);
     border: var(--edge) solid var(--line);
-    border-radius: 1rem;
+    border-radius: var(--radius-large);
     background: var(--surface);
     box-shadow: var(--shadow);
   }
   form {
     display: grid;
-    gap: 1rem;
+    gap: var(--space-4);
   }
   .logo {
     width: 2.75rem;
@@ -32,34 +32,34 @@ export const entryStyles = css`
   .brand {
     display: flex;
     align-items: center;
-    gap: 0.875rem;
+    gap: var(--space-3);
   }
   .brand b {
-    font: 600 1.5rem/1.1 var(--serif);
+    font: 600 var(--text-title-2)/1.1 var(--serif);
   }
   .brand span {
     display: block;
-    font-size: 0.85rem;
+    font-size: var(--text-small);
     color: var(--ink-soft);
   }
   h1 {
-    font-size: 1.2rem;
+    font-size: var(--text-title-3);
     overflow-wrap: anywhere;
   }
   h1 + p {
-    margin-top: 0.375rem;
+    margin-top: var(--space-2);
   }
   strata-preferences {
-    padding-top: 1rem;
+    padding-top: var(--space-4);
     border-top: var(--edge) solid var(--line);
   }
   code {
-    font: 0.8rem var(--mono);
+    font: var(--text-tiny) var(--mono);
     overflow-wrap: anywhere;
   }
   @media (max-width: 480px) {
     .card {
-      padding: 1.75rem 1.375rem 1.625rem;
+      padding: var(--space-6) var(--space-6) var(--space-6);
     }
   }
 `;

@@ -35,14 +35,14 @@ export class StrataGroupList extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 14px;
+        gap: var(--space-3);
       }
       form {
         display: grid;
         grid-template-columns: minmax(0, 340px) auto;
         align-items: end;
         justify-content: start;
-        gap: 6px 10px;
+        gap: var(--space-2) var(--space-2);
       }
       form .error {
         grid-column: 1 / -1;
@@ -109,7 +109,7 @@ export class StrataGroupList extends LitElement {
     const { id, name, people, projects } = group;
     return {
       name,
-      about: html`<span class="hint numeric">${words.about(people, projects)}</span>`,
+      about: html`<span class="hint">${words.about(people, projects)}</span>`,
       tools: html`<strata-menu label=${words.options(name)}>
         <button class="quiet" role="menuitem" @click=${() => (this._membersOf = group)}>${icon("people")}${words.members}</button>
         <button class="quiet" role="menuitem" @click=${() => (this._rolesOf = group)}>${icon("layers")}${texts.site_people.projects}</button>

@@ -39,15 +39,15 @@ export class StrataGroupMembersDialog extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 2px 12px;
+        gap: var(--space-half) var(--space-3);
         border-top: var(--edge) solid var(--line);
       }
       li label {
         flex: 1;
         display: flex;
         align-items: center;
-        gap: 12px;
-        padding: 9px 2px;
+        gap: var(--space-3);
+        padding: var(--space-2) var(--space-half);
         cursor: pointer;
       }
       li input {
@@ -63,7 +63,7 @@ export class StrataGroupMembersDialog extends LitElement {
       }
       .done {
         color: var(--calm);
-        font-size: 0.86rem;
+        font-size: var(--text-small);
       }
     `,
   ];
@@ -102,7 +102,7 @@ export class StrataGroupMembersDialog extends LitElement {
 
   private content(inside: ReadonlySet<string>): TemplateResult {
     const shown = findPeople(this.people, this._filter, () => "");
-    return html`<p class="hint numeric" role="status">${words.inside(inside.size)}</p>
+    return html`<p class="hint" role="status">${words.inside(inside.size)}</p>
       <input
         type="text"
         autocomplete="off"

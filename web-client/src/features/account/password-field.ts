@@ -18,10 +18,10 @@ export interface PasswordField {
 export const passwordStyles = css`
   .password {
     display: grid;
-    gap: 5px;
+    gap: var(--space-1);
   }
   .password label {
-    font-size: 0.8rem;
+    font-size: var(--text-tiny);
     font-weight: 600;
     color: var(--ink-soft);
   }
@@ -29,7 +29,7 @@ export const passwordStyles = css`
     position: relative;
   }
   .password input {
-    padding-right: 2.75rem;
+    padding-right: var(--space-12);
   }
   .password button {
     position: absolute;

@@ -10,9 +10,9 @@ export const peopleDialogStyles = css`
     display: flex;
     flex-wrap: wrap;
     align-items: center;
-    gap: 0.625rem 0.75rem;
-    padding: 0.875rem 0 0.625rem;
-    margin: -0.875rem 0 -0.375rem;
+    gap: var(--space-2) var(--space-3);
+    padding: var(--space-3) 0 var(--space-2);
+    margin: calc(-1 * var(--space-3)) 0 calc(-1 * var(--space-2));
     background: var(--surface);
   }
   .bar input {
@@ -26,19 +26,19 @@ export const peopleDialogStyles = css`
   fieldset {
     display: flex;
     flex-wrap: wrap;
-    gap: 0.375rem 1rem;
+    gap: var(--space-2) var(--space-4);
     margin: 0;
     padding: 0;
     border: 0;
   }
   fieldset legend {
-    padding: 0 0 5px;
+    padding: 0 0 var(--space-1);
   }
   fieldset label {
     display: flex;
     align-items: center;
-    gap: 0.5rem;
-    min-height: 1.75rem;
+    gap: var(--space-2);
+    min-height: var(--control-small);
     overflow-wrap: anywhere;
   }
   fieldset input {
@@ -50,20 +50,20 @@ export const peopleDialogStyles = css`
   }
   .fields small {
     display: block;
-    margin-top: 5px;
+    margin-top: var(--space-1);
   }
   table {
     width: 100%;
     border-collapse: collapse;
   }
   th {
-    padding: 4px 0.625rem 0.375rem 0;
+    padding: var(--space-1) var(--space-2) var(--space-2) 0;
     text-align: left;
-    font-size: 0.8rem;
+    font-size: var(--text-tiny);
     color: var(--ink-soft);
   }
   td {
-    padding: 0.4375rem 0.625rem 0.4375rem 0;
+    padding: var(--space-2) var(--space-2) var(--space-2) 0;
     border-top: var(--edge) solid var(--line);
   }
   td:last-child {
@@ -81,7 +81,7 @@ export const peopleDialogStyles = css`
   td .error,
   td .done {
     display: block;
-    font-size: 0.86rem;
+    font-size: var(--text-small);
   }
   td .done {
     color: var(--calm);
@@ -89,11 +89,11 @@ export const peopleDialogStyles = css`
   td select {
     width: auto;
     min-height: 2.125rem;
-    padding: 3px 0.5rem;
+    padding: var(--space-1) var(--space-2);
   }
   .seen {
     white-space: nowrap;
-    font-size: 0.86rem;
+    font-size: var(--text-small);
     color: var(--ink-soft);
   }
   .chip.invited {
@@ -111,8 +111,8 @@ export const peopleDialogStyles = css`
   td .groups {
     display: flex;
     flex-wrap: wrap;
-    gap: 4px;
-    margin-top: 3px;
+    gap: var(--space-1);
+    margin-top: var(--space-1);
   }
   .chip.group {
     white-space: normal;
@@ -139,8 +139,8 @@ export const peopleDialogStyles = css`
       display: grid;
       grid-template-columns: auto 1fr auto;
       align-items: center;
-      gap: 0.375rem 0.75rem;
-      padding: 0.625rem 0;
+      gap: var(--space-2) var(--space-3);
+      padding: var(--space-2) 0;
       border-top: var(--edge) solid var(--line);
     }
     td {

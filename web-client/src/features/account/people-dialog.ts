@@ -109,7 +109,7 @@ export class StrataPeopleDialog extends LitElement {
           .value=${this._filter}
           @input=${(event: Event) => (this._filter = (event.target as HTMLInputElement).value)}
         />
-        <span class="hint numeric grow" role="status">${shown.length === people.length ? words.count(people.length) : words.count_of(shown.length, people.length)}</span>
+        <span class="hint grow" role="status">${shown.length === people.length ? words.count(people.length) : words.count_of(shown.length, people.length)}</span>
         <button class=${this._inviting || this._invitation ? "" : "primary"} ?disabled=${this._inviting} @click=${this.beginToInvite}>${icon("plus")}${words.invite}</button>
       </div>
       ${this._inviting ? this.inviteForm() : nothing} ${this._invitation ? this.link(this._invitation) : nothing}

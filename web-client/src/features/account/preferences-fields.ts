@@ -31,7 +31,7 @@ export class StrataPreferences extends LitElement {
       :host {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(170px, 1fr));
-        gap: 12px;
+        gap: var(--space-3);
       }
     `,
   ];

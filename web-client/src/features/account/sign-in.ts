@@ -29,13 +29,13 @@ export class StrataSignIn extends LitElement {
     passwordStyles,
     css`
       details {
-        padding-top: 16px;
+        padding-top: var(--space-4);
         border-top: var(--edge) solid var(--line);
       }
       summary {
         display: flex;
         align-items: center;
-        gap: 6px;
+        gap: var(--space-2);
         color: var(--ink-soft);
         cursor: pointer;
         list-style: none;
@@ -51,8 +51,8 @@ export class StrataSignIn extends LitElement {
         transform: rotate(90deg);
       }
       details form {
-        margin-top: 14px;
-        gap: 14px;
+        margin-top: var(--space-3);
+        gap: var(--space-3);
       }
     `,
   ];

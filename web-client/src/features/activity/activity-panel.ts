@@ -38,8 +38,8 @@ export class StrataActivityPanel extends FoldingPanel {
     personMarkStyles,
     css`
       h3 {
-        margin: 0.375rem 0 0;
-        font-size: 0.8rem;
+        margin: var(--space-2) 0 0;
+        font-size: var(--text-tiny);
         font-weight: 600;
         color: var(--ink-soft);
       }
@@ -115,7 +115,7 @@ export class StrataActivityPanel extends FoldingPanel {
     const { activity } = this.session;
     const content = html`${line.user === undefined ? html`<span class="server">${icon("cube")}</span>` : personMark({ ...line, user: line.user })}
       <span class="what"><b>${line.user === undefined ? words.server : called({ ...line, user: line.user })}</b> ${this.done(line)}</span>
-      <span class="hint numeric">${toldClock(line.time)}</span>
+      <span class="hint">${toldClock(line.time)}</span>
       <span class="more-of-it hint">${this.details(line)}</span>`;
     return activity.leadsSomewhere(line)
       ? html`<button class="quiet line" data-activity=${line.id} @click=${() => void activity.goTo(line)}>${content}</button>`

@@ -30,14 +30,14 @@ export class StrataLookList extends LitElement {
     listHeadStyles,
     css`
       ul {
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       li {
         display: grid;
         grid-template-columns: auto 2.75rem minmax(0, 1fr) auto;
         align-items: center;
-        gap: 2px 0.5rem;
-        padding: 3px 4px 0.375rem 2px;
+        gap: var(--space-half) var(--space-2);
+        padding: var(--space-1) var(--space-1) var(--space-2) var(--space-half);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -46,7 +46,7 @@ export class StrataLookList extends LitElement {
         width: 2.75rem;
         height: 2.125rem;
         object-fit: cover;
-        border-radius: 4px;
+        border-radius: var(--radius-tiny);
         background: var(--paper);
       }
       li.off .name {
@@ -60,9 +60,9 @@ export class StrataLookList extends LitElement {
         display: grid;
         grid-template-columns: 1fr 3.25rem;
         align-items: center;
-        gap: 0.625rem;
-        padding-right: 0.625rem;
-        font-size: 0.88rem;
+        gap: var(--space-2);
+        padding-right: var(--space-2);
+        font-size: var(--text-small);
       }
       output {
         text-align: right;
@@ -71,7 +71,7 @@ export class StrataLookList extends LitElement {
       .personal {
         display: flex;
         flex-wrap: wrap;
-        gap: 4px 0.875rem;
+        gap: var(--space-1) var(--space-3);
       }
     `,
   ];
@@ -174,7 +174,7 @@ export class StrataLookList extends LitElement {
               aria-label=${texts.layers.opacity_of(look.name)}
               @input=${(event: Event) => appearance.setOpacity(look, numberOf(event) / 100)}
             />
-            <output class="numeric">${percent} %</output>
+            <output>${percent} %</output>
           </div>`
           : nothing
       }

@@ -36,26 +36,26 @@ export class StrataViewPanel extends FoldingPanel {
         background: var(--accent);
       }
       .parts {
-        gap: 1.125rem;
-        margin-top: 0.625rem;
+        gap: var(--space-4);
+        margin-top: var(--space-2);
       }
       .part {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 0.625rem;
+        gap: var(--space-2);
       }
       .part > .row {
-        min-height: 1.875rem;
+        min-height: var(--control-small);
         justify-content: space-between;
       }
       h3 {
-        font-size: 0.8rem;
+        font-size: var(--text-tiny);
         font-weight: 600;
         color: var(--ink-soft);
       }
       .segments button {
         flex: 1 1 auto; /* at least as wide as its text */
-        padding: 0 0.5rem;
+        padding: 0 var(--space-2);
       }
       output {
         text-align: right;
@@ -65,12 +65,12 @@ export class StrataViewPanel extends FoldingPanel {
         display: grid;
         grid-template-columns: auto 1fr 4.75rem;
         align-items: center;
-        gap: 0.625rem;
-        font-size: 0.88rem;
+        gap: var(--space-2);
+        font-size: var(--text-small);
       }
       .box {
         display: grid;
-        gap: 2px;
+        gap: var(--space-half);
       }
     `,
   ];
@@ -242,7 +242,7 @@ export class StrataViewPanel extends FoldingPanel {
     const at = model ? worldPosition(model.bounds, of.axis, of.share) * metresPer(model.unit) : 0;
     const said = Math.abs(at) < 1e-9 ? "0" : `${at < 0 ? "−" : ""}${formatLength(Math.abs(at))}`;
     return html`<label class="slider">
-      <span class="caption numeric">${of.name}</span>
+      <span class="caption">${of.name}</span>
       <input
         type="range"
         min="0"
@@ -252,7 +252,7 @@ export class StrataViewPanel extends FoldingPanel {
         aria-valuetext=${said}
         @input=${(event: Event) => of.choose(numberOf(event) / kSteps, true)}
       />
-      <output class="numeric">${said}</output>
+      <output>${said}</output>
     </label>`;
   }
 }

@@ -14,23 +14,23 @@ export const commentCardStyles = css`
     border-radius: var(--radius);
     background: var(--raised);
     box-shadow: var(--shadow);
-    font-size: 0.9rem;
+    font-size: var(--text-small);
   }
   section:focus {
     outline: none;
   }
   .head {
-    gap: 2px;
-    padding: 0.375rem 0.375rem 0.375rem 0.8125rem;
+    gap: var(--space-half);
+    padding: var(--space-2) var(--space-2) var(--space-2) var(--space-3);
     border-bottom: var(--edge) solid var(--line);
   }
   h2 {
-    font-size: 1.02rem;
+    font-size: var(--text-large);
   }
   .head button {
     min-height: 2rem;
-    padding: 0 0.5rem;
-    font-size: 0.86rem;
+    padding: 0 var(--space-2);
+    font-size: var(--text-small);
   }
   .head button.icon {
     width: 2rem;
@@ -39,15 +39,15 @@ export const commentCardStyles = css`
   .list {
     display: grid;
     align-content: start;
-    gap: 0.8125rem;
-    padding: 0.6875rem 0.8125rem;
+    gap: var(--space-3);
+    padding: var(--space-3) var(--space-3);
     overflow: hidden auto;
     overscroll-behavior: contain;
   }
   article {
     display: grid;
     grid-template-columns: auto minmax(0, 1fr);
-    gap: 3px 0.5625rem;
+    gap: var(--space-1) var(--space-2);
   }
   article > .person-mark {
     grid-row: span 2;
@@ -56,7 +56,7 @@ export const commentCardStyles = css`
     display: flex;
     flex-wrap: wrap;
     align-items: baseline;
-    gap: 2px 0.5rem;
+    gap: var(--space-half) var(--space-2);
     min-height: 1.25rem;
   }
   .by b {
@@ -75,14 +75,14 @@ export const commentCardStyles = css`
   }
   .acts {
     grid-column: 2;
-    gap: 0.875rem;
+    gap: var(--space-3);
   }
   .acts button.link {
-    font-size: 0.82rem;
+    font-size: var(--text-small);
   }
   .about,
   .settled {
-    font-size: 0.84rem;
+    font-size: var(--text-small);
     color: var(--ink-soft);
   }
   .about button.link {
@@ -91,7 +91,7 @@ export const commentCardStyles = css`
   }
   .settled {
     display: flex;
-    gap: 0.375rem;
+    gap: var(--space-2);
     align-items: center;
     color: var(--calm);
   }
@@ -101,8 +101,8 @@ export const commentCardStyles = css`
   }
   form {
     display: grid;
-    gap: 0.5rem;
-    padding: 0.625rem 0.8125rem 0.75rem;
+    gap: var(--space-2);
+    padding: var(--space-2) var(--space-3) var(--space-3);
   }
   article form {
     grid-column: 2;
@@ -130,7 +130,7 @@ export const commentCardStyles = css`
       inset: auto 0 0 0 !important;
       width: auto;
       max-height: 48dvh; /* the target of the camera stays visible above it */
-      border-radius: 1rem 1rem 0 0;
+      border-radius: var(--radius-large) var(--radius-large) 0 0;
       border-bottom: 0;
       padding-bottom: env(safe-area-inset-bottom);
       box-shadow: var(--shadow-above);

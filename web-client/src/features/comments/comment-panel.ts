@@ -55,7 +55,7 @@ export class StrataCommentPanel extends FoldingPanel {
         -webkit-line-clamp: 2;
         overflow: hidden;
         overflow-wrap: anywhere;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         unicode-bidi: plaintext;
       }
       .said.gone {
@@ -65,7 +65,7 @@ export class StrataCommentPanel extends FoldingPanel {
       .state {
         display: flex;
         align-items: center;
-        gap: 0.375rem;
+        gap: var(--space-2);
         min-height: 1.25rem;
       }
       .state svg.glyph {
@@ -80,7 +80,7 @@ export class StrataCommentPanel extends FoldingPanel {
     const { openCount, unreadCount } = this.session.comments;
     return html`${
       openCount > 0
-        ? html`<span class="number numeric" aria-label=${words.open_count(openCount)} role="img">${formatCount(openCount)}</span>`
+        ? html`<span class="number" aria-label=${words.open_count(openCount)} role="img">${formatCount(openCount)}</span>`
         : nothing
     }
     ${
@@ -157,7 +157,7 @@ export class StrataCommentPanel extends FoldingPanel {
         ${personMark(first)}
         <span><b>${called(first)}</b> <span class="hint">${toldTime(newest.time)}</span></span>
         <span class="state">
-          ${replies.length > 0 ? html`<span class="hint numeric" role="img" aria-label=${words.replies(replies.length)} title=${words.replies(replies.length)}>${formatCount(replies.length)}</span>` : nothing}
+          ${replies.length > 0 ? html`<span class="hint" role="img" aria-label=${words.replies(replies.length)} title=${words.replies(replies.length)}>${formatCount(replies.length)}</span>` : nothing}
           ${first.state === "resolved" ? html`<span role="img" aria-label=${words.resolved} title=${words.resolved}>${icon("check")}</span>` : nothing}
           ${comments.isUnread(thread) ? html`<span class="dot" role="img" aria-label=${words.unread_here} title=${words.unread_here}></span>` : nothing}
         </span>

@@ -54,9 +54,9 @@ export class StrataCommentPins extends LitElement {
         min-height: 0;
         padding: 0;
         border: 2px solid var(--mark-light);
-        border-radius: 50% 50% 50% 4px;
+        border-radius: 50% 50% 50% var(--radius-tiny);
         color: var(--mark-light);
-        font-size: 0.74rem;
+        font-size: var(--text-tiny);
         font-weight: 700;
         pointer-events: auto;
         filter: drop-shadow(0 1px 2px var(--mark-shadow));

@@ -14,8 +14,8 @@ export const commentTextStyles = css`
     color: var(--accent);
   }
   .words .mention {
-    padding: 0 3px;
-    border-radius: 4px;
+    padding: 0 var(--space-1);
+    border-radius: var(--radius-tiny);
     background: var(--accent-soft);
     font-weight: 600;
   }

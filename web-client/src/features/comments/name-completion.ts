@@ -10,9 +10,9 @@ import { texts } from "../../texts";
 export const nameCompletionStyles = css`
   .names {
     display: grid;
-    gap: 2px;
+    gap: var(--space-half);
     margin: 0;
-    padding: 4px;
+    padding: var(--space-1);
     list-style: none;
     border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
@@ -21,9 +21,9 @@ export const nameCompletionStyles = css`
   .names li {
     display: flex;
     align-items: center;
-    gap: 8px;
+    gap: var(--space-2);
     min-height: 36px;
-    padding: 2px 8px;
+    padding: var(--space-half) var(--space-2);
     border-radius: var(--radius-small);
     cursor: pointer;
     overflow-wrap: anywhere;

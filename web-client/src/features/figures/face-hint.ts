@@ -26,11 +26,11 @@ export class StrataFaceHint extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 8px 14px;
+        gap: var(--space-2) var(--space-3);
         width: min(560px, calc(100vw - 24px));
-        padding: 12px 16px;
+        padding: var(--space-3) var(--space-4);
         border: var(--edge) solid var(--line);
-        border-radius: 14px;
+        border-radius: var(--radius-large);
         background: var(--surface);
         color: var(--ink);
         box-shadow: var(--shadow);

@@ -45,7 +45,7 @@ export class StrataFigurePreview extends LitElement {
         place-items: center;
         min-height: var(--least-sheet, 260px);
         margin: 0;
-        padding: 14px;
+        padding: var(--space-3);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--paper);
@@ -64,7 +64,7 @@ export class StrataFigurePreview extends LitElement {
       .told {
         display: grid;
         justify-items: center;
-        gap: 10px;
+        gap: var(--space-2);
         max-width: 34em;
         text-align: center;
         overflow-wrap: anywhere;
@@ -72,12 +72,12 @@ export class StrataFigurePreview extends LitElement {
       .working {
         display: flex;
         align-items: center;
-        gap: 9px;
-        padding: 6px 14px 6px 10px;
-        border-radius: 99px;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-3) var(--space-2) var(--space-2);
+        border-radius: var(--radius-round);
         background: var(--surface);
         color: var(--ink);
-        font-size: 0.86rem;
+        font-size: var(--text-small);
         box-shadow: var(--shadow);
       }
       img + .working {

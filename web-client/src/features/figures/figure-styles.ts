@@ -6,13 +6,13 @@ export const figureStyles = css`
   .editor {
     display: grid;
     grid-template-columns: minmax(0, 5fr) minmax(0, 6fr);
-    gap: 1rem 1.625rem;
+    gap: var(--space-4) var(--space-6);
     align-items: start;
   }
   .fields {
     display: grid;
     grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
-    gap: 0.875rem 0.75rem;
+    gap: var(--space-3) var(--space-3);
   }
   .fields > * {
     min-width: 0;
@@ -22,24 +22,24 @@ export const figureStyles = css`
   }
   .fields > .error {
     grid-column: 1 / -1;
-    margin-top: -0.375rem;
+    margin-top: calc(-1 * var(--space-2));
   }
   .group {
     display: grid;
-    gap: 5px;
+    gap: var(--space-1);
     align-content: start;
   }
   .segments {
     display: flex;
   }
   .segments button {
-    padding: 0 0.375rem;
+    padding: 0 var(--space-2);
     min-width: 0;
   }
   .own {
     display: flex;
     align-items: center;
-    gap: 0.5rem;
+    gap: var(--space-2);
   }
   .own input {
     width: 6.875rem;
@@ -50,15 +50,15 @@ export const figureStyles = css`
   .formats {
     display: grid;
     grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
-    gap: 0.5rem;
+    gap: var(--space-2);
   }
   .formats button {
     display: grid;
     grid-template-columns: minmax(0, 1fr);
     justify-items: start;
     align-content: start;
-    gap: 1px;
-    padding: 0.4375rem 0.6875rem;
+    gap: var(--space-half);
+    padding: var(--space-2) var(--space-3);
     text-align: start;
     white-space: normal;
   }
@@ -75,24 +75,24 @@ export const figureStyles = css`
     top: 0;
     display: grid;
     grid-template-columns: minmax(0, 1fr);
-    gap: 0.625rem;
+    gap: var(--space-2);
   }
   .warning {
     display: flex;
     flex-wrap: wrap;
-    gap: 4px 0.875rem;
-    padding: 0.625rem 0.875rem;
+    gap: var(--space-1) var(--space-3);
+    padding: var(--space-2) var(--space-3);
     border-radius: var(--radius-small);
     background: var(--warn-soft);
     color: var(--ink);
-    font-size: 0.92rem;
+    font-size: var(--text-small);
   }
   .making,
   .told {
     flex: 1 1 15rem;
     align-self: center;
     display: grid;
-    gap: 4px;
+    gap: var(--space-1);
     min-width: 0;
     overflow-wrap: anywhere;
   }
@@ -101,7 +101,7 @@ export const figureStyles = css`
   }
   .bar {
     height: 0.375rem;
-    border-radius: 3px;
+    border-radius: var(--radius-tiny);
     overflow: hidden;
     background: var(--line);
   }

@@ -321,8 +321,8 @@ export class StrataHomePage extends LitElement {
         <strata-thumbnail .api=${this.api} .model=${model}></strata-thumbnail>
         <div class="about">
           <b class="ellipsis">${model.name || texts.unnamed}</b>
-          <span class="numeric">${formatSize(sides)}</span>
-          <span class="numeric faint">${formatArea(model.area_m2)} · ${texts.home.triangles(model.triangles)}</span>
+          <span>${formatSize(sides)}</span>
+          <span class="faint">${formatArea(model.area_m2)} · ${texts.home.triangles(model.triangles)}</span>
           ${model.scale_verified ? nothing : html`<span class="chip">${texts.home.scale_open}</span>`}
         </div>
       </a>

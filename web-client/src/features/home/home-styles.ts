@@ -4,15 +4,15 @@ import { css } from "lit";
 export const cardStyles = css`
   .about {
     display: grid;
-    gap: 2px;
-    padding: 0.8125rem 1rem 0.9375rem;
+    gap: var(--space-half);
+    padding: var(--space-3) var(--space-4) var(--space-4);
   }
   .about b {
-    font: 600 1.08rem/1.3 var(--serif);
+    font: 600 var(--text-large)/1.3 var(--serif);
   }
   .about .faint {
     color: var(--ink-soft);
-    font-size: 0.86rem;
+    font-size: var(--text-small);
   }
 `;
 
@@ -24,18 +24,18 @@ export const homeStyles = css`
   header {
     display: flex;
     align-items: center;
-    gap: 0.875rem;
-    padding: 0.75rem clamp(1rem, 4vw, 3.5rem);
+    gap: var(--space-3);
+    padding: var(--space-3) clamp(1rem, 4vw, 3.5rem);
     border-bottom: var(--edge) solid var(--line);
     background: var(--surface);
   }
   .brand {
     display: flex;
     align-items: center;
-    gap: 0.6875rem;
+    gap: var(--space-3);
     color: inherit;
     text-decoration: none;
-    font: 600 1.25rem var(--serif);
+    font: 600 var(--text-title-2) var(--serif);
   }
   .logo {
     width: 2.125rem;
@@ -43,7 +43,7 @@ export const homeStyles = css`
   }
   .tagline {
     color: var(--ink-soft);
-    font-size: 0.9rem;
+    font-size: var(--text-small);
   }
   main {
     max-width: 107.5rem;
@@ -51,9 +51,9 @@ export const homeStyles = css`
     padding: clamp(1.25rem, 4vw, 2.75rem) clamp(1rem, 4vw, 3.5rem) 4rem;
   }
   .no-password {
-    margin-bottom: 1.375rem;
-    padding: 0.625rem 1rem;
-    border-radius: 0.75rem;
+    margin-bottom: var(--space-6);
+    padding: var(--space-2) var(--space-4);
+    border-radius: var(--radius);
     background: var(--calm-soft);
     color: var(--calm);
   }
@@ -67,17 +67,17 @@ export const homeStyles = css`
     display: flex;
     align-items: baseline;
     flex-wrap: wrap;
-    gap: 0.875rem;
-    margin-bottom: 1.5rem;
+    gap: var(--space-3);
+    margin-bottom: var(--space-6);
   }
   .up {
     display: flex;
     width: max-content;
     max-width: 100%;
     align-items: center;
-    gap: 0.375rem;
-    min-height: 2.25rem;
-    margin-bottom: 0.375rem;
+    gap: var(--space-2);
+    min-height: var(--control);
+    margin-bottom: var(--space-2);
     color: var(--ink-soft);
     text-decoration: none;
   }
@@ -87,7 +87,7 @@ export const homeStyles = css`
   }
   .description {
     max-width: 74ch;
-    margin: -0.625rem 0 1.5rem;
+    margin: calc(-1 * var(--space-2)) 0 var(--space-6);
     color: var(--ink-soft);
     overflow-wrap: anywhere;
   }
@@ -98,12 +98,12 @@ export const homeStyles = css`
   }
   .title strata-menu {
     display: flex;
-    margin-left: -0.5rem;
+    margin-left: calc(-1 * var(--space-2));
   }
   .into {
     display: flex;
     align-items: center;
-    gap: 0.5rem;
+    gap: var(--space-2);
     min-width: 0;
   }
   .into span {
@@ -127,7 +127,7 @@ export const homeStyles = css`
   .gallery {
     display: grid;
     grid-template-columns: repeat(auto-fill, minmax(min(16.875rem, 100%), 1fr));
-    gap: 1.375rem;
+    gap: var(--space-6);
     margin: 0;
     padding: 0;
     list-style: none;
@@ -147,7 +147,7 @@ export const homeStyles = css`
     display: block;
     overflow: hidden;
     border: var(--edge) solid var(--line);
-    border-radius: 0.75rem;
+    border-radius: var(--radius);
     background: var(--surface);
     color: inherit;
     text-decoration: none;
@@ -161,12 +161,12 @@ export const homeStyles = css`
   }
   .chip {
     justify-self: start;
-    margin-top: 0.375rem;
-    padding: 2px 0.5625rem;
-    border-radius: 99px;
+    margin-top: var(--space-2);
+    padding: var(--space-half) var(--space-2);
+    border-radius: var(--radius-round);
     background: var(--warn-soft);
     color: var(--warn);
-    font-size: 0.78rem;
+    font-size: var(--text-tiny);
     font-weight: 600;
   }
   .options {
@@ -174,7 +174,7 @@ export const homeStyles = css`
     top: 0.625rem;
     right: 0.625rem;
     opacity: 0;
-    transition: opacity 120ms;
+    transition: opacity var(--fast);
   }
   li:hover .options,
   li:focus-within .options {
@@ -187,13 +187,13 @@ export const homeStyles = css`
   }
   @media (pointer: coarse) {
     .up {
-      min-height: 2.75rem;
+      min-height: var(--control-touch);
     }
   }
   .empty {
     display: grid;
     justify-items: center;
-    gap: 0.875rem;
+    gap: var(--space-3);
     max-width: 28.75rem;
     margin: 8vh auto;
     text-align: center;
@@ -203,23 +203,23 @@ export const homeStyles = css`
     height: 4rem;
   }
   .empty h1 {
-    font-size: 1.45rem;
+    font-size: var(--text-title-2);
   }
   .empty p {
     color: var(--ink-soft);
   }
   .imports {
     display: grid;
-    gap: 0.625rem;
-    margin-bottom: 1.625rem;
+    gap: var(--space-2);
+    margin-bottom: var(--space-6);
   }
   .import {
     display: flex;
     align-items: center;
-    gap: 1rem;
-    padding: 0.8125rem 1rem;
+    gap: var(--space-4);
+    padding: var(--space-3) var(--space-4);
     border: var(--edge) solid var(--line);
-    border-radius: 0.75rem;
+    border-radius: var(--radius);
     background: var(--surface);
   }
   .import b {
@@ -227,7 +227,7 @@ export const homeStyles = css`
   }
   .import .said {
     color: var(--ink-soft);
-    font-size: 0.9rem;
+    font-size: var(--text-small);
     overflow-wrap: anywhere;
   }
   .import.failed {
@@ -239,17 +239,17 @@ export const homeStyles = css`
   }
   .bar {
     height: 0.375rem;
-    margin-top: 0.5625rem;
-    border-radius: 3px;
+    margin-top: var(--space-2);
+    border-radius: var(--radius-tiny);
     background: var(--line);
     overflow: hidden;
   }
   .bar i {
     display: block;
     height: 100%;
-    border-radius: 3px;
+    border-radius: var(--radius-tiny);
     background: var(--accent);
-    transition: width 200ms;
+    transition: width var(--slow);
   }
   @media (max-width: 620px) {
     .tagline {

@@ -52,7 +52,7 @@ export class StrataProjectCard extends LitElement {
         -webkit-box-orient: vertical;
         -webkit-line-clamp: 2;
         overflow: hidden;
-        font-size: 0.9rem;
+        font-size: var(--text-small);
       }
     `,
   ];
@@ -109,7 +109,7 @@ export class StrataProjectCard extends LitElement {
       <div class="about">
         <b>${project.name}</b>
         ${project.description ? html`<p>${project.description}</p>` : nothing}
-        <span class="numeric faint">
+        <span class="faint">
           ${models.length === 0 ? words.empty_title : words.count(models.length)}${this._changed ? ` · ${words.changed(toldDay(this._changed))}` : nothing}
         </span>
       </div>`;

@@ -31,7 +31,7 @@ export class StrataScaleDialog extends LitElement {
     css`
       .question {
         display: grid;
-        gap: 5px;
+        gap: var(--space-1);
       }
       .segments {
         display: flex;
@@ -42,7 +42,7 @@ export class StrataScaleDialog extends LitElement {
       .ups {
         display: grid;
         grid-template-columns: repeat(3, 1fr);
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       .ups button {
         display: grid;
@@ -51,7 +51,7 @@ export class StrataScaleDialog extends LitElement {
         height: auto;
         overflow: hidden;
         border: var(--edge) solid var(--line);
-        border-radius: 8px;
+        border-radius: var(--radius-small);
       }
       .ups button[aria-checked="true"] {
         border-color: var(--accent);
@@ -63,13 +63,13 @@ export class StrataScaleDialog extends LitElement {
         color: var(--accent-ink);
       }
       .ups b {
-        padding: 3px 0;
+        padding: var(--space-1) 0;
         font-weight: 600;
       }
       @media (max-width: 560px) {
         .ups {
           grid-template-columns: repeat(6, 1fr);
-          gap: 0.25rem;
+          gap: var(--space-1);
         }
         .ups strata-thumbnail {
           aspect-ratio: 1;

@@ -71,7 +71,7 @@ export class StrataColorDialog extends LitElement {
     css`
       ul {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
         margin: 0;
         padding: 0;
         list-style: none;
@@ -82,8 +82,8 @@ export class StrataColorDialog extends LitElement {
         display: grid;
         grid-template-columns: 1.375rem 2.125rem minmax(0, 1fr) auto 6rem;
         align-items: center;
-        gap: 0.5625rem;
-        font-size: 0.9rem;
+        gap: var(--space-2);
+        font-size: var(--text-small);
       }
       li .swatch {
         width: 1.375rem;
@@ -92,26 +92,26 @@ export class StrataColorDialog extends LitElement {
       li input[type="color"] {
         width: 2.125rem;
         height: 1.75rem;
-        padding: 2px;
+        padding: var(--space-half);
       }
       li select {
-        min-height: 1.875rem;
-        padding: 2px 0.375rem;
+        min-height: var(--control-small);
+        padding: var(--space-half) var(--space-2);
       }
       .ramps {
         display: flex;
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       .ramps button {
         flex: 1;
-        min-height: 1.875rem;
-        padding: 5px;
+        min-height: var(--control-small);
+        padding: var(--space-1);
       }
       .ramps i {
         display: block;
         width: 100%;
         height: 1rem;
-        border-radius: 4px;
+        border-radius: var(--radius-tiny);
       }
     `,
   ];
@@ -240,7 +240,7 @@ export class StrataColorDialog extends LitElement {
             @input=${(event: Event) => this.changePoint(index, { color: `${(event.target as HTMLInputElement).value}ff` })}
           />
           <span class="ellipsis" title=${text}>${text}</span>
-          <span class="hint numeric">${records === undefined ? "" : formatCount(records)}</span>
+          <span class="hint">${records === undefined ? "" : formatCount(records)}</span>
           <select
             aria-label=${words.pattern_of(text)}
             @change=${(event: Event) => this.changePoint(index, { pattern: (event.target as HTMLSelectElement).value as (typeof kPatterns)[number] })}

@@ -42,12 +42,12 @@ export class StrataCrossTable extends LitElement {
       :host {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 0.625rem;
-        padding-top: 0.875rem;
+        gap: var(--space-2);
+        padding-top: var(--space-3);
         border-top: var(--edge) solid var(--line);
       }
       h3 {
-        font: 600 1rem var(--serif);
+        font: 600 var(--text-large) var(--serif);
       }
       .scroller {
         max-height: 22rem;
@@ -57,11 +57,11 @@ export class StrataCrossTable extends LitElement {
       }
       table {
         border-collapse: collapse;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       th,
       td {
-        padding: 0.375rem 0.625rem;
+        padding: var(--space-2) var(--space-2);
         border-bottom: var(--edge) solid var(--line);
         text-align: end;
         white-space: nowrap;
@@ -174,7 +174,7 @@ export class StrataCrossTable extends LitElement {
         ${workbookButtons({ what, rows: () => all, save: (f) => void this.save(other, f) })}
       </div>
       <div class="scroller" tabindex="0" role="region" aria-label=${what}>
-        <table class="numeric">
+        <table>
           <thead>
             <tr>${head!.map((cell) => html`<th scope="col">${cell}</th>`)}</tr>
           </thead>

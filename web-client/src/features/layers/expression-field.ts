@@ -51,21 +51,21 @@ export class StrataExpressionField extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       .editor {
         position: relative;
       }
       textarea {
-        font: 0.95rem var(--mono);
+        font: var(--text-body) var(--mono);
         resize: vertical;
       }
       ul {
         position: absolute;
         z-index: 3;
         inset: 100% 0 auto 0;
-        margin: 2px 0 0;
-        padding: 4px;
+        margin: var(--space-half) 0 0;
+        padding: var(--space-1);
         list-style: none;
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
@@ -75,17 +75,17 @@ export class StrataExpressionField extends LitElement {
       li {
         display: flex;
         justify-content: space-between;
-        gap: 1rem;
-        padding: 5px 0.5625rem;
+        gap: var(--space-4);
+        padding: var(--space-1) var(--space-2);
         border-radius: var(--radius-small);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         cursor: pointer;
       }
       li[aria-selected="true"] {
         background: var(--accent-soft);
       }
       li b {
-        font: 0.88rem var(--mono);
+        font: var(--text-small) var(--mono);
       }
       li span {
         color: var(--ink-soft);
@@ -95,10 +95,10 @@ export class StrataExpressionField extends LitElement {
       }
       pre {
         margin: 0;
-        padding: 0.375rem 0.5625rem;
+        padding: var(--space-2) var(--space-2);
         white-space: pre-wrap;
         word-break: break-word;
-        font: 0.86rem var(--mono);
+        font: var(--text-small) var(--mono);
         border-radius: var(--radius-small);
         background: var(--calm-soft);
       }

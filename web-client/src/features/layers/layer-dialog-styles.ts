@@ -6,25 +6,25 @@ export const layerDialogStyles = css`
   .kinds {
     display: grid;
     grid-template-columns: repeat(2, 1fr);
-    gap: 0.625rem;
-    margin-top: 0.375rem;
+    gap: var(--space-2);
+    margin-top: var(--space-2);
   }
   .kinds button {
     display: grid;
     place-content: start stretch;
     justify-items: start;
-    gap: 3px;
+    gap: var(--space-1);
     height: auto;
-    padding: 0.75rem 0.8125rem;
+    padding: var(--space-3) var(--space-3);
     text-align: left;
     white-space: normal;
     border-radius: var(--radius);
   }
   .kinds button b {
-    font: 600 1.02rem var(--serif);
+    font: 600 var(--text-large) var(--serif);
   }
   .kinds button span {
-    font-size: 0.82rem;
+    font-size: var(--text-small);
     line-height: 1.35;
     color: var(--ink-soft);
   }
@@ -38,7 +38,7 @@ export const layerDialogStyles = css`
   }
   .two {
     display: flex;
-    gap: 0.75rem;
+    gap: var(--space-3);
     align-items: end;
   }
   .two > label:first-child {
@@ -46,36 +46,36 @@ export const layerDialogStyles = css`
   }
   .classes {
     display: grid;
-    gap: 0.4375rem;
+    gap: var(--space-2);
     max-height: 16.875rem;
     overflow: auto;
-    padding: 3px;
-    margin: -3px;
+    padding: var(--space-1);
+    margin: calc(-1 * var(--space-1));
   }
   .class {
     display: flex;
-    gap: 0.5rem;
+    gap: var(--space-2);
     align-items: center;
   }
   .range {
     display: grid;
     grid-template-columns: 1fr auto 1fr 6rem;
     align-items: end;
-    gap: 0.625rem;
+    gap: var(--space-2);
   }
   .range > span {
-    padding-bottom: 0.5625rem;
+    padding-bottom: var(--space-2);
     color: var(--ink-soft);
   }
   .details {
     display: grid;
-    gap: 5px;
+    gap: var(--space-1);
   }
   .details .segments {
     display: flex;
   }
   .details .segments button {
-    min-height: 2.375rem;
+    min-height: var(--control);
   }
   .chosen-lead {
     display: none;
@@ -83,15 +83,15 @@ export const layerDialogStyles = css`
   /* leaves room for the fields below */
   @media (max-width: 560px) {
     .kinds {
-      gap: 0.5rem;
+      gap: var(--space-2);
     }
     .kinds button {
       position: relative;
       align-content: center;
-      padding: 0.5rem 0.6875rem;
+      padding: var(--space-2) var(--space-3);
     }
     .kinds button b {
-      font-size: 0.95rem;
+      font-size: var(--text-body);
       line-height: 1.2;
     }
     .kinds button span {
@@ -103,7 +103,7 @@ export const layerDialogStyles = css`
     }
     .chosen-lead {
       display: block;
-      margin-top: 0.5rem;
+      margin-top: var(--space-2);
     }
     .range {
       grid-template-columns: 1fr auto 1fr;

@@ -14,18 +14,18 @@ import { shareText } from "./transfer-dialog";
 export const layerJobStyles = css`
   .job {
     display: grid;
-    gap: 8px;
-    margin-bottom: 8px;
-    padding: 10px 8px 12px 14px;
+    gap: var(--space-2);
+    margin-bottom: var(--space-2);
+    padding: var(--space-2) var(--space-2) var(--space-3) var(--space-3);
     border: var(--edge) solid var(--line);
     border-radius: var(--radius);
     background: var(--raised);
-    font-size: 0.88rem;
+    font-size: var(--text-small);
   }
   .job .head {
     display: flex;
     align-items: center;
-    gap: 8px;
+    gap: var(--space-2);
   }
   .job .head b {
     flex: 1;
@@ -36,8 +36,8 @@ export const layerJobStyles = css`
   }
   .job .bar {
     height: 5px;
-    margin-right: 6px;
-    border-radius: 3px;
+    margin-right: var(--space-2);
+    border-radius: var(--radius-tiny);
     overflow: hidden;
     background: var(--line);
   }
@@ -48,15 +48,15 @@ export const layerJobStyles = css`
   }
   .job table {
     border-collapse: collapse;
-    margin-right: 6px;
+    margin-right: var(--space-2);
   }
   .job th {
-    padding: 0 0 3px 8px;
+    padding: 0 0 var(--space-1) var(--space-2);
     font-weight: normal;
     color: var(--ink-soft);
   }
   .job td {
-    padding: 3px 0 3px 8px;
+    padding: var(--space-1) 0 var(--space-1) var(--space-2);
     border-top: var(--edge) solid var(--line);
     text-align: right;
     white-space: nowrap;
@@ -105,7 +105,7 @@ export function layerJobRow(session: ModelSession, entry: LayerJob): TemplateRes
           <span class="said hint">${job.state === "queued" ? words.queued : job.message || words.running}</span>`
         : nothing
     }
-    ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span class="numeric">${formatBytes(job.file.bytes)}</span></span>` : nothing}
+    ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span>${formatBytes(job.file.bytes)}</span></span>` : nothing}
     ${problem ? html`<span class="said" role="alert">${[problem.title, problem.detail].filter(Boolean).join(". ")}</span>` : nothing}
     ${report ? reportTable(report) : nothing}
   </div>`;
@@ -124,8 +124,8 @@ function reportTable(report: TransferReport): TemplateResult {
         (layer) =>
           html`<tr>
             <td>${layer.name ?? layer.layer}</td>
-            <td class="numeric">${formatArea(layer.transferred_m2)}</td>
-            <td class="numeric">${shareText(layer.lost_m2, layer.source_m2)}</td>
+            <td>${formatArea(layer.transferred_m2)}</td>
+            <td>${shareText(layer.lost_m2, layer.source_m2)}</td>
           </tr>`,
       )}
     </table>`;

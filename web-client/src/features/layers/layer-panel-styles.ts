@@ -9,17 +9,17 @@ export const layerPanelStyles = css`
   .heading {
     display: flex;
     align-items: center;
-    gap: 0.5rem;
-    margin-bottom: 0.5rem;
+    gap: var(--space-2);
+    margin-bottom: var(--space-2);
   }
   h2 {
     flex: 1;
-    font-size: 1.08rem;
+    font-size: var(--text-large);
   }
   .list {
     display: grid;
     grid-template-columns: minmax(0, 1fr); /* a long name does not widen its card */
-    gap: 0.375rem;
+    gap: var(--space-2);
     margin: 0;
     padding: 0;
     list-style: none;
@@ -36,21 +36,21 @@ export const layerPanelStyles = css`
   .line {
     display: flex;
     align-items: center;
-    gap: 2px;
-    padding: 3px 4px 3px 2px;
+    gap: var(--space-half);
+    padding: var(--space-1) var(--space-1) var(--space-1) var(--space-half);
   }
   .name {
     flex: 1;
     justify-content: flex-start;
     min-width: 0;
-    padding: 0 0.5rem;
-    gap: 0.625rem;
+    padding: 0 var(--space-2);
+    gap: var(--space-2);
   }
   .name.off {
     color: var(--ink-soft);
   }
   .selected .name {
-    padding-block: 0.375rem;
+    padding-block: var(--space-2);
     font-weight: 600;
     text-align: start;
     white-space: normal; /* the selected layer shows its whole name */
@@ -70,9 +70,9 @@ export const layerPanelStyles = css`
     display: grid;
     grid-template-columns: auto minmax(0, 1fr);
     align-items: start;
-    gap: 0.25rem 0.5rem;
+    gap: var(--space-1) var(--space-2);
     color: var(--ink-soft);
-    font-size: 0.88rem;
+    font-size: var(--text-small);
   }
   .locked button {
     grid-column: 2;
@@ -81,21 +81,21 @@ export const layerPanelStyles = css`
   .more {
     display: grid;
     grid-template-columns: minmax(0, 1fr);
-    gap: 0.75rem;
-    padding: 0.375rem 0.875rem 0.875rem;
+    gap: var(--space-3);
+    padding: var(--space-2) var(--space-3) var(--space-3);
     border-top: var(--edge) solid var(--line);
   }
   .more p.description {
     color: var(--ink-soft);
-    font-size: 0.88rem;
+    font-size: var(--text-small);
     overflow-wrap: anywhere;
   }
   .opacity {
     display: grid;
     grid-template-columns: auto 1fr 3.25rem;
     align-items: center;
-    gap: 0.625rem;
-    font-size: 0.88rem;
+    gap: var(--space-2);
+    font-size: var(--text-small);
   }
   .opacity output {
     text-align: right;
@@ -105,12 +105,12 @@ export const layerPanelStyles = css`
     display: flex;
     flex-wrap: wrap;
     align-items: center;
-    gap: 4px 0.875rem;
-    margin-top: 0.625rem;
-    padding: 0.5625rem 0.75rem;
+    gap: var(--space-1) var(--space-3);
+    margin-top: var(--space-2);
+    padding: var(--space-2) var(--space-3);
     border-radius: var(--radius-small);
     background: var(--calm-soft);
-    font-size: 0.86rem;
+    font-size: var(--text-small);
   }
   .personal span {
     flex-basis: 100%;
@@ -120,25 +120,25 @@ export const layerPanelStyles = css`
   }
   .formula {
     display: grid;
-    gap: 0.5rem;
+    gap: var(--space-2);
     justify-items: start;
-    font-size: 0.88rem;
+    font-size: var(--text-small);
   }
   .formula code {
-    font: 0.86rem var(--mono);
+    font: var(--text-small) var(--mono);
     white-space: pre-wrap;
     word-break: break-word;
   }
   .empty {
     display: grid;
-    gap: 0.625rem;
+    gap: var(--space-2);
     justify-items: start;
-    padding: 1rem;
+    padding: var(--space-4);
     border: var(--edge) dashed var(--line-strong);
     border-radius: var(--radius);
   }
   .empty p {
     color: var(--ink-soft);
-    font-size: 0.9rem;
+    font-size: var(--text-small);
   }
 `;

@@ -270,7 +270,7 @@ export class StrataLayerPanel extends LitElement {
           aria-label=${texts.layers.opacity_of(labelOf(layer))}
           @input=${(event: Event) => session.layers.setOpacity(layer, Number((event.target as HTMLInputElement).value) / 100)}
         />
-        <output class="numeric">${Math.round(opacity * 100)} %</output>
+        <output>${Math.round(opacity * 100)} %</output>
       </div>
     </div>`;
   }

@@ -14,14 +14,14 @@ import { texts } from "../../texts";
 export const legendStyles = css`
   .legend-gradient {
     height: 0.875rem;
-    border-radius: 4px;
+    border-radius: var(--radius-tiny);
     box-shadow: inset 0 0 0 1px var(--swatch-rim);
   }
   .legend-ticks {
     position: relative;
     height: 1.25rem;
-    margin: 0 2px;
-    font-size: 0.76rem;
+    margin: 0 var(--space-half);
+    font-size: var(--text-tiny);
     color: var(--ink-soft);
   }
   .legend-ticks span {
@@ -52,22 +52,22 @@ export const legendStyles = css`
   }
   .legend-classes {
     display: grid;
-    gap: 5px;
+    gap: var(--space-1);
     margin: 0;
     padding: 0;
     list-style: none;
-    font-size: 0.9rem;
+    font-size: var(--text-small);
     max-height: 16.25rem;
     overflow: auto;
   }
   .legend-column {
     display: grid;
-    gap: 0.4375rem;
+    gap: var(--space-2);
   }
   .legend-classes li {
     display: flex;
     align-items: center;
-    gap: 0.5625rem;
+    gap: var(--space-2);
     min-width: 0;
   }
 `;
@@ -176,7 +176,7 @@ function gradient(palette: Palette, unit: string): TemplateResult {
   const marks = ticks(palette.min, palette.max);
   return html`<div>
     <div class="legend-gradient" ${styled({ background: cssGradient(palette) })}></div>
-    <div class="legend-ticks numeric">
+    <div class="legend-ticks">
       ${marks.map((mark, index) => {
         const share = (mark - palette.min) / span;
         const edge = share < 0.04 ? "first" : share > 0.96 ? "last" : "";

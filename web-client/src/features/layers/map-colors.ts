@@ -30,22 +30,22 @@ export class StrataMapColors extends LitElement {
       table {
         width: 100%;
         border-collapse: collapse;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       th {
-        padding: 0 6px 4px 0;
+        padding: 0 var(--space-2) var(--space-1) 0;
         text-align: left;
-        font-size: 0.8rem;
+        font-size: var(--text-tiny);
         color: var(--ink-soft);
       }
       td {
-        padding: 4px 6px 4px 0;
+        padding: var(--space-1) var(--space-2) var(--space-1) 0;
         border-top: var(--edge) solid var(--line);
       }
       label {
         display: flex;
         align-items: center;
-        gap: 9px;
+        gap: var(--space-2);
       }
       tr.off .numeric {
         color: var(--ink-soft);
@@ -61,7 +61,7 @@ export class StrataMapColors extends LitElement {
       .value {
         display: flex;
         align-items: center;
-        gap: 9px;
+        gap: var(--space-2);
         min-width: 0;
       }
     `,
@@ -92,10 +92,10 @@ export class StrataMapColors extends LitElement {
             .checked=${row.used}
             @change=${(event: Event) => this.change(index, { used: (event.target as HTMLInputElement).checked })}
           />
-          <span class="swatch" ${styled({ background: row.color })}></span><span class="numeric">${row.color}</span>
+          <span class="swatch" ${styled({ background: row.color })}></span><span>${row.color}</span>
         </label>
       </td>
-      <td class="numeric">${formatFixed(100 * row.share, 1)} %</td>
+      <td>${formatFixed(100 * row.share, 1)} %</td>
       <td>
         <span class="value">
           ${numberInput({

@@ -42,8 +42,8 @@ export function focusQuestion(root: ParentNode): void {
 export const crsStyles = css`
   .crs {
     display: grid;
-    gap: 0.5rem;
-    padding: 0.75rem;
+    gap: var(--space-2);
+    padding: var(--space-3);
     border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
   }
@@ -51,6 +51,6 @@ export const crsStyles = css`
     display: flex;
     flex-wrap: wrap;
     justify-content: flex-end;
-    gap: 0.5rem;
+    gap: var(--space-2);
   }
 `;

@@ -91,7 +91,7 @@ export class StrataMapDialog extends LitElement {
       .pair {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(140px, 1fr));
-        gap: 12px;
+        gap: var(--space-3);
       }
       .short {
         width: 110px;

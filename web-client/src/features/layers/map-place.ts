@@ -48,7 +48,7 @@ export function foundLine(contents: MapContents): TemplateResult {
   return html`<p class="found">
     ${parts.join(" · ")}${
       bounds
-        ? html`<br /><span class="hint numeric"
+        ? html`<br /><span class="hint"
             >${words.bounds(number(bounds[0]), number(bounds[2]), number(bounds[1]), number(bounds[3]))}</span
           >`
         : nothing

@@ -43,15 +43,15 @@ export class StrataShapeFields extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 12px;
+        gap: var(--space-3);
       }
       .lead {
-        margin: -6px 0 0;
+        margin: calc(-1 * var(--space-2)) 0 0;
       }
       .parameters {
         display: flex;
         flex-wrap: wrap;
-        gap: 12px;
+        gap: var(--space-3);
         align-items: end;
       }
       .parameters .field {
@@ -60,7 +60,7 @@ export class StrataShapeFields extends LitElement {
       .length {
         display: flex;
         align-items: center;
-        gap: 8px;
+        gap: var(--space-2);
       }
       .length input {
         flex: 1;
@@ -69,7 +69,7 @@ export class StrataShapeFields extends LitElement {
       .check {
         display: flex;
         align-items: center;
-        gap: 9px;
+        gap: var(--space-2);
       }
     `,
   ];

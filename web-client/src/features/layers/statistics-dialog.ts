@@ -42,26 +42,26 @@ export class StrataStatisticsDialog extends LitElement {
       .total {
         display: flex;
         align-items: baseline;
-        gap: 0.625rem;
+        gap: var(--space-2);
       }
       .total b {
-        font: 600 1.7rem var(--serif);
+        font: 600 var(--text-title-1) var(--serif);
       }
       .row {
         flex-wrap: wrap;
       }
       .bars {
         display: grid;
-        gap: 0.625rem;
+        gap: var(--space-2);
         margin: 0;
         padding: 0;
         list-style: none;
       }
       .bars .words {
         display: flex;
-        gap: 0.5625rem;
+        gap: var(--space-2);
         align-items: center;
-        font-size: 0.92rem;
+        font-size: var(--text-small);
       }
       .bars .share {
         min-width: 4rem;
@@ -69,42 +69,42 @@ export class StrataStatisticsDialog extends LitElement {
       }
       .bars .track {
         height: 0.5625rem;
-        margin-top: 4px;
-        border-radius: 3px;
+        margin-top: var(--space-1);
+        border-radius: var(--radius-tiny);
         background: var(--hover);
       }
       .bars .track i {
         display: block;
         height: 100%;
         min-width: 2px;
-        border-radius: 3px;
+        border-radius: var(--radius-tiny);
         box-shadow: inset 0 0 0 1px var(--swatch-rim);
       }
       dl {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(6.875rem, 1fr));
-        gap: 0.75rem;
+        gap: var(--space-3);
         margin: 0;
       }
       dt {
-        font-size: 0.8rem;
+        font-size: var(--text-tiny);
         font-weight: 600;
         color: var(--ink-soft);
       }
       dd {
         margin: 0;
-        font-size: 1.05rem;
+        font-size: var(--text-large);
       }
       .histogram {
         display: flex;
         align-items: flex-end;
-        gap: 1px;
+        gap: var(--space-half);
         height: 7.5rem;
         border-bottom: var(--edge) solid var(--line-strong);
       }
       .histogram i {
         flex: 1;
-        border-radius: 2px 2px 0 0;
+        border-radius: var(--radius-tiny) var(--radius-tiny) 0 0;
       }
       .limits {
         position: relative;
@@ -121,7 +121,7 @@ export class StrataStatisticsDialog extends LitElement {
         width: 0.875rem;
         height: 1.25rem;
         border: 2px solid var(--raised);
-        border-radius: 5px;
+        border-radius: var(--radius-tiny);
         background: var(--accent);
         cursor: ew-resize;
         pointer-events: auto;
@@ -130,7 +130,7 @@ export class StrataStatisticsDialog extends LitElement {
       .limits input::-moz-range-thumb {
         width: 0.75rem;
         height: 1.125rem;
-        border-radius: 5px;
+        border-radius: var(--radius-tiny);
         background: var(--accent);
         cursor: ew-resize;
         pointer-events: auto;
@@ -138,8 +138,8 @@ export class StrataStatisticsDialog extends LitElement {
       .ends {
         display: flex;
         justify-content: space-between;
-        margin-top: 3px;
-        font-size: 0.8rem;
+        margin-top: var(--space-1);
+        font-size: var(--text-tiny);
         color: var(--ink-soft);
       }
     `,
@@ -190,7 +190,7 @@ export class StrataStatisticsDialog extends LitElement {
     const words = texts.statistics;
     if (statistics.texels === 0) return html`<p>${words.nothing}</p>`;
     const share = this.share(statistics.area_m2);
-    return html`<div class="total numeric">
+    return html`<div class="total">
         <b>${formatArea(statistics.area_m2)}</b>
         ${share ? html`<span class="hint">${words.of_surface(share)}</span>` : nothing}
       </div>
@@ -269,8 +269,8 @@ export class StrataStatisticsDialog extends LitElement {
           <div class="words">
             <span class="swatch" ${styled({ background })}></span>
             <span class="grow ellipsis">${describeValue(this.layer, key.key, this.session.tables)}</span>
-            <span class="numeric">${formatArea(key.area_m2)}</span>
-            <span class="numeric hint share">${this.share(key.area_m2)}</span>
+            <span>${formatArea(key.area_m2)}</span>
+            <span class="hint share">${this.share(key.area_m2)}</span>
           </div>
           <div class="track"><i ${styled({ width: `${(key.area_m2 / largest) * 100}%`, background })}></i></div>
         </li>`;
@@ -284,7 +284,7 @@ export class StrataStatisticsDialog extends LitElement {
     const bins = statistics.histogram;
     const largest = Math.max(...bins.map((bin) => bin.area_m2), Number.MIN_VALUE);
     const palette = this._tried ?? this.layer.palette;
-    return html`<dl class="numeric">
+    return html`<dl>
         ${this.measures(statistics).map(([name, value]) => html`<div><dt>${name}</dt><dd>${formatNumber(value, 4)}${unit}</dd></div>`)}
       </dl>
       ${
@@ -299,7 +299,7 @@ export class StrataStatisticsDialog extends LitElement {
               })}
             </div>
             ${this.session.canCurate ? this.limits(palette, bins[0]!.from, bins[bins.length - 1]!.to, unit) : nothing}
-            <div class="ends numeric">
+            <div class="ends">
               <span>${formatNumber(bins[0]!.from, 4)}${unit}</span>
               <span>${formatNumber(bins[bins.length - 1]!.to, 4)}${unit}</span>
             </div>
@@ -333,7 +333,7 @@ export class StrataStatisticsDialog extends LitElement {
     return html`<div class="limits">
         ${handle(words.range_from, palette.min, (moved) => [moved, palette.max])} ${handle(words.range_to, palette.max, (moved) => [palette.min, moved])}
       </div>
-      <p class="hint numeric" role="status">${words.range(`${formatNumber(palette.min, 4)}${unit}`, `${formatNumber(palette.max, 4)}${unit}`)}</p>`;
+      <p class="hint" role="status">${words.range(`${formatNumber(palette.min, 4)}${unit}`, `${formatNumber(palette.max, 4)}${unit}`)}</p>`;
   }
 
   /** Saves one change after the other: each key press is a change, and the last one remains. */

@@ -34,7 +34,7 @@ export class StrataTemplateDialog extends LitElement {
     css`
       ul {
         display: grid;
-        gap: 0.625rem;
+        gap: var(--space-2);
         margin: 0;
         padding: 0;
         list-style: none;
@@ -43,25 +43,25 @@ export class StrataTemplateDialog extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr) auto;
         align-items: start;
-        gap: 0.375rem 0.875rem;
-        padding: 0.8125rem 0.875rem;
+        gap: var(--space-2) var(--space-3);
+        padding: var(--space-3) var(--space-3);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
       }
       b {
-        font: 600 1.05rem var(--serif);
+        font: 600 var(--text-large) var(--serif);
       }
       .made {
         display: grid;
-        gap: 4px;
+        gap: var(--space-1);
         grid-column: 1 / -1;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       .made div {
         display: flex;
         align-items: center;
-        gap: 0.5rem;
+        gap: var(--space-2);
         min-width: 0;
       }
       .made svg.glyph {
@@ -74,12 +74,12 @@ export class StrataTemplateDialog extends LitElement {
       }
       .colors {
         display: inline-flex;
-        gap: 3px;
+        gap: var(--space-1);
       }
       .colors span {
         width: 0.6875rem;
         height: 0.6875rem;
-        border-radius: 3px;
+        border-radius: var(--radius-tiny);
       }
       li .error {
         grid-column: 1 / -1;

@@ -46,24 +46,24 @@ export class StrataTransferDialog extends LitElement {
     css`
       .layers {
         display: grid;
-        gap: 4px;
+        gap: var(--space-1);
         max-height: 260px;
         overflow: auto;
       }
       .layers label {
         display: flex;
         align-items: center;
-        gap: 10px;
+        gap: var(--space-2);
         min-height: 30px;
         min-width: 0;
       }
       form > .hint {
-        margin-top: -10px;
+        margin-top: calc(-1 * var(--space-2));
       }
       .length {
         display: flex;
         align-items: center;
-        gap: 8px;
+        gap: var(--space-2);
       }
       .length input {
         width: 130px;

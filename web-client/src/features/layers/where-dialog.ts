@@ -37,9 +37,9 @@ export class StrataWhereDialog extends LitElement {
       dl {
         display: grid;
         grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
-        gap: 4px 16px;
+        gap: var(--space-1) var(--space-4);
         margin: 0;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       dt {
         overflow-wrap: anywhere;

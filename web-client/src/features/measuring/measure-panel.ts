@@ -42,24 +42,24 @@ export class StrataMeasurePanel extends LitElement {
       }
       .all {
         display: grid;
-        gap: 0.6875rem;
+        gap: var(--space-3);
       }
       h2 {
-        font-size: 1.12rem;
+        font-size: var(--text-title-3);
       }
       h3 {
-        margin: 4px 0 0;
-        font: 600 1rem var(--serif);
+        margin: var(--space-1) 0 0;
+        font: 600 var(--text-large) var(--serif);
       }
       dl {
         display: grid;
         grid-template-columns: minmax(0, auto) auto;
-        gap: 5px 0.75rem;
+        gap: var(--space-1) var(--space-3);
         margin: 0;
       }
       dt {
         color: var(--ink-soft);
-        font-size: 0.9rem;
+        font-size: var(--text-small);
       }
       dd {
         margin: 0;
@@ -74,18 +74,18 @@ export class StrataMeasurePanel extends LitElement {
       .acts {
         display: flex;
         flex-wrap: wrap;
-        gap: 0.4375rem;
+        gap: var(--space-2);
       }
       .acts button {
-        padding: 0 0.6875rem;
-        font-size: 0.88rem;
+        padding: 0 var(--space-3);
+        font-size: var(--text-small);
       }
       .chip {
-        padding: 0.375rem 0.625rem;
+        padding: var(--space-2) var(--space-2);
         border-radius: var(--radius-small);
         background: var(--warn-soft);
         color: var(--warn);
-        font-size: 0.84rem;
+        font-size: var(--text-small);
       }
       .segments {
         display: flex;
@@ -93,7 +93,7 @@ export class StrataMeasurePanel extends LitElement {
       .choices {
         display: flex;
         flex-wrap: wrap;
-        gap: 0.5625rem 0.875rem;
+        gap: var(--space-2) var(--space-3);
         align-items: center;
       }
       .choices label.field {
@@ -156,7 +156,7 @@ export class StrataMeasurePanel extends LitElement {
     const parts = measuring.profile?.parts.length ?? 1;
     const { hasWay } = measuring;
     const isFlat = polygon !== null && polygon.off_plane <= kFlat * Math.sqrt(polygon.area);
-    return html`<dl class="numeric">
+    return html`<dl>
         <dt>${words.straight}</dt>
         <dd data-figure="straight">${told(straight)}</dd>
         ${positions.length > 2 ? html`<dt>${words.ends}</dt><dd data-figure="ends">${told(length(subtract(last, first)))}</dd>` : nothing}

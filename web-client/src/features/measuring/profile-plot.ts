@@ -63,7 +63,7 @@ export class StrataProfilePlot extends LitElement {
       }
       .plot {
         cursor: crosshair;
-        margin-bottom: 0.4375rem; /* room for the focus outline */
+        margin-bottom: var(--space-2); /* room for the focus outline */
         touch-action: pan-y;
         border-radius: var(--radius-small);
       }
@@ -74,7 +74,7 @@ export class StrataProfilePlot extends LitElement {
       output {
         display: block;
         min-height: 3lh; /* keeps the content below in place */
-        font-size: 0.82rem;
+        font-size: var(--text-small);
         color: var(--ink-soft);
       }
       output b {
@@ -219,7 +219,7 @@ export class StrataProfilePlot extends LitElement {
   private told(place: ProfilePlace): TemplateResult {
     const { unit } = this.model;
     const decimals = unit === "mm" ? 2 : unit === "cm" ? 3 : 4;
-    return html`<span class="numeric"
+    return html`<span
       ><b>${this.describe(place)}</b><br />${texts.value.position} ${formatPlace(place.place.map((each) => formatFixed(each, decimals)))} ${unit}</span
     >`;
   }

@@ -55,15 +55,15 @@ export class StrataOnboarding extends LitElement {
         position: fixed;
         z-index: 9; /* above the page, below menus and dialogs */
         display: grid;
-        gap: 0.5rem;
+        gap: var(--space-2);
         overflow-y: auto;
         width: min(25rem, calc(100vw - 1.5rem));
-        padding: 0.875rem 1rem 0.75rem;
+        padding: var(--space-3) var(--space-4) var(--space-3);
         border: var(--edge) solid var(--accent);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);
-        animation: appear 160ms;
+        animation: appear var(--fast);
       }
       @keyframes appear {
         from {
@@ -78,22 +78,22 @@ export class StrataOnboarding extends LitElement {
       }
       h2 {
         flex: 1;
-        font-size: 1.08rem;
+        font-size: var(--text-large);
       }
       section > p {
-        font-size: 0.92rem;
+        font-size: var(--text-small);
       }
       .choices {
         flex-wrap: wrap;
         justify-content: flex-end;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       .choices button {
         min-height: 2.125rem;
-        padding: 0 0.75rem;
+        padding: 0 var(--space-3);
       }
       .choices .skip {
-        margin: 0 auto 0 -0.75rem;
+        margin: 0 auto 0 calc(-1 * var(--space-3));
         outline-offset: -3px; /* inside the card */
       }
       .ring {
@@ -105,7 +105,7 @@ export class StrataOnboarding extends LitElement {
       }
       @media (pointer: coarse) {
         .choices button {
-          min-height: 2.75rem;
+          min-height: var(--control-touch);
         }
       }
     `,
@@ -210,7 +210,7 @@ export class StrataOnboarding extends LitElement {
       <section class=${thing.isRoom ? "wide" : ""} role="dialog" aria-modal="false" aria-labelledby="heading" aria-describedby="text" data-step=${step} @keydown=${this.onKey}>
         <div class="row head">
           <h2 id="heading">${words.steps[step].title}</h2>
-          <span class="hint numeric">${words.progress(at + 1, there.length)}</span>
+          <span class="hint">${words.progress(at + 1, there.length)}</span>
         </div>
         <p id="text">${text}</p>
         <div class="row choices">

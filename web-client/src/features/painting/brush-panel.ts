@@ -43,35 +43,35 @@ export class StrataBrushPanel extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 0.8125rem;
+        gap: var(--space-3);
       }
       h2 {
-        font-size: 1.08rem;
+        font-size: var(--text-large);
       }
       .width {
         display: grid;
         grid-template-columns: 1fr 5.75rem;
         align-items: center;
-        gap: 0.5rem 0.75rem;
+        gap: var(--space-2) var(--space-3);
       }
       .slant {
         display: grid;
         grid-template-columns: 1fr 5.75rem;
         align-items: center;
-        gap: 0.75rem;
+        gap: var(--space-3);
       }
       .slant .check input:disabled + span {
         opacity: var(--unavailable);
       }
       .locked {
         display: flex;
-        gap: 0.5625rem;
+        gap: var(--space-2);
         align-items: start;
-        padding: 0.625rem 0.75rem;
+        padding: var(--space-2) var(--space-3);
         border: var(--edge) solid var(--calm);
         border-radius: var(--radius-small);
         background: var(--calm-soft);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         overflow-wrap: anywhere;
       }
       .locked .glyph {
@@ -80,7 +80,7 @@ export class StrataBrushPanel extends LitElement {
       .pair {
         display: flex;
         flex-wrap: wrap;
-        gap: 0.625rem;
+        gap: var(--space-2);
       }
       .pair .segments {
         flex: 1 1 auto;
@@ -294,7 +294,7 @@ export class StrataBrushPanel extends LitElement {
           <span>${unit === "px" ? texts.brush.width_px : texts.brush.width_mm}</span>
         </span>
       </div>
-      <p class="hint numeric">${this.equivalent(unit)}</p>
+      <p class="hint">${this.equivalent(unit)}</p>
       <div class="pair">
         ${radioGroup<WidthUnit>({
           label: texts.brush.fixed_on,

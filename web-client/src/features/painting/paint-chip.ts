@@ -43,7 +43,7 @@ export class StrataPaintChip extends LitElement {
         width: 100%;
         justify-content: start;
         min-height: 2.5rem;
-        padding: 0 0.875rem;
+        padding: 0 var(--space-3);
         border: 0;
         border-top: var(--edge) solid var(--line);
         border-radius: 0;
@@ -85,7 +85,7 @@ export class StrataPaintChip extends LitElement {
       ${session.lockedTarget ? icon("lock") : color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : icon(tool === "face" ? "brush" : tool)}
       <b class="ellipsis">${what}</b>
       <span class="on ellipsis">${labelOf(layer)}</span>
-      ${width ? html`<span class="width numeric">${width}</span>` : nothing} ${icon("up")}
+      ${width ? html`<span class="width">${width}</span>` : nothing} ${icon("up")}
     </button>`;
   }
 }

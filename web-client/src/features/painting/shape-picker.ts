@@ -43,27 +43,27 @@ export class StrataShapePicker extends LitElement {
       :host {
         display: grid;
         grid-template-columns: auto 1fr auto;
-        gap: 0.625rem;
+        gap: var(--space-2);
       }
       .caption {
         line-height: 2.875rem;
       }
       strata-menu {
         align-self: start;
-        margin-top: 5px;
+        margin-top: var(--space-1);
       }
       .shapes {
         display: flex;
         flex-wrap: wrap;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       .area {
         display: flex;
         flex-wrap: wrap;
-        gap: 0.375rem;
+        gap: var(--space-2);
         max-height: 9.75rem;
         overflow-y: auto;
-        padding: 2px;
+        padding: var(--space-half);
         border-radius: var(--radius-small);
       }
       .area.over {
@@ -73,8 +73,8 @@ export class StrataShapePicker extends LitElement {
       .shapes button,
       .area > button {
         width: 2.75rem;
-        min-height: 2.75rem;
-        padding: 0.375rem;
+        min-height: var(--control-touch);
+        padding: var(--space-2);
       }
       .shapes button[aria-checked="true"] {
         border-color: var(--accent);

@@ -31,18 +31,18 @@ export class StrataValueReadout extends LitElement {
       }
       div.card {
         display: grid;
-        gap: 4px;
-        padding: 0.5625rem 0.8125rem 0.625rem;
+        gap: var(--space-1);
+        padding: var(--space-2) var(--space-3) var(--space-2);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--hint);
         box-shadow: var(--shadow);
-        font-size: 0.86rem;
+        font-size: var(--text-small);
       }
       .line {
         display: flex;
         align-items: center;
-        gap: 0.5rem;
+        gap: var(--space-2);
         min-width: 0;
       }
       .swatch {
@@ -51,7 +51,7 @@ export class StrataValueReadout extends LitElement {
       }
       .line b {
         margin-left: auto;
-        padding-left: 0.875rem;
+        padding-left: var(--space-3);
         font-weight: 600;
       }
       .line b.none {
@@ -60,7 +60,7 @@ export class StrataValueReadout extends LitElement {
       }
       .position {
         color: var(--ink-soft);
-        font-size: 0.8rem;
+        font-size: var(--text-tiny);
       }
     `,
   ];
@@ -78,7 +78,7 @@ export class StrataValueReadout extends LitElement {
     const coordinates = formatPlace(picked.position.map((each) => formatFixed(each, decimals)));
     return html`<div class="card">
       ${shown.map((layer) => this.line(layer))}
-      <span class="position numeric">${texts.value.position} ${coordinates} ${model.unit}</span>
+      <span class="position">${texts.value.position} ${coordinates} ${model.unit}</span>
     </div>`;
   }
 
@@ -89,7 +89,7 @@ export class StrataValueReadout extends LitElement {
     return html`<span class="line">
       ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}
       <span class="ellipsis">${labelOf(layer)}</span>
-      <b class=${valid ? "numeric" : "none"}>${valid ? describeValue(layer, found.value!, this.session.tables) : texts.value.nothing}</b>
+      <b class=${valid ? "" : "none"}>${valid ? describeValue(layer, found.value!, this.session.tables) : texts.value.nothing}</b>
     </span>`;
   }
 }

@@ -46,7 +46,7 @@ export class StrataPeopleMenu extends LitElement {
       }
       .faces {
         display: flex;
-        padding: 0 2px 0 0.4375rem;
+        padding: 0 var(--space-half) 0 var(--space-2);
         pointer-events: auto; /* each has a tooltip with the name */
       }
       .face {
@@ -57,12 +57,12 @@ export class StrataPeopleMenu extends LitElement {
         height: 1.75rem;
         border: 2px solid var(--surface);
         border-radius: 50%;
-        font-size: 0.7rem;
+        font-size: var(--text-tiny);
         font-weight: 700;
         letter-spacing: 0.02em;
       }
       .faces .face {
-        margin-left: -5px;
+        margin-left: calc(-1 * var(--space-1));
       }
       .face.rest {
         background: var(--ink-soft);
@@ -83,12 +83,12 @@ export class StrataPeopleMenu extends LitElement {
       }
       .who span {
         color: var(--ink-soft);
-        font-size: 0.82rem;
+        font-size: var(--text-small);
       }
       button {
         min-height: 2.625rem;
-        gap: 0.625rem;
-        padding: 3px 0.75rem 3px 0.5rem;
+        gap: var(--space-2);
+        padding: var(--space-1) var(--space-3) var(--space-1) var(--space-2);
       }
       .sign {
         display: grid;
@@ -97,7 +97,7 @@ export class StrataPeopleMenu extends LitElement {
         width: 1.75rem;
       }
       .alone {
-        padding: 0.5rem 0.75rem;
+        padding: var(--space-2) var(--space-3);
         color: var(--ink-soft);
       }
     `,

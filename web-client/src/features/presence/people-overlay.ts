@@ -38,11 +38,11 @@ export class StrataPeopleOverlay extends LitElement {
         position: absolute;
         left: 0;
         top: 0;
-        transition: opacity 250ms;
+        transition: opacity var(--slow);
       }
       .person.hidden {
         opacity: 0;
-        transition: opacity 120ms;
+        transition: opacity var(--fast);
       }
       .person.faded {
         opacity: 0;
@@ -60,9 +60,9 @@ export class StrataPeopleOverlay extends LitElement {
         left: 12px;
         top: 15px;
         max-width: 140px;
-        padding: 2px 9px;
-        border-radius: 99px;
-        font-size: 0.78rem;
+        padding: var(--space-half) var(--space-2);
+        border-radius: var(--radius-round);
+        font-size: var(--text-tiny);
         font-weight: 600;
         line-height: 1.35;
         box-shadow: 0 1px 3px var(--mark-shadow);

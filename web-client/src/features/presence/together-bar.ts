@@ -43,12 +43,12 @@ export class StrataTogetherBar extends LitElement {
         left: 50%;
         max-width: calc(100% - 1.5rem);
         min-height: 2rem;
-        padding: 0 0.625rem 0 0.875rem;
+        padding: 0 var(--space-2) 0 var(--space-3);
         border: 0;
         border-radius: 0 0 var(--radius) var(--radius);
         background: var(--calm);
         color: var(--calm-ink);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         font-weight: 600;
         transform: translateX(-50%);
         pointer-events: auto;

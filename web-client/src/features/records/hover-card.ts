@@ -39,16 +39,16 @@ export class StrataHoverCard extends LitElement {
       section {
         position: absolute;
         display: grid;
-        gap: 0.4375rem;
+        gap: var(--space-2);
         width: max-content;
         max-width: 14.75rem;
-        padding: 0.5625rem 0.75rem 0.625rem;
+        padding: var(--space-2) var(--space-3) var(--space-2);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);
-        font-size: 0.84rem;
-        animation: appear 120ms;
+        font-size: var(--text-small);
+        animation: appear var(--fast);
       }
       @keyframes appear {
         from {
@@ -56,14 +56,14 @@ export class StrataHoverCard extends LitElement {
         }
       }
       .row {
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       .swatch {
         width: 0.8125rem;
         height: 0.8125rem;
       }
       b {
-        font: 600 0.98rem var(--serif);
+        font: 600 var(--text-large) var(--serif);
       }
       img {
         display: block;
@@ -77,7 +77,7 @@ export class StrataHoverCard extends LitElement {
       dl {
         display: grid;
         grid-template-columns: minmax(0, auto) minmax(0, 1.6fr);
-        gap: 2px 0.75rem;
+        gap: var(--space-half) var(--space-3);
         margin: 0;
       }
       dt {

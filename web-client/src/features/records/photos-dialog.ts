@@ -58,16 +58,16 @@ export class StrataPhotosDialog extends LitElement {
       table {
         width: 100%;
         border-collapse: collapse;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       th {
-        padding-top: 8px;
+        padding-top: var(--space-2);
         text-align: left;
-        font-size: 0.8rem;
+        font-size: var(--text-tiny);
         color: var(--ink-soft);
       }
       td {
-        padding: 4px 8px 4px 0;
+        padding: var(--space-1) var(--space-2) var(--space-1) 0;
         border-bottom: var(--edge) solid var(--line);
         overflow-wrap: anywhere;
       }

@@ -36,20 +36,20 @@ export class StrataRecordCard extends LitElement {
       }
       section {
         display: grid;
-        gap: 0.5rem;
-        padding: 0.5rem 0.5rem 0.625rem 0.8125rem;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-2) var(--space-2) var(--space-3);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       .row b {
-        font: 600 1.02rem var(--serif);
+        font: 600 var(--text-large) var(--serif);
       }
       .row button.icon {
         width: 1.75rem;
-        min-height: 1.75rem;
+        min-height: var(--control-small);
       }
       .picture img {
         display: block;
@@ -61,7 +61,7 @@ export class StrataRecordCard extends LitElement {
       dl {
         display: grid;
         grid-template-columns: auto minmax(0, 1fr);
-        gap: 3px 0.875rem;
+        gap: var(--space-1) var(--space-3);
         margin: 0;
         max-height: 8.125rem;
         overflow: auto;
@@ -74,7 +74,7 @@ export class StrataRecordCard extends LitElement {
         overflow-wrap: anywhere;
       }
       .row button {
-        min-height: 1.875rem;
+        min-height: var(--control-small);
       }
     `,
   ];
@@ -118,7 +118,7 @@ export class StrataRecordCard extends LitElement {
     const words = texts.tables;
     return html`<dl>
       <dt>${words.key}</dt>
-      <dd class="numeric">${record.key}</dd>
+      <dd>${record.key}</dd>
       ${tellingColumns(table, record)
         .slice(0, kMostLines)
         .map(
@@ -129,7 +129,7 @@ export class StrataRecordCard extends LitElement {
       ${measuresOf(table).map(
         ({ label, text }) =>
           html`<dt>${label}</dt>
-            <dd class="numeric">${text(record) || "–"}</dd>`,
+            <dd>${text(record) || "–"}</dd>`,
       )}
     </dl>`;
   }

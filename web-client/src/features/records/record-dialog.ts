@@ -52,25 +52,25 @@ export class StrataRecordDialog extends LitElement {
       .facts {
         display: flex;
         align-items: center;
-        gap: 0.625rem;
+        gap: var(--space-2);
       }
       .other {
         display: grid;
         grid-template-columns: auto 1fr auto;
         align-items: center;
-        gap: 0.5rem 0.625rem;
-        padding: 0.625rem 0.75rem;
+        gap: var(--space-2) var(--space-2);
+        padding: var(--space-2) var(--space-3);
         border: var(--edge) solid var(--calm);
         border-radius: var(--radius-small);
         background: var(--calm-soft);
-        font-size: 0.9rem;
+        font-size: var(--text-small);
       }
       .other strata-copy-field {
         grid-column: 1 / -1;
       }
       .field-row {
         display: grid;
-        gap: 4px;
+        gap: var(--space-1);
       }
       .field-row .caption b {
         color: var(--danger);
@@ -173,7 +173,7 @@ export class StrataRecordDialog extends LitElement {
 
   private facts(record: TableRecord): TemplateResult {
     const color = recordColor(this.session.layers.palette(this.layer), record);
-    return html`<div class="facts hint numeric">
+    return html`<div class="facts hint">
       ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}
       <span>${words.key_is(record.key)}</span>
       <span>${record.area_m2 ? words.area_on(formatArea(record.area_m2), labelOf(this.layer)) : words.not_painted_on(labelOf(this.layer))}</span>

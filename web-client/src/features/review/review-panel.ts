@@ -51,14 +51,14 @@ export class StrataReviewPanel extends FoldingPanel {
         min-width: 0;
         margin: 0;
         overflow-wrap: anywhere;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       .layer {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 0.375rem;
-        margin-top: 0.375rem;
+        gap: var(--space-2);
+        margin-top: var(--space-2);
       }
       li {
         display: grid;
@@ -71,13 +71,13 @@ export class StrataReviewPanel extends FoldingPanel {
       .people {
         display: flex;
         flex-wrap: wrap;
-        gap: 2px 0.875rem;
+        gap: var(--space-half) var(--space-3);
       }
       form {
         grid-column: 1 / -1;
         display: grid;
-        gap: 0.5rem;
-        padding: 4px 0.5rem 0.625rem;
+        gap: var(--space-2);
+        padding: var(--space-1) var(--space-2) var(--space-2);
       }
       form .row {
         justify-content: end;
@@ -94,7 +94,7 @@ export class StrataReviewPanel extends FoldingPanel {
   protected override besideHeading(): unknown {
     const { count } = this.session.reviews;
     return count > 0
-      ? html`<span class="number numeric" role="img" aria-label=${words.waiting(count)}>${formatCount(count)}</span>`
+      ? html`<span class="number" role="img" aria-label=${words.waiting(count)}>${formatCount(count)}</span>`
       : nothing;
   }
 

@@ -51,11 +51,11 @@ export class StrataColumnDialog extends LitElement {
       .three {
         display: grid;
         grid-template-columns: repeat(3, minmax(0, 1fr));
-        gap: 12px;
+        gap: var(--space-3);
       }
       .checks {
         display: flex;
-        gap: 22px;
+        gap: var(--space-6);
       }
     `,
   ];
@@ -163,7 +163,7 @@ export class StrataColumnDialog extends LitElement {
     lost_keys: lostKeys = [],
   }: ColumnChanged): TemplateResult {
     return html`<p>${words.lost(lost, converted)}</p>
-      <p class="hint numeric">${words.lost_of(formatList(lostKeys.map(String)))}</p>`;
+      <p class="hint">${words.lost_of(formatList(lostKeys.map(String)))}</p>`;
   }
 
   /** Enter saves, also from a field inside another element. */

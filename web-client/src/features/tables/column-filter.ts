@@ -69,30 +69,30 @@ export class StrataColumnFilter extends LitElement {
         width: min(19rem, calc(100vw - 1rem));
         max-height: min(28rem, calc(100dvh - 1rem));
         margin: 0;
-        padding: 0.875rem;
+        padding: var(--space-3);
         overflow: auto;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         color: var(--ink);
         box-shadow: var(--shadow);
-        font-size: 0.9rem;
+        font-size: var(--text-small);
       }
       h3 {
-        font-size: 0.95rem;
+        font-size: var(--text-body);
         overflow-wrap: anywhere;
       }
       .ends {
         display: grid;
         grid-template-columns: 1fr 1fr;
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       .values {
         display: grid;
-        gap: 1px;
+        gap: var(--space-half);
         max-height: 13rem;
         margin: 0;
-        padding: 2px;
+        padding: var(--space-half);
         overflow: auto;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
@@ -101,10 +101,10 @@ export class StrataColumnFilter extends LitElement {
       .values label {
         display: flex;
         align-items: center;
-        gap: 0.5rem;
-        min-height: 1.875rem;
-        padding: 0 0.5rem;
-        border-radius: 4px;
+        gap: var(--space-2);
+        min-height: var(--control-small);
+        padding: 0 var(--space-2);
+        border-radius: var(--radius-tiny);
         cursor: pointer;
       }
       .values label:hover {
@@ -116,8 +116,8 @@ export class StrataColumnFilter extends LitElement {
       }
       input[type="date"] {
         width: 100%;
-        min-height: 2.375rem;
-        padding: 0.375rem 0.5rem;
+        min-height: var(--control);
+        padding: var(--space-2) var(--space-2);
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
         background: var(--raised);
@@ -128,7 +128,7 @@ export class StrataColumnFilter extends LitElement {
       }
       @media (pointer: coarse) {
         .values label {
-          min-height: 2.75rem;
+          min-height: var(--control-touch);
         }
       }
     `,
@@ -277,7 +277,7 @@ export class StrataColumnFilter extends LitElement {
         ${found.slice(0, kMostShown).map(
           ({ value, text, count }) =>
             html`<li>
-              <label><input type="checkbox" .checked=${this._values.has(value)} @change=${choose(value)} /><span class="ellipsis" title=${text}>${text}</span><span class="count numeric">${formatCount(count)}</span></label>
+              <label><input type="checkbox" .checked=${this._values.has(value)} @change=${choose(value)} /><span class="ellipsis" title=${text}>${text}</span><span class="count">${formatCount(count)}</span></label>
             </li>`,
         )}
         ${
@@ -285,7 +285,7 @@ export class StrataColumnFilter extends LitElement {
             ? html`<li>
               <label
                 ><input type="checkbox" .checked=${this._empty} @change=${(event: Event) => (this._empty = (event.target as HTMLInputElement).checked)} /><span><i>${words.no_value}</i></span
-                ><span class="count numeric">${formatCount(counts.empty)}</span></label
+                ><span class="count">${formatCount(counts.empty)}</span></label
               >
             </li>`
             : nothing

@@ -11,12 +11,12 @@ export const reportStyles = css`
   .counts {
     display: flex;
     flex-wrap: wrap;
-    gap: 6px 22px;
+    gap: var(--space-2) var(--space-6);
     margin: 0;
   }
   .counts div {
     display: flex;
-    gap: 7px;
+    gap: var(--space-2);
   }
   .counts dt {
     color: var(--ink-soft);
@@ -32,16 +32,16 @@ export const reportStyles = css`
   .wrong table {
     width: 100%;
     border-collapse: collapse;
-    font-size: 0.88rem;
+    font-size: var(--text-small);
   }
   .wrong th {
     text-align: left;
-    font-size: 0.8rem;
+    font-size: var(--text-tiny);
     color: var(--ink-soft);
   }
   .wrong th,
   .wrong td {
-    padding: 4px 8px 4px 0;
+    padding: var(--space-1) var(--space-2) var(--space-1) 0;
     border-bottom: var(--edge) solid var(--line);
     vertical-align: top;
   }
@@ -60,7 +60,7 @@ export function recordsReport(report: RecordsReport, rows: string): TemplateResu
     [words.unchanged, report.unchanged],
   ];
   const leftOut = report.left_out ?? 0;
-  return html`<dl class="counts numeric">${counts.map(([what, count]) => html`<div><dt>${what}</dt><dd>${formatCount(count)}</dd></div>`)}</dl>
+  return html`<dl class="counts">${counts.map(([what, count]) => html`<div><dt>${what}</dt><dd>${formatCount(count)}</dd></div>`)}</dl>
     ${leftOut > 0 ? html`<p class="hint">${words.left_out(leftOut)}</p>` : nothing}
     ${report.problems.length === 0 ? html`<p>${report.created + report.changed > 0 ? words.good : words.same}</p>` : whatIsWrong(report)}`;
 }
@@ -87,7 +87,7 @@ function whatIsWrong({ problems }: RecordsReport): TemplateResult {
           ${sorted.map(
             ({ line, code, column, detail }) =>
               html`<tr>
-                ${cell(hasLines, line || nothing, "numeric")} ${cell(hasCodes, code)} ${cell(hasColumns, column)} ${cell(true, detail)}
+                ${cell(hasLines, line || nothing)} ${cell(hasCodes, code)} ${cell(hasColumns, column)} ${cell(true, detail)}
               </tr>`,
           )}
         </tbody>

@@ -41,12 +41,12 @@ export class StrataTableBar extends LitElement {
     .bar {
       display: flex;
       align-items: center;
-      gap: 0.375rem;
-      padding: 5px 0.5rem 5px 0.875rem;
+      gap: var(--space-2);
+      padding: var(--space-1) var(--space-2) var(--space-1) var(--space-3);
       border-bottom: var(--edge) solid var(--line);
     }
     .bar h2 {
-      font-size: 1.02rem;
+      font-size: var(--text-large);
       flex: 0 1 auto; /* shrinks instead of pushing the last buttons out of the panel */
       min-width: 4rem;
       max-width: 30%;
@@ -70,11 +70,11 @@ export class StrataTableBar extends LitElement {
       flex: 1 1 10rem;
       min-width: 12rem;
       max-width: 40rem;
-      margin-left: 0.375rem;
+      margin-left: var(--space-2);
     }
     .filter input {
-      padding-right: 1.875rem;
-      font: 0.86rem var(--mono);
+      padding-right: var(--space-8);
+      font: var(--text-small) var(--mono);
     }
     .filter button {
       position: absolute;
@@ -85,7 +85,7 @@ export class StrataTableBar extends LitElement {
       display: flex;
       flex: none;
       align-items: center;
-      gap: 2px;
+      gap: var(--space-half);
       white-space: nowrap;
     }
     .on-model button[aria-pressed="true"] {
@@ -93,16 +93,16 @@ export class StrataTableBar extends LitElement {
       color: var(--accent);
     }
     .on-model .hint {
-      padding-right: 0.375rem;
+      padding-right: var(--space-2);
     }
     .files {
       display: flex;
       flex: none;
-      gap: 2px;
+      gap: var(--space-half);
     }
     .files button {
-      padding: 0 0.5rem;
-      font-size: 0.82rem;
+      padding: 0 var(--space-2);
+      font-size: var(--text-small);
     }
     @container (max-width: 1100px) {
       .bar .words {
@@ -112,7 +112,7 @@ export class StrataTableBar extends LitElement {
     /* the title and the close button, then the filter */
     :host([narrow]) .bar {
       flex-wrap: wrap;
-      row-gap: 3px;
+      row-gap: var(--space-1);
     }
     :host([narrow]) .bar h2 {
       flex: 1 1 0;
@@ -152,7 +152,7 @@ export class StrataTableBar extends LitElement {
       rows.filter === "" ? words.records(rows.total) : words.records_of(rows.total, table.records);
     return html`<div class="bar">
       <h2 class="ellipsis" title=${table.description}>${labelOf(table)}</h2>
-      <span class="hint numeric count" role="status">${view.told || (rows.loaded ? shown : "")}</span>
+      <span class="hint count" role="status">${view.told || (rows.loaded ? shown : "")}</span>
       ${view.outdated ? html`<button class="link" title=${words.outdated_hint} @click=${() => rows.refresh()}>${words.outdated}</button>` : nothing}
       <div class="filter">
         <input
@@ -264,7 +264,7 @@ export class StrataTableBar extends LitElement {
     const byFilter = extent !== null && view.selected.size === 0;
     const isNowhere = extent !== null && !extent.bounds;
     return html`<div class="on-model" role="group" aria-label=${words.on_model}>
-      ${byFilter ? html`<span class="hint numeric" title=${words.painted_of(extent.painted, extent.records)}>${formatArea(extent.area_m2)}</span>` : nothing}
+      ${byFilter ? html`<span class="hint" title=${words.painted_of(extent.painted, extent.records)}>${formatArea(extent.area_m2)}</span>` : nothing}
       <button
         class="icon quiet"
         aria-pressed=${view.lightsUp}

@@ -134,7 +134,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
       ? (this.session.tables.label(this.view.tableId, key) ?? words.record(key))
       : words.chosen(keys.length);
     return html`<div class="chosen" role="group" aria-label=${words.chosen(keys.length)}>
-      <span class="numeric ellipsis">${name} · ${formatArea(area)}</span>
+      <span class="ellipsis">${name} · ${formatArea(area)}</span>
       ${
         one && this.canWrite
           ? html`<button class="icon quiet" aria-label=${words.paint_with} title=${words.paint_with} @click=${() => this.paintWith(layer, key)}>
@@ -237,7 +237,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
       aria-selected=${chosen}
       ${styled({ top: `${index * this.rowPx}px` })}
     >
-      <div class="cell key numeric ${isActive(0)}" role="rowheader" id="cell-${index}-0" @click=${(event: MouseEvent) => this.onKeyCell(event, index)}>
+      <div class="cell key ${isActive(0)}" role="rowheader" id="cell-${index}-0" @click=${(event: MouseEvent) => this.onKeyCell(event, index)}>
         ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}${record?.key ?? "…"}
         ${writer ? html`<span class="writer" role="img" aria-label=${told} title=${told}>${icon("edit")}</span>` : nothing}
       </div>
@@ -245,7 +245,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
       ${measuresOf(table).map(({ text }, measure) => {
         const at = table.columns.length + 1 + measure;
         return html`<div
-          class="cell number numeric computed ${isActive(at)}"
+          class="cell number computed ${isActive(at)}"
           role="gridcell"
           aria-readonly="true"
           id="cell-${index}-${at}"
@@ -267,7 +267,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     const edit = record ? this.view.edits.of(record.key, column.slug) : null;
     const value = edit ? edit.value : (record?.values[column.slug] ?? null);
     const state = edit ? (edit.state === "saving" ? "saving" : "refused") : "";
-    const number = isNumber(column) ? "number numeric" : "";
+    const number = isNumber(column) ? "number" : "";
     return html`<div
       class="cell ${number} ${state} ${active}"
       role="gridcell"

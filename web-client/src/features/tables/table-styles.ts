@@ -26,9 +26,9 @@ export const tableStyles = css`
   .thumbnail {
     height: 1.5rem;
     width: 2rem;
-    margin-right: 3px;
+    margin-right: var(--space-1);
     object-fit: cover;
-    border-radius: 3px;
+    border-radius: var(--radius-tiny);
     vertical-align: middle;
   }
   /* below the rows, which do not move when one is selected */
@@ -36,18 +36,18 @@ export const tableStyles = css`
     display: flex;
     align-items: center;
     flex: none;
-    gap: 2px;
+    gap: var(--space-half);
     min-width: 0;
-    padding: 2px 0.5rem 2px 0.875rem;
+    padding: var(--space-half) var(--space-2) var(--space-half) var(--space-3);
     border-top: var(--edge) solid var(--line);
     background: var(--accent-soft);
-    font-size: 0.88rem;
+    font-size: var(--text-small);
     white-space: nowrap;
   }
   .wrong {
     display: grid;
-    gap: 2px;
-    padding: 0.375rem 0.875rem;
+    gap: var(--space-half);
+    padding: var(--space-2) var(--space-3);
     border-bottom: var(--edge) solid var(--line);
     background: var(--danger-soft);
   }
@@ -65,7 +65,7 @@ export const tableStyles = css`
     position: relative;
     min-height: 0;
     overflow: auto;
-    font-size: 0.9rem;
+    font-size: var(--text-small);
     outline: 0;
     scrollbar-gutter: stable;
   }
@@ -111,7 +111,7 @@ export const tableStyles = css`
     display: flex;
     align-items: center;
     min-width: 0;
-    padding: 0 0.5625rem;
+    padding: 0 var(--space-2);
     border-right: var(--edge) solid var(--line);
     cursor: default;
   }
@@ -122,7 +122,7 @@ export const tableStyles = css`
     position: sticky;
     z-index: 1;
     left: 0;
-    gap: 0.5rem;
+    gap: var(--space-2);
     background: var(--surface);
     cursor: pointer;
   }
@@ -156,7 +156,7 @@ export const tableStyles = css`
   }
   .head .cell {
     position: relative;
-    padding: 0 0 0 2px;
+    padding: 0 0 0 var(--space-half);
   }
   .head .cell.key {
     position: sticky;
@@ -167,13 +167,13 @@ export const tableStyles = css`
     flex: 1;
     justify-content: flex-start;
     min-width: 0;
-    min-height: 1.75rem;
-    padding: 0 0.375rem;
+    min-height: var(--control-small);
+    padding: 0 var(--space-2);
     border: 0;
     background: none;
     font-weight: 600;
-    font-size: 0.86rem;
-    gap: 4px;
+    font-size: var(--text-small);
+    gap: var(--space-1);
   }
   .head .number .sort {
     justify-content: flex-end;
@@ -187,7 +187,7 @@ export const tableStyles = css`
   }
   .head .by-column {
     width: 1.375rem;
-    min-height: 1.75rem;
+    min-height: var(--control-small);
     color: var(--ink-soft);
   }
   .head .by-column.on {
@@ -216,7 +216,7 @@ export const tableStyles = css`
   .editor {
     position: absolute;
     z-index: 4;
-    padding: 1px;
+    padding: var(--space-half);
     border-radius: var(--radius-small);
     background: var(--raised);
     box-shadow: var(--shadow);
@@ -225,30 +225,30 @@ export const tableStyles = css`
     position: absolute;
     z-index: 5;
     display: grid;
-    gap: 0.375rem;
+    gap: var(--space-2);
     width: max-content;
     max-width: 23.75rem;
-    padding: 0.5rem 0.75rem;
+    padding: var(--space-2) var(--space-3);
     border: var(--edge) solid var(--danger);
     border-radius: var(--radius-small);
     background: var(--raised);
     box-shadow: var(--shadow);
-    font-size: 0.86rem;
+    font-size: var(--text-small);
     white-space: normal;
     cursor: default;
   }
   .bubble .row {
     flex-wrap: wrap;
-    gap: 0.375rem;
+    gap: var(--space-2);
   }
   .bubble button {
-    min-height: 1.75rem;
+    min-height: var(--control-small);
   }
   .empty {
     display: grid;
-    gap: 0.5rem;
+    gap: var(--space-2);
     justify-items: start;
-    padding: 1.125rem;
+    padding: var(--space-4);
     color: var(--ink-soft);
   }
 `;

@@ -76,16 +76,16 @@ export class StrataTourDialog extends LitElement {
       .editor {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 1.125rem;
+        gap: var(--space-4);
       }
       .about {
         display: grid;
         grid-template-columns: minmax(0, 1fr) minmax(14.375rem, max-content);
         align-items: end;
-        gap: 0.75rem 1rem;
+        gap: var(--space-3) var(--space-4);
       }
       .about textarea {
-        min-height: 2.375rem;
+        min-height: var(--control);
       }
       .about .full,
       .about strata-tour-languages,
@@ -95,8 +95,8 @@ export class StrataTourDialog extends LitElement {
       .stops {
         display: grid;
         grid-template-columns: 16.875rem minmax(0, 1fr);
-        gap: 1.25rem;
-        padding-top: 0.875rem;
+        gap: var(--space-5);
+        padding-top: var(--space-3);
         border-top: var(--edge) solid var(--line);
       }
       strata-tour-stops {
@@ -104,8 +104,8 @@ export class StrataTourDialog extends LitElement {
         top: 0;
         align-self: start;
         max-height: calc(100dvh - 11.875rem);
-        margin: -5px;
-        padding: 5px;
+        margin: calc(-1 * var(--space-1));
+        padding: var(--space-1);
         overflow: auto;
       }
       .back {
@@ -116,23 +116,23 @@ export class StrataTourDialog extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         align-content: start;
-        gap: 0.75rem;
+        gap: var(--space-3);
         min-width: 0;
       }
       .stop > .hint {
-        padding: 1.5rem 0;
+        padding: var(--space-6) 0;
         text-align: center;
       }
       .told {
         flex: 1 1 100%;
         display: flex;
         flex-wrap: wrap;
-        gap: 4px 0.875rem;
-        padding: 0.625rem 0.875rem;
+        gap: var(--space-1) var(--space-3);
+        padding: var(--space-2) var(--space-3);
         border-radius: var(--radius-small);
         background: var(--warn-soft);
         color: var(--ink);
-        font-size: 0.92rem;
+        font-size: var(--text-small);
       }
       @media (max-width: 760px) {
         .about,

@@ -25,12 +25,12 @@ export class StrataTourLanguages extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       ul {
         display: flex;
         flex-wrap: wrap;
-        gap: 0.375rem;
+        gap: var(--space-2);
         margin: 0;
         padding: 0;
         list-style: none;
@@ -38,21 +38,21 @@ export class StrataTourLanguages extends LitElement {
       li {
         display: inline-flex;
         align-items: center;
-        gap: 4px;
-        padding-left: 0.75rem;
-        border-radius: 99px;
+        gap: var(--space-1);
+        padding-left: var(--space-3);
+        border-radius: var(--radius-round);
         background: var(--accent-soft);
-        font-size: 0.9rem;
+        font-size: var(--text-small);
       }
       li:only-child {
-        padding: 0.375rem 0.75rem;
+        padding: var(--space-2) var(--space-3);
       }
       li small {
         color: var(--ink-soft);
       }
       li button.icon {
         width: 1.875rem;
-        min-height: 1.875rem;
+        min-height: var(--control-small);
         border-radius: 50%;
       }
       .add select {

@@ -33,7 +33,7 @@ export class StrataTourList extends LitElement {
     listRowStyles,
     css`
       button.open {
-        gap: 1px;
+        gap: var(--space-half);
       }
     `,
   ];

@@ -39,13 +39,13 @@ export class StrataTourRecords extends LitElement {
       :host {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 8px;
+        gap: var(--space-2);
       }
       section {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 8px;
-        padding: 8px 12px 12px;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-3) var(--space-3);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
       }

@@ -55,16 +55,16 @@ export class StrataTourStopFields extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         align-content: start;
-        gap: 0.875rem;
+        gap: var(--space-3);
       }
       .part {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       .view {
         display: flex;
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       .view select {
         flex: 1;
@@ -73,19 +73,19 @@ export class StrataTourStopFields extends LitElement {
       .words {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(min(100%, 13.125rem), 1fr));
-        gap: 0.75rem;
+        gap: var(--space-3);
       }
       .language {
         display: grid;
         align-content: start;
-        gap: 0.5rem;
+        gap: var(--space-2);
         min-width: 0;
       }
       .segments {
         justify-self: start;
       }
       .segments button {
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
       .dot {
         width: 0.5rem;
@@ -104,7 +104,7 @@ export class StrataTourStopFields extends LitElement {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(9.375rem, 1fr));
         align-items: end;
-        gap: 0.75rem;
+        gap: var(--space-3);
       }
       .times .segments {
         display: flex;
@@ -116,7 +116,7 @@ export class StrataTourStopFields extends LitElement {
       .layer-names {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(min(12rem, 100%), 1fr));
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
     `,
   ];

@@ -59,11 +59,11 @@ export class StrataTourStops extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         align-content: start;
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       ol {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
         margin: 0;
         padding: 0;
         list-style: none;
@@ -87,9 +87,9 @@ export class StrataTourStops extends LitElement {
         display: grid;
         grid-template-columns: 3.25rem minmax(0, 1fr);
         justify-content: stretch;
-        gap: 1px 0.625rem;
+        gap: var(--space-half) var(--space-2);
         min-height: 3.25rem;
-        padding: 0.375rem 4px;
+        padding: var(--space-2) var(--space-1);
         text-align: start;
         white-space: normal;
       }
@@ -97,7 +97,7 @@ export class StrataTourStops extends LitElement {
       .no-view {
         grid-row: span 3;
         width: 3.25rem;
-        border-radius: 4px;
+        border-radius: var(--radius-tiny);
       }
       .no-view {
         display: grid;
@@ -107,32 +107,32 @@ export class StrataTourStops extends LitElement {
       }
       b {
         font-weight: 600;
-        font-size: 0.92rem;
+        font-size: var(--text-small);
         overflow-wrap: anywhere;
         unicode-bidi: plaintext;
       }
       .lacks {
-        font-size: 0.78rem;
+        font-size: var(--text-tiny);
         color: var(--warn);
       }
       .gone {
-        font-size: 0.78rem;
+        font-size: var(--text-tiny);
         color: var(--danger);
       }
       .removed {
         display: flex;
         flex-wrap: wrap;
         align-items: baseline;
-        gap: 2px 0.75rem;
-        padding: 0.5rem 0.75rem;
+        gap: var(--space-half) var(--space-3);
+        padding: var(--space-2) var(--space-3);
         border-radius: var(--radius-small);
         background: var(--calm-soft);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         overflow-wrap: anywhere;
       }
       .add {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
     `,
   ];

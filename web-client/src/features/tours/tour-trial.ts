@@ -27,23 +27,23 @@ export class StrataTourTrial extends LitElement {
         top: 66px; /* below the header: notices and, on phones, the panel are at the bottom */
         transform: translateX(-50%);
         display: grid;
-        gap: 8px;
+        gap: var(--space-2);
         width: min(520px, calc(100vw - 24px));
-        padding: 14px 16px;
+        padding: var(--space-3) var(--space-4);
         border: var(--edge) solid var(--line);
-        border-radius: 14px;
+        border-radius: var(--radius-large);
         background: var(--surface);
         color: var(--ink);
         box-shadow: var(--shadow);
       }
       h2 {
-        font-size: 1.08rem;
+        font-size: var(--text-large);
         overflow-wrap: anywhere;
       }
       p {
         max-height: 22dvh;
         overflow: auto;
-        font-size: 0.92rem;
+        font-size: var(--text-small);
         white-space: pre-line;
         overflow-wrap: anywhere;
       }

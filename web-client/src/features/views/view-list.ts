@@ -39,7 +39,7 @@ export class StrataViewList extends LitElement {
       button.go {
         grid-template-columns: 4rem minmax(0, 1fr);
         align-items: start;
-        gap: 0.625rem;
+        gap: var(--space-2);
       }
       ul {
         margin: 0;
@@ -55,11 +55,11 @@ export class StrataViewList extends LitElement {
         background: none;
       }
       strata-thumbnail {
-        border-radius: 4px;
+        border-radius: var(--radius-tiny);
       }
       .words {
         display: grid;
-        gap: 1px;
+        gap: var(--space-half);
       }
       button.go .hint {
         display: -webkit-box;
@@ -76,7 +76,7 @@ export class StrataViewList extends LitElement {
       .back {
         position: sticky;
         bottom: 0;
-        padding: 2px 0;
+        padding: var(--space-half) 0;
         background: var(--surface);
       }
     `,

@@ -80,7 +80,7 @@ export class StrataCellInput extends LitElement {
       input[type="date"] {
         width: 100%;
         min-height: 38px;
-        padding: 6px 10px;
+        padding: var(--space-2) var(--space-2);
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
         background: var(--raised);
@@ -94,11 +94,11 @@ export class StrataCellInput extends LitElement {
       }
       :host(.in-cell) :is(input, select, textarea) {
         min-height: 28px;
-        padding: 2px 6px;
-        font-size: 0.9rem;
+        padding: var(--space-half) var(--space-2);
+        font-size: var(--text-small);
       }
       :host(.in-cell) .number > span {
-        padding-right: 6px;
+        padding-right: var(--space-2);
       }
     `,
   ];

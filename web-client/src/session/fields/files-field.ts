@@ -46,9 +46,9 @@ export class StrataFilesField extends LitElement {
       .field {
         display: flex;
         flex-wrap: wrap;
-        gap: 0.5rem;
+        gap: var(--space-2);
         align-items: stretch;
-        padding: 0.5rem;
+        padding: var(--space-2);
         border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius-small);
       }
@@ -60,17 +60,17 @@ export class StrataFilesField extends LitElement {
         position: relative;
         display: grid;
         grid-template-rows: 4.5rem auto auto;
-        gap: 3px;
+        gap: var(--space-1);
         width: 6.5rem;
         margin: 0;
-        font-size: 0.76rem;
+        font-size: var(--text-tiny);
       }
       figure a {
         display: grid;
         place-items: center;
         overflow: hidden;
         border: var(--edge) solid var(--line);
-        border-radius: 0.375rem;
+        border-radius: var(--radius-small);
         background: var(--raised);
         color: var(--ink-soft);
       }
@@ -80,9 +80,9 @@ export class StrataFilesField extends LitElement {
         object-fit: cover;
       }
       figure select {
-        min-height: 1.75rem;
-        padding: 0 4px;
-        font-size: 0.76rem;
+        min-height: var(--control-small);
+        padding: 0 var(--space-1);
+        font-size: var(--text-tiny);
       }
       figure.waits {
         opacity: 0.6;

@@ -33,20 +33,20 @@ export class StrataMarksField extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 0.5rem;
-        padding: 0.5rem;
+        gap: var(--space-2);
+        padding: var(--space-2);
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
       }
       .mark {
         display: inline-flex;
         align-items: center;
-        gap: 0.375rem;
-        padding-left: 0.5625rem;
+        gap: var(--space-2);
+        padding-left: var(--space-2);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
         background: var(--raised);
-        font-size: 0.9rem;
+        font-size: var(--text-small);
       }
       .mark svg.glyph {
         width: 1rem;
@@ -54,7 +54,7 @@ export class StrataMarksField extends LitElement {
       }
       .mark button.icon {
         width: 1.875rem;
-        min-height: 1.875rem;
+        min-height: var(--control-small);
       }
     `,
   ];
@@ -76,7 +76,7 @@ export class StrataMarksField extends LitElement {
 
   private mark(mark: Mark): TemplateResult {
     const name = this.session.model ? describeMark(mark, this.kind, this.session.model) : "";
-    return html`<span class="mark numeric"
+    return html`<span class="mark"
       >${icon(this.kind)}${name}<button
         type="button"
         class="icon quiet"

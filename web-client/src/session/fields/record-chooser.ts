@@ -59,9 +59,9 @@ export class StrataRecordChooser extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 4px;
+        gap: var(--space-1);
         min-height: 38px;
-        padding: 3px 4px;
+        padding: var(--space-1) var(--space-1);
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
         background: var(--raised);
@@ -74,14 +74,14 @@ export class StrataRecordChooser extends LitElement {
       }
       :host(.in-cell) .field {
         min-height: 28px;
-        padding: 1px 3px;
+        padding: var(--space-half) var(--space-1);
       }
       input[type="text"] {
         flex: 1;
         width: 70px;
         min-width: 70px;
         min-height: 24px;
-        padding: 0 5px;
+        padding: 0 var(--space-1);
         border: 0;
         outline: 0;
         background: none;
@@ -91,10 +91,10 @@ export class StrataRecordChooser extends LitElement {
         align-items: center;
         max-width: 100%;
         min-width: 0;
-        padding-left: 8px;
-        border-radius: 99px;
+        padding-left: var(--space-2);
+        border-radius: var(--radius-round);
         background: var(--accent-soft);
-        font-size: 0.86rem;
+        font-size: var(--text-small);
       }
       .chip .ellipsis {
         min-width: 0;
@@ -117,7 +117,7 @@ export class StrataRecordChooser extends LitElement {
         position: fixed;
         inset: auto;
         margin: 0;
-        padding: 4px;
+        padding: var(--space-1);
         max-height: 260px;
         overflow: auto;
         border: var(--edge) solid var(--line);
@@ -129,12 +129,12 @@ export class StrataRecordChooser extends LitElement {
       .option {
         display: flex;
         align-items: center;
-        gap: 8px;
+        gap: var(--space-2);
         min-height: 30px;
-        padding: 2px 8px;
-        border-radius: 4px;
+        padding: var(--space-half) var(--space-2);
+        border-radius: var(--radius-tiny);
         cursor: pointer;
-        font-size: 0.92rem;
+        font-size: var(--text-small);
       }
       .option.at {
         background: var(--accent-soft);
@@ -142,7 +142,7 @@ export class StrataRecordChooser extends LitElement {
       .option .key {
         margin-left: auto;
         color: var(--ink-soft);
-        font-size: 0.82rem;
+        font-size: var(--text-small);
       }
       .option.above-found {
         color: var(--ink-soft);
@@ -153,7 +153,7 @@ export class StrataRecordChooser extends LitElement {
         color: var(--accent);
       }
       .list .hint {
-        padding: 4px 8px;
+        padding: var(--space-1) var(--space-2);
       }
     `,
   ];
@@ -229,7 +229,7 @@ export class StrataRecordChooser extends LitElement {
               @click=${() => this.take(key)}
             >
               <span class="ellipsis">${label || words.record(key)}</span>
-              ${this.chosen.includes(key) ? icon("check") : nothing}${tree ? nothing : html`<span class="key numeric">${key}</span>`}
+              ${this.chosen.includes(key) ? icon("check") : nothing}${tree ? nothing : html`<span class="key">${key}</span>`}
             </div>`,
         )}
         ${found.length === 0 ? html`<p class="hint">${names && !names.loading ? words.none_found : texts.loading}</p>` : nothing}

@@ -62,18 +62,18 @@ export class StrataTermChooser extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 0.4375rem;
+        gap: var(--space-2);
         min-width: 0;
       }
       .now {
         display: grid;
         grid-template-columns: auto minmax(0, 1fr);
         align-items: center;
-        gap: 2px 0.5625rem;
+        gap: var(--space-half) var(--space-2);
       }
       .now .above {
         color: var(--ink-soft);
-        font-size: 0.86rem;
+        font-size: var(--text-small);
       }
       .now b {
         font-weight: 600;
@@ -85,7 +85,7 @@ export class StrataTermChooser extends LitElement {
         position: relative;
       }
       .search input {
-        padding-right: 2.5rem;
+        padding-right: var(--space-8);
       }
       .search button {
         position: absolute;
@@ -108,10 +108,10 @@ export class StrataTermChooser extends LitElement {
         right: 0;
         display: flex;
         align-items: center;
-        gap: 0.5rem;
+        gap: var(--space-2);
         height: ${kRowPx}px;
-        padding-right: 0.5rem;
-        font-size: 0.92rem;
+        padding-right: var(--space-2);
+        font-size: var(--text-small);
         cursor: pointer;
       }
       .term:hover {

@@ -44,16 +44,16 @@ export class StrataValuePicker extends LitElement {
       .classes {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(7.375rem, 1fr));
-        gap: 0.375rem;
+        gap: var(--space-2);
         max-height: 13rem;
         overflow: auto;
-        padding: 2px;
-        margin: -2px;
+        padding: var(--space-half);
+        margin: calc(-1 * var(--space-half));
       }
       .classes button {
         justify-content: flex-start;
         min-width: 0;
-        padding: 0 0.625rem;
+        padding: 0 var(--space-2);
       }
       .classes button[aria-checked="true"] {
         border-color: var(--accent);
@@ -63,12 +63,12 @@ export class StrataValuePicker extends LitElement {
       .line {
         display: flex;
         align-items: center;
-        gap: 0.5625rem;
+        gap: var(--space-2);
         min-width: 0;
       }
       .value {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
     `,
   ];
