@@ -203,10 +203,7 @@ test("what nothing is called is told, and a click on a fold hides what is below"
   await button(words.terms.show_all).click();
   await term("Crack").waitFor();
   await term("Crack and deformation").locator(".fold").click();
-  await wait_for(
-    async () => (await term("Crack").count()) === 0,
-    "the cracks to be folded",
-  );
+  await wait_for(async () => (await term("Crack").count()) === 0, "the cracks to be folded");
 });
 
 test("the same template again is refused in plain words, and nothing is made", async () => {
