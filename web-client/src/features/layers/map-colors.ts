@@ -47,7 +47,7 @@ export class StrataMapColors extends LitElement {
         align-items: center;
         gap: var(--space-2);
       }
-      tr.off .numeric {
+      tr.off td:not(:last-child) {
         color: var(--ink-soft);
       }
       tr.off .swatch {
