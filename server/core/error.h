@@ -8,6 +8,7 @@
 #include <tl/expected.hpp>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace strata {
 
@@ -63,8 +64,13 @@ struct Error {
   std::string title;    // short and fixed for a kind of failure: "Value out of range"
   std::string detail;   // this failure and its remedy
   std::string field{};  // JSON pointer-like path of the offending field; may be empty
-  // for a field that is a text in a language: characters before the mistake
+  // for a field that is a text in a language (expression/expression.h): the characters before the
+  // mistake, the number of wrong characters if it is known, texts that would correct them (the most
+  // likely one first), and the stable name of the kind of mistake
   std::optional<std::size_t> offset{};
+  std::size_t length = 0;
+  std::vector<std::string> suggestions{};
+  std::string_view reason{};
 };
 
 // Bad data of clients or files are an expected result, not an exception.

@@ -14,10 +14,15 @@ void collect(const Expression& expression, std::vector<std::string>& layers) {
 
 }  // namespace
 
-Error expression_problem(const std::string& what, std::size_t at, const std::string& field) {
+Error expression_problem(const std::string& what, Expression::Position position,
+                         const std::string& field, std::string_view reason,
+                         std::vector<std::string> suggestions) {
   Error problem{ErrorCode::invalid, "Invalid expression",
-                what + " (at character " + std::to_string(at + 1) + ").", field};
-  problem.offset = at;
+                what + " (at character " + std::to_string(position.at + 1) + ").", field};
+  problem.offset = position.at;
+  problem.length = position.length;
+  problem.suggestions = std::move(suggestions);
+  problem.reason = reason;
   return problem;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -93,9 +94,10 @@ struct Expression {
     record_truth,  // as record_number
   };
 
-  // Position in the source text; not compared.
+  // Position in the source text, in characters (Unicode code points); not compared.
   struct Position {
-    std::size_t at = 0;  // characters (Unicode code points) before it
+    std::size_t at = 0;      // characters before it
+    std::size_t length = 0;  // of a name or text; 0 for others
     bool operator==(const Position&) const { return true; }
   };
 
@@ -115,8 +117,27 @@ struct Expression {
   bool operator==(const Expression&) const = default;
 };
 
+// Kinds of mistakes in an expression. Programs can depend on the names
+// (docs/reference/errors.md).
+namespace mistake {
+inline constexpr std::string_view kSyntax = "syntax";
+inline constexpr std::string_view kExpectsCondition = "expects_condition";  // but got a number
+inline constexpr std::string_view kExpectsNumber = "expects_number";        // but got a condition
+inline constexpr std::string_view kUnknownLayer = "unknown_layer";
+inline constexpr std::string_view kUnknownColumn = "unknown_column";
+inline constexpr std::string_view kUnknownFunction = "unknown_function";
+inline constexpr std::string_view kUnknownChoice = "unknown_choice";  // of a column of choices
+inline constexpr std::string_view kUnit = "unit";                     // after a number
+inline constexpr std::string_view kWrongType = "wrong_type";          // of a column or value
+inline constexpr std::string_view kComputedLayersOnly = "computed_layers_only";
+inline constexpr std::string_view kTooLarge = "too_large";
+}  // namespace mistake
+
 // Returns an Error (invalid) for a mistake at a character (from 0) of an expression's text.
-Error expression_problem(const std::string& what, std::size_t at, const std::string& field);
+// `suggestions` are texts that would correct the characters of `position`.
+Error expression_problem(const std::string& what, Expression::Position position,
+                         const std::string& field, std::string_view reason = mistake::kSyntax,
+                         std::vector<std::string> suggestions = {});
 
 // Returns the slugs of the layers that it reads, each once, in order of their first use.
 std::vector<std::string> layers_of(const Expression& expression);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/text/closest.h"
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
 #include "core/text/utf8.h"
@@ -31,8 +32,14 @@ struct Token {
   double number = 0;
 };
 
-constexpr std::array kKeywords{"and",  "or",  "not", "true",    "false", "case", "when", "then",
-                               "else", "end", "is",  "between", "in",    "null", "like", "div"};
+constexpr std::array<std::string_view, 16> kKeywords{
+    "and",  "or",  "not", "true",    "false", "case", "when", "then",
+    "else", "end", "is",  "between", "in",    "null", "like", "div"};
+// Words that can follow a number or a condition.
+const std::vector<std::string> kJoiningWords{"and", "or", "not", "is", "between", "like", "div"};
+// Units that people write after numbers. The inch is missing: `in` is a word of the language.
+constexpr std::array<std::string_view, 11> kUnits{"mm",  "cm", "m",  "km", "um",     "nm",
+                                                  "deg", "g",  "kg", "ft", "percent"};
 
 // A recursive descent parser. The first error is kept and ends the text, so that every level
 // returns, with any intermediate result.
@@ -45,13 +52,15 @@ class Parser {
 
   Result<Expression> whole(bool wants_condition) {
     Expression expression = disjunction();
-    if (token_.kind != Token::Kind::end) refuse("'" + token_.text + "' was not expected here");
+    if (token_.kind != Token::Kind::end) refuse_rest();
     if (wants_condition) {
       if (!expression.is_condition() && !expression.is_column())
-        refuse("Expected a condition, not a number: compare the number with something", 0);
+        refuse("Expected a condition, not a number: compare the number with something", 0,
+               mistake::kExpectsCondition);
       expression = condition(std::move(expression), 0);
     } else if (expression.is_condition()) {
-      refuse("Expected a number, not a condition: write if(condition, 1, 0) to get a number", 0);
+      refuse("Expected a number, not a condition: write if(condition, 1, 0) to get a number", 0,
+             mistake::kExpectsNumber);
     } else {
       expression = numeric(std::move(expression), 0);
     }
@@ -60,12 +69,44 @@ class Parser {
   }
 
  private:
-  Expression refuse(const std::string& what, std::optional<std::size_t> at = {}) {
+  Expression refuse(const std::string& what, std::optional<std::size_t> at = {},
+                    std::string_view reason = mistake::kSyntax) {
+    const std::size_t begin = at.value_or(token_.at);
+    return refuse_part(what, position(begin, begin), reason);
+  }
+
+  Expression refuse_part(const std::string& what, Expression::Position part,
+                         std::string_view reason, std::vector<std::string> suggestions = {}) {
     if (!problem_)
-      problem_ = expression_problem(what, characters_before(at.value_or(token_.at)), field_);
+      problem_ = expression_problem(what, part, field_, reason, std::move(suggestions));
     at_ = text_.size();
     token_ = Token{};
     return {};
+  }
+
+  // The text ends here, but more follows: perhaps a unit, or a word with a typing mistake.
+  void refuse_rest() {
+    const std::string what = "'" + token_.text + "' was not expected here";
+    const std::string word = token_.text;
+    if (token_.kind != Token::Kind::word) {
+      refuse(what);
+      return;
+    }
+    if (number_end_ > 0 && std::ranges::find(kUnits, word) != kUnits.end() &&
+        std::ranges::all_of(text_.substr(number_end_, token_.at - number_end_), is_space)) {
+      const std::string number(text_.substr(number_at_, number_end_ - number_at_));
+      refuse_part(
+          "Write numbers without a unit. '" + number + "' has the unit of the layer or column",
+          position(number_at_, at_), mistake::kUnit, {number});
+      return;
+    }
+    refuse_part(what, position(token_.at, at_), mistake::kSyntax,
+                closest_names(word, kJoiningWords));
+  }
+
+  Expression::Position position(std::size_t begin_byte, std::size_t end_byte) const {
+    const std::size_t at = characters_before(begin_byte);
+    return {at, characters_before(end_byte) - at};
   }
 
   std::size_t characters_before(std::size_t byte) const {
@@ -102,7 +143,21 @@ class Parser {
       return;
     }
     token_.text = std::string(begin, end);
+    number_at_ = at_;
     at_ += static_cast<std::size_t>(end - begin);
+    number_end_ = at_;
+    if (at_ < text_.size() && is_letter(text_[at_])) {
+      std::size_t word_end = at_;
+      while (word_end < text_.size() && (is_letter(text_[word_end]) || is_digit(text_[word_end])))
+        ++word_end;
+      if (std::ranges::find(kUnits, text_.substr(at_, word_end - at_)) != kUnits.end()) {
+        refuse_part("A number ends here. Write numbers without a unit: '" + token_.text +
+                        "' has the unit of the layer or column. A name that begins with a digit "
+                        "needs double quotes",
+                    position(number_at_, word_end), mistake::kUnit, {token_.text});
+        return;
+      }
+    }
     if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
       refuse(
           "A number ends here; write the name of a layer in double quotes if it begins "
@@ -257,8 +312,8 @@ class Parser {
     right = value(std::move(right), right_at);
     const auto takes_text = [](const Expression& e) { return e.is_text() || e.is_column(); };
     if ((left.is_text() && !takes_text(right)) || (right.is_text() && !takes_text(left)))
-      refuse("A text can be compared with a column of texts only, not with a number",
-             left.is_text() ? at : right_at);
+      refuse_part("A text can be compared with a column of texts only, not with a number",
+                  left.is_text() ? left.position : right.position, mistake::kWrongType);
     return make(op, at, std::move(left), std::move(right));
   }
 
@@ -380,7 +435,7 @@ class Parser {
     if (is("case")) return cases();
     if (take("null")) return unknown();
     if (is_call()) return call();
-    for (const char* keyword : kKeywords)
+    for (const std::string_view keyword : kKeywords)
       if (is(keyword))
         return refuse("Expected a number, " + std::string(what_names_are()) +
                       " or '(' instead of '" + token.text + "'");
@@ -403,10 +458,20 @@ class Parser {
         default: break;
       }
     }
-    return refuse("There is no function '" + token_.text + "'. Available are valid, if, reclass, " +
-                  names_of(Form::number_function) + ", " + names_of(Form::text_function) +
-                  ", date, timestamp, interval, " + names_of(Form::time_function) + ", " +
-                  names_of(Form::key_function));
+    return refuse_part("There is no function '" + token_.text +
+                           "'. Available are valid, if, reclass, " +
+                           names_of(Form::number_function) + ", " + names_of(Form::text_function) +
+                           ", date, timestamp, interval, " + names_of(Form::time_function) + ", " +
+                           names_of(Form::key_function),
+                       position(token_.at, at_), mistake::kUnknownFunction,
+                       closest_names(token_.text, function_names()));
+  }
+
+  static std::vector<std::string> function_names() {
+    std::vector<std::string> names{"valid", "if", "reclass", "date", "timestamp", "interval"};
+    for (const Operator& row : operators())
+      if (row.form >= Form::number_function) names.emplace_back(row.name);
+    return names;
   }
 
   std::string_view what_names_are() const {
@@ -414,7 +479,7 @@ class Parser {
   }
 
   bool is_keyword() const {
-    return std::ranges::any_of(kKeywords, [&](const char* word) { return is(word); });
+    return std::ranges::any_of(kKeywords, [&](std::string_view word) { return is(word); });
   }
 
   // Parses a layer, a column, or a column of the record that a layer or another column refers to.
@@ -427,7 +492,7 @@ class Parser {
     if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
       return refuse("Expected " + what + " instead of '" + token_.text + "'");
     Expression expression;
-    expression.position.at = characters_before(at);
+    std::size_t end = at_;  // of the name
     if (names_ == Names::layers) {
       expression.op = Op::layer;
       expression.name = token_.text;
@@ -441,8 +506,10 @@ class Parser {
         return refuse("Expected the name of a column instead of '" + token_.text + "'");
       expression.op = Op::column;
       expression.path.push_back(token_.text);
+      end = at_;
       advance();
     }
+    expression.position = position(at, end);
     return expression;
   }
 
@@ -464,7 +531,7 @@ class Parser {
   Expression literal() {
     Expression expression;
     expression.op = Op::text;
-    expression.position.at = characters_before(token_.at);
+    expression.position = position(token_.at, at_);
     expression.text = token_.text;
     advance();
     return expression;
@@ -622,20 +689,22 @@ class Parser {
   Expression condition(Expression expression, std::size_t at) {
     if (expression.is_column()) return make(Op::holds, at, std::move(expression));
     if (!expression.is_condition())
-      refuse("Expected a condition, not a number: compare the number with something", at);
+      refuse("Expected a condition, not a number: compare the number with something", at,
+             mistake::kExpectsCondition);
     return expression;
   }
   Expression value(Expression expression, std::size_t at) {
-    if (expression.is_condition()) refuse("Expected a number here, not a condition", at);
+    if (expression.is_condition())
+      refuse("Expected a number here, not a condition", at, mistake::kExpectsNumber);
     return expression;
   }
   Expression numeric(Expression expression, std::size_t at) {
-    if (expression.is_text()) refuse("Expected a number here, not a text", at);
+    if (expression.is_text()) refuse("Expected a number here, not a text", at, mistake::kWrongType);
     return value(std::move(expression), at);
   }
   Expression textual(Expression expression, std::size_t at) {
     if (!expression.is_text() && !expression.is_column())
-      refuse("Expected a text or a column here", at);
+      refuse("Expected a text or a column here", at, mistake::kWrongType);
     return expression;
   }
 
@@ -654,7 +723,8 @@ class Parser {
   // Copies an expression for a second use, within a limit: results must not grow exponentially.
   Expression again(const Expression& expression) {
     repeated_ += size_of(expression);
-    if (repeated_ > kMaxExpressionLength) return refuse("This expression has too many parts");
+    if (repeated_ > kMaxExpressionLength)
+      return refuse("This expression has too many parts", {}, mistake::kTooLarge);
     return expression;
   }
 
@@ -672,7 +742,7 @@ class Parser {
     (expression.parts.push_back(std::move(parts)), ...);
     // a + b + c + … nests to the left; evaluation and destruction are recursive.
     if (depth_of(expression) > kMaxExpressionDepth)
-      refuse("This expression is nested too deeply", at);
+      refuse("This expression is nested too deeply", at, mistake::kTooLarge);
     return expression;
   }
 
@@ -686,7 +756,7 @@ class Parser {
   struct Nesting {
     explicit Nesting(Parser& owner) : parser(owner) {
       if (++parser.depth_ > 3 * kMaxExpressionDepth)
-        parser.refuse("This expression is nested too deeply");
+        parser.refuse("This expression is nested too deeply", {}, mistake::kTooLarge);
     }
     ~Nesting() { --parser.depth_; }
     Nesting(const Nesting&) = delete;
@@ -699,6 +769,7 @@ class Parser {
   const Names names_;
   std::size_t at_ = 0;
   Token token_;
+  std::size_t number_at_ = 0, number_end_ = 0;  // bytes of the last number
   int depth_ = 0;
   std::size_t repeated_ = 0;
   std::optional<Error> problem_;
@@ -721,6 +792,18 @@ Result<Expression> parse_condition(std::string_view text, const std::string& fie
 }
 Result<Expression> parse_number(std::string_view text, const std::string& field, Names names) {
   return parse(text, field, names, false);
+}
+
+std::string name_in_expression(const std::string& slug) {
+  const bool is_plain = !slug.empty() && is_letter(slug.front()) &&
+                        std::ranges::find(kKeywords, slug) == kKeywords.end();
+  return is_plain ? slug : '"' + slug + '"';
+}
+
+std::string text_in_expression(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace strata::query

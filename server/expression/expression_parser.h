@@ -46,4 +46,10 @@ Result<Expression> parse_condition(std::string_view text, const std::string& fie
 Result<Expression> parse_number(std::string_view text, const std::string& field,
                                 Names names = Names::layers);
 
+// Returns the slug of a layer or column as an expression has to contain it: in double quotes if it
+// begins with a digit or is a word of the language.
+std::string name_in_expression(const std::string& slug);
+// Returns a text as an expression has to contain it, in single quotes.
+std::string text_in_expression(std::string_view text);
+
 }  // namespace strata::query

@@ -52,7 +52,7 @@ class Splitter {
         problem_ = expression_problem(
             "Texts and times can be compared within one record only: compare one of its "
             "columns with a text",
-            e.position.at, field_);
+            e.position, field_, mistake::kWrongType);
       return {};
     }
     Expression rest = e;

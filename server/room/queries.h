@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,8 +35,14 @@ struct LayerAreas {
   query::Perimeters perimeters;
 };
 
+// A picture of the selection: the cells of a grid over the camera's window.
+struct SeenGrid {
+  Camera camera;
+  int columns = 0, rows = 0;
+};
 struct StatisticsOptions {  // options that take longer
   bool quantiles = false, pieces = false, perimeter = false;
+  std::optional<SeenGrid> seen{};  // of `select`
 };
 struct SelectedArea {
   int resolution = 0;  // of the counted texels
@@ -43,6 +50,8 @@ struct SelectedArea {
   double area_m2 = 0, share = 0;                    // of the whole surface
   glm::dvec3 bounds_min{0}, bounds_max{0};          // world, if there is a texel
   std::map<std::string, query::Statistics> layers;  // by slug: their values in the area
+  // for StatisticsOptions::seen, row by row from the top left: 1 where the camera sees the area
+  std::vector<std::uint8_t> seen{};
 };
 
 struct PlacesInSteps {             // for each place, the nearest surface point is used

@@ -73,12 +73,36 @@ constexpr std::array kKinds{
 static_assert(kKinds.size() == static_cast<std::size_t>(kLastErrorCode) + 1);
 static_assert(std::ranges::is_sorted(kKinds, {}, &ProblemKind::code));
 
-constexpr std::size_t kMaxTitle = 200, kMaxDetail = 10'000, kMaxField = 500, kMaxRef = 64;
+constexpr std::size_t kMaxTitle = 200, kMaxDetail = 10'000, kMaxField = 500, kMaxRef = 64,
+                      kMaxSuggestion = 500, kMaxSuggestions = 3;
 constexpr std::string_view kMore = "…";
 
 std::string bounded(const std::string& text, std::size_t most) {
   if (text.size() <= most) return text;
   return std::string(first_bytes(text, most - kMore.size())).append(kMore);
+}
+
+// A suggestion that is too long is left out: its beginning would correct nothing.
+std::vector<std::string> suggestions_of(const Error& error) {
+  std::vector<std::string> suggestions;
+  if (!error.offset || error.length == 0) return suggestions;
+  for (const std::string& each : error.suggestions)
+    if (!each.empty() && each.size() <= kMaxSuggestion && suggestions.size() < kMaxSuggestions)
+      suggestions.push_back(each);
+  return suggestions;
+}
+
+// Returns the detail with the suggestions: "… Did you mean wet or dry?"
+std::string detail_of(const Error& error) {
+  const auto suggestions = suggestions_of(error);
+  std::string question;
+  for (std::size_t i = 0; i < suggestions.size(); ++i)
+    question += (i == 0                        ? " Did you mean "
+                 : i + 1 == suggestions.size() ? " or "
+                                               : ", ") +
+                suggestions[i];
+  if (!question.empty()) question += "?";
+  return bounded(error.detail + question, kMaxDetail);
 }
 
 }  // namespace
@@ -107,9 +131,13 @@ ProblemMessage problem_message(const Error& error, const std::optional<std::stri
   message.type = problem_type(error.code);
   message.title = bounded(error.title, kMaxTitle);
   message.status = http_status(error.code);
-  message.detail = bounded(error.detail, kMaxDetail);
+  message.detail = detail_of(error);
   if (!error.field.empty()) message.field = bounded(error.field, kMaxField);
   if (error.offset) message.offset = static_cast<int>(*error.offset);
+  if (error.offset && error.length > 0) message.length = static_cast<int>(error.length);
+  if (auto suggestions = suggestions_of(error); !suggestions.empty())
+    message.suggestions = std::move(suggestions);
+  if (!error.reason.empty()) message.reason = std::string(error.reason);
   return message;
 }
 
@@ -117,9 +145,13 @@ nlohmann::json problem_body(const Error& error) {
   nlohmann::json json{{"type", problem_type(error.code)},
                       {"title", bounded(error.title, kMaxTitle)},
                       {"status", http_status(error.code)},
-                      {"detail", bounded(error.detail, kMaxDetail)}};
+                      {"detail", detail_of(error)}};
   if (!error.field.empty()) json["field"] = bounded(error.field, kMaxField);
   if (error.offset) json["offset"] = *error.offset;
+  if (error.offset && error.length > 0) json["length"] = error.length;
+  if (auto suggestions = suggestions_of(error); !suggestions.empty())
+    json["suggestions"] = std::move(suggestions);
+  if (!error.reason.empty()) json["reason"] = error.reason;
   return json;
 }
 

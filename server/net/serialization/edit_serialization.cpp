@@ -102,6 +102,27 @@ room::Place place_of(const protocol::SurfacePlace& place) {
   return room::PixelPlace{*place.camera, *place.x, *place.y};
 }
 
+Result<room::Outline> outline_of(const Camera& camera, const protocol::Outline& path, bool through,
+                                 const std::optional<std::vector<protocol::OutlineStep>>& steps) {
+  room::Outline outline{camera, path, through};
+  std::size_t points = path.size();
+  for (const auto& step : steps.value_or(std::vector<protocol::OutlineStep>{})) {
+    using Combine = protocol::Combination;
+    const room::Combination combination =
+        step.combine == Combine::subtract    ? room::Combination::subtract
+        : step.combine == Combine::intersect ? room::Combination::intersect
+                                             : room::Combination::add;
+    points += step.path.size();
+    outline.steps.push_back({combination, step.camera, step.path, step.through});
+  }
+  if (points > kMaxOutlinePoints)
+    return fail(ErrorCode::invalid, "Too many points",
+                "The outlines of a selection can have " + std::to_string(kMaxOutlinePoints) +
+                    " points together. Draw simpler outlines.",
+                "steps");
+  return outline;
+}
+
 bool names_tool(const protocol::Edit& edit) {
   const auto* stroke = std::get_if<protocol::EditStroke>(&edit);
   return stroke && is_tool(stroke->shape);
@@ -127,8 +148,9 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
   if (const auto* polygon = std::get_if<protocol::EditPolygon>(&edit)) {
     auto bits = value_bits(layer, polygon->value, polygon->erase);
     if (!bits) return tl::unexpected(bits.error());
-    request.edit = room::PolygonEdit{
-        polygon->erase, *bits, {polygon->camera, polygon->path, polygon->through}};
+    auto outline =
+        STRATA_TRY(outline_of(polygon->camera, polygon->path, polygon->through, polygon->steps));
+    request.edit = room::PolygonEdit{polygon->erase, *bits, std::move(outline)};
     return request;
   }
   auto fill = STRATA_TRY(fill_of(std::get<protocol::EditFill>(edit), layer));

@@ -39,5 +39,9 @@ room::EditRequest batch_request(app::StrokeTracker::Batch batch, const Uuid& str
 std::optional<app::StrokeTracker::End> end_of_path(const nlohmann::json& record);
 
 room::Place place_of(const protocol::SurfacePlace& place);
+// Refused (invalid, `steps`): too many points.
+constexpr std::size_t kMaxOutlinePoints = 16384;  // of an outline and its steps together
+Result<room::Outline> outline_of(const Camera& camera, const protocol::Outline& path, bool through,
+                                 const std::optional<std::vector<protocol::OutlineStep>>& steps);
 
 }  // namespace strata::net

@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "domain/layers/texel_lookup.h"
+#include "domain/people/question.h"
 #include "domain/scene/camera.h"
 #include "mesh/parallel.h"
 #include "mesh/surface/search_tree.h"
+#include "mesh/texels/texel_graph.h"
 #include "query/sampling/nearest_points.h"
 
 namespace strata::query {
@@ -140,6 +142,29 @@ std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree
     }
   });
   return keys;
+}
+
+std::vector<std::uint8_t> seen_selection(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                         const Camera& camera, int columns, int rows,
+                                         const mesh::SurfaceMap& map,
+                                         const std::vector<std::uint64_t>* selection) {
+  const auto width = static_cast<std::size_t>(columns);
+  const std::size_t cells = width * static_cast<std::size_t>(rows);
+  if (Question* question = Question::current()) question->spend(cells);
+  std::vector<std::uint8_t> seen(cells, 0);
+  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
+                              (row + 0.5) * camera.height / rows, {});
+      if (!point.hit) continue;
+      const auto texel = mesh::surface_texel_at(map, point.uv);
+      if (!texel) continue;
+      // 64 texels of a slot, as TexelSelection
+      if (selection == nullptr || ((*selection)[*texel / 64] >> (*texel % 64) & 1u) != 0)
+        seen[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] = 1;
+    }
+  });
+  return seen;
 }
 
 }  // namespace strata::query

@@ -13,6 +13,7 @@ struct Camera;
 }
 namespace strata::mesh {
 class SearchTree;
+struct SurfaceMap;
 }
 
 namespace strata::query {
@@ -52,5 +53,12 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
 std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
                                                     const glm::dvec3& origin, const Camera& camera,
                                                     int columns, int rows, const LayerView& layer);
+// Returns a byte for each cell of such a grid: 1 where the camera sees a texel of the selection at
+// the cell's center. `selection` null: any surface. Counts a step for each cell in the current
+// question.
+std::vector<std::uint8_t> seen_selection(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                         const Camera& camera, int columns, int rows,
+                                         const mesh::SurfaceMap& map,
+                                         const std::vector<std::uint64_t>* selection);
 
 }  // namespace strata::query

@@ -107,15 +107,20 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texel
   auto inside = texels_within(selection, map);
   if (!inside || !selection.where) return inside;
   std::vector<std::string> slugs;
+  std::vector<query::LayerView> candidates;
   for (const auto& layer : room_.layer_list())
-    if (sees(selection.seen_by, layer.visibility)) slugs.push_back(layer.slug);
+    if (sees(selection.seen_by, layer.visibility)) {
+      slugs.push_back(layer.slug);
+      candidates.push_back({layer, {}});
+    }
   const std::vector<std::string> named = layers_of(*selection.where);
   // The evaluator refuses layers that do not exist, with the field.
   std::erase_if(slugs,
                 [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
   const auto views = STRATA_TRY(room_.layer_views(slugs, selection.at));
-  const auto bound = STRATA_TRY(bind_expression(*selection.where, views, room_.services_.store,
-                                                selection.seen_by, selection.at, "where"));
+  const auto bound =
+      STRATA_TRY(bind_expression(*selection.where, views, room_.services_.store, selection.seen_by,
+                                 selection.at, "where", &candidates));
   auto holds = query::select_where(bound, views, map, "where", mesh::background_threads(),
                                    {room_.geometry_->origin, room_.model().metres()},
                                    *inside ? &**inside : nullptr);
@@ -189,6 +194,10 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
   area.share = finest.map->area_total > 0 ? std::min(1.0, extent.area / finest.map->area_total) : 0;
   area.bounds_min = glm::dvec3(extent.low) + room_.geometry_->origin;
   area.bounds_max = glm::dvec3(extent.high) + room_.geometry_->origin;
+  if (const auto& grid = options.seen)
+    area.seen =
+        query::seen_selection(*room_.surface_lookup_->tree(), room_.geometry_->origin, grid->camera,
+                              grid->columns, grid->rows, *finest.map, finest.within());
   for (const auto& view : views) {
     const Selected& here = of_resolution.at(view.layer.resolution);
     auto counted = STRATA_TRY(count(view, *here.map, here.within(), !selection.at, options));

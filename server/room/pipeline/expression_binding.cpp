@@ -1,18 +1,24 @@
 #include "room/pipeline/expression_binding.h"
-#include "store/tables/records.h"
-#include "store/tables/tables.h"
 
 #include <algorithm>
+#include <map>
+
+#include "core/text/closest.h"
+#include "expression/expression_parser.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::room {
 namespace {
 
-// Returns the position where the text names the layer, for the message.
-std::size_t first_character(const Expression& e) {
-  if (e.is_column() || e.parts.empty()) return e.position.at;
-  std::size_t first = e.position.at;
-  for (const Expression& part : e.parts) first = std::min(first, first_character(part));
-  return first;
+// Returns the part where the text first names the layer, for the message.
+const Expression& first_name(const Expression& e) {
+  if (e.is_column() || e.parts.empty()) return e;
+  const Expression* first = &e;
+  for (const Expression& part : e.parts)
+    if (const Expression& name = first_name(part); name.position.at <= first->position.at)
+      first = &name;
+  return *first;
 }
 
 bool has_layer(const std::vector<query::LayerView>& layers, const std::string& slug) {
@@ -20,10 +26,71 @@ bool has_layer(const std::vector<query::LayerView>& layers, const std::string& s
          layers.end();
 }
 
+constexpr std::array<std::string_view, 4> kPlaceNames{"x", "y", "z", "area"};
+
+// Returns names of `layers` for which `wrong` may be a typing mistake: their slugs, also for their
+// names, and those of the surface. `wet-dry` may be a subtraction without spaces.
+std::vector<std::string> similar_layers(const std::string& wrong,
+                                        const std::vector<query::LayerView>& layers) {
+  for (auto hyphen = wrong.find('-'); hyphen != std::string::npos;
+       hyphen = wrong.find('-', hyphen + 1)) {
+    const std::string a = wrong.substr(0, hyphen), b = wrong.substr(hyphen + 1);
+    if (has_layer(layers, a) && has_layer(layers, b))
+      return {query::name_in_expression(a) + " - " + query::name_in_expression(b)};
+  }
+  std::vector<std::string> names;
+  std::map<std::string, std::string> slug_of;
+  for (const query::LayerView& view : layers) {
+    if (view.layer.slug.starts_with(kShapePrefix)) continue;
+    names.push_back(view.layer.slug);
+    if (slug_of.emplace(view.layer.name, view.layer.slug).second) names.push_back(view.layer.name);
+  }
+  names.insert(names.end(), kPlaceNames.begin(), kPlaceNames.end());
+  names.insert(names.end(), kShapeNames.begin(), kShapeNames.end());
+  std::vector<std::string> similar;
+  for (const std::string& found : closest_names(wrong, names)) {
+    const auto named = slug_of.find(found);
+    std::string text = query::name_in_expression(named == slug_of.end() ? found : named->second);
+    if (std::ranges::find(similar, text) == similar.end()) similar.push_back(std::move(text));
+  }
+  return similar;
+}
+
+// The error for a layer that does not exist.
+Error unknown_layer(const std::string& name, Expression::Position position,
+                    const std::vector<query::LayerView>& candidates, const std::string& field) {
+  return expression_problem("This model has no layer '" + name.substr(0, 100) +
+                                "'; use the slug of a layer, and write spaces around a minus sign",
+                            position, field, mistake::kUnknownLayer,
+                            similar_layers(name, candidates));
+}
+
+// The error for columns of a layer that does not exist.
+Error no_record_layer(const query::RecordPart& part, const Expression& first,
+                      const std::vector<query::LayerView>& candidates, const std::string& field) {
+  std::vector<std::string> similar;
+  if (first.is_column()) {
+    similar = similar_layers(part.layer, candidates);
+    for (std::string& name : similar)
+      for (const std::string& step : first.path) name += "." + query::name_in_expression(step);
+  }
+  return expression_problem("This model has no layer '" + part.layer.substr(0, 100) + "'",
+                            first.position, field, mistake::kUnknownLayer, std::move(similar));
+}
+
+// The part of an expression that reads the records of a layer does not contain the layer's name.
+Error with_layer(Error problem, const std::string& slug) {
+  if (problem.reason == mistake::kUnknownColumn)
+    for (std::string& path : problem.suggestions)
+      path = query::name_in_expression(slug) + "." + path;
+  return problem;
+}
+
 // Replaces names of layers that do not exist by the names of the surface.
 Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& layers,
+                          const std::vector<query::LayerView>& candidates,
                           const std::string& field) {
-  for (Expression& part : e.parts) STRATA_TRY(name_surface(part, layers, field));
+  for (Expression& part : e.parts) STRATA_TRY(name_surface(part, layers, candidates, field));
   if ((e.op != Expression::Op::layer && e.op != Expression::Op::valid) || has_layer(layers, e.name))
     return {};
   using Place = std::pair<std::string_view, Expression::Op>;
@@ -36,17 +103,14 @@ Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& la
       return {};
     }
   if (std::ranges::find(kShapeNames, e.name) == kShapeNames.end())
-    return tl::unexpected(
-        expression_problem("This model has no layer '" + e.name.substr(0, 100) +
-                               "'; use the slug of a layer, and write spaces around a minus sign",
-                           e.position.at, field));
+    return tl::unexpected(unknown_layer(e.name, e.position, candidates, field));
   const std::string given = std::string(kShapePrefix) + e.name;
   if (!has_layer(layers, given))
     return tl::unexpected(expression_problem(
         "'" + e.name +
             "' of the surface works in computed layers only: create a computed layer from it "
             "and use that layer here",
-        e.position.at, field));
+        e.position, field, mistake::kComputedLayersOnly));
   e.name = given;
   return {};
 }
@@ -75,30 +139,30 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
                                                const std::vector<query::LayerView>& layers,
                                                store::Store& store, Role seen_by,
                                                std::optional<std::int64_t> at,
-                                               const std::string& field) {
+                                               const std::string& field,
+                                               const std::vector<query::LayerView>* candidates) {
+  const std::vector<query::LayerView>& similar = candidates ? *candidates : layers;
   auto split = STRATA_TRY(query::split_records(expression, field));
   query::BoundExpression bound{std::move(split.expression), {}};
-  STRATA_TRY(name_surface(bound.expression, layers, field));
+  STRATA_TRY(name_surface(bound.expression, layers, similar, field));
   for (const query::RecordPart& part : split.parts) {
     const auto view =
         std::ranges::find(layers, part.layer, [](const auto& each) { return each.layer.slug; });
-    const std::size_t character = first_character(part.expression);
-    if (view == layers.end())
-      return tl::unexpected(expression_problem(
-          "This model has no layer '" + part.layer.substr(0, 100) + "'", character, field));
+    const Expression& first = first_name(part.expression);
+    if (view == layers.end()) return tl::unexpected(no_record_layer(part, first, similar, field));
     const Layer& layer = view->layer;
     if (!layer.table)
       return tl::unexpected(expression_problem(
-          "'" + layer.slug + "' stores numbers: only layers of records have columns", character,
-          field));
+          "'" + layer.slug + "' stores numbers: only layers of records have columns",
+          first.position, field, mistake::kWrongType));
     std::optional<std::int64_t> then;
     if (at) {
       auto sequence = STRATA_TRY(store.tables().sequence_when(*layer.table, layer.model_id, *at));
       then = sequence;
     }
-    auto numbers =
-        STRATA_TRY(store.records().numbers(*layer.table, seen_by, part.expression, then, field));
-    bound.records.emplace_back(numbers);
+    auto numbers = store.records().numbers(*layer.table, seen_by, part.expression, then, field);
+    if (!numbers) return tl::unexpected(with_layer(numbers.error(), layer.slug));
+    bound.records.emplace_back(*numbers);
   }
   return bound;
 }
@@ -113,7 +177,7 @@ Result<BoundForLayer> bind_for_layer(const Expression& expression,
   if (bound) return BoundForLayer{std::move(*bound), std::move(readable)};
   if (sight_of(author) == layer) return tl::unexpected(bound.error());
   STRATA_TRY(bind_expression(expression, layers_seen_by(layers, author), store, author,
-                             std::nullopt, field));
+                             std::nullopt, field, &readable));
   return fail(ErrorCode::invalid, "Visible to too many people",
               "The expression reads layers or columns that fewer people can see than this "
               "layer, which is " +

@@ -31,12 +31,12 @@ std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>
 // Binds a formula over layers to the records behind their keys, read from the database: the present
 // records, or those at the time of the model's edit `at`, with the columns that `seen_by` sees.
 // Blocks. Refused (invalid at `field`, with the character): a layer without records, a column that
-// does not exist or has another kind.
-Result<query::BoundExpression> bind_expression(const Expression& expression,
-                                               const std::vector<query::LayerView>& layers,
-                                               store::Store& store, Role seen_by,
-                                               std::optional<std::int64_t> at,
-                                               const std::string& field);
+// does not exist or has another kind. Suggestions name only layers of `candidates` (null:
+// `layers`), which every reader of the error may see.
+Result<query::BoundExpression> bind_expression(
+    const Expression& expression, const std::vector<query::LayerView>& layers, store::Store& store,
+    Role seen_by, std::optional<std::int64_t> at, const std::string& field,
+    const std::vector<query::LayerView>* candidates = {});
 
 // The same for a formula whose result is written into a layer with that visibility: it may read
 // only data that is visible to every user who sees the layer, so that no hidden data shows through.

@@ -44,9 +44,13 @@ Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& ma
               field);
 }
 
-Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
-                            const SurfaceLookup& surface, render::Renderer& renderer,
-                            render::ModelHandle model) {
+namespace {
+
+// `outline`: an Outline without its steps, or a step.
+template <class Part>
+Result<TileMasks> texels_in_part(const Part& outline, const mesh::SurfaceMap& map,
+                                 const SurfaceLookup& surface, render::Renderer& renderer,
+                                 render::ModelHandle model) {
   const PolygonArea area({outline.path});
   auto seen = seen_texels(renderer, model, map.resolution, outline.camera, area.low(), area.high(),
                           outline.through);
@@ -60,6 +64,39 @@ Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
     mask = inside;
   }
   return seen;
+}
+
+}  // namespace
+
+void combine(TileMasks& selected, const TileMasks& other, Combination combination) {
+  if (combination == Combination::intersect)
+    std::erase_if(selected, [&](const auto& tile) { return !other.contains(tile.first); });
+  for (const auto& [address, mask] : other) {
+    const auto found = selected.find(address);
+    if (found == selected.end()) {
+      if (combination == Combination::add) selected.emplace(address, mask);
+      continue;
+    }
+    for (int w = 0; w < kMaskWords; ++w) {
+      std::uint64_t& bits = found->second.words[w];
+      switch (combination) {
+        case Combination::add: bits |= mask.words[w]; break;
+        case Combination::subtract: bits &= ~mask.words[w]; break;
+        case Combination::intersect: bits &= mask.words[w]; break;
+      }
+    }
+  }
+}
+
+Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
+                            const SurfaceLookup& surface, render::Renderer& renderer,
+                            render::ModelHandle model) {
+  auto selected = STRATA_TRY(texels_in_part(outline, map, surface, renderer, model));
+  for (const Outline::Step& step : outline.steps) {
+    const auto part = STRATA_TRY(texels_in_part(step, map, surface, renderer, model));
+    combine(selected, part, step.combination);
+  }
+  return selected;
 }
 
 Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type,

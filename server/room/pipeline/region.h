@@ -37,8 +37,10 @@ struct PlaceOnSurface {
 };
 Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& map,
                                   SurfaceLookup& surface, const std::string& field);
-// Returns the texels of an outline, including the gutter. Waits for the GPU, which must have the
-// map.
+// Changes the selected texels by those of another outline.
+void combine(TileMasks& selected, const TileMasks& other, Combination combination);
+// Returns the texels of an outline and its steps, including the gutter. Waits for the GPU, which
+// must have the map.
 Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
                             const SurfaceLookup& surface, render::Renderer& renderer,
                             render::ModelHandle model);

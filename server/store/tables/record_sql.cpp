@@ -6,8 +6,10 @@
 #include <limits>
 #include <map>
 
+#include "core/text/closest.h"
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
+#include "expression/expression_parser.h"
 #include "expression/operators.h"
 #include "store/tables/table_writer.h"
 
@@ -98,8 +100,11 @@ class Writer {
 
  private:
   // Keeps the first refusal; SQL that is written after it is never used.
-  Sql refuse(const std::string& what, const Expression& at) {
-    if (!problem_) problem_ = expression_problem(what, at.position.at, field_);
+  Sql refuse(const std::string& what, const Expression& at,
+             std::string_view reason = mistake::kWrongType,
+             std::vector<std::string> suggestions = {}) {
+    if (!problem_)
+      problem_ = expression_problem(what, at.position, field_, reason, std::move(suggestions));
     return {};
   }
 
@@ -166,7 +171,31 @@ class Writer {
   Sql no_column(const Table& table, const Expression& e, std::size_t step) {
     return refuse(table.name.substr(0, 100) + " has no column '" + e.path[step].substr(0, 100) +
                       "'. It has " + some_columns(table),
-                  e);
+                  e, mistake::kUnknownColumn, corrected(table, e, step));
+  }
+
+  // Returns the whole path with similar columns at that step. A user may have written the name of a
+  // column instead of its slug.
+  static std::vector<std::string> corrected(const Table& table, const Expression& e,
+                                            std::size_t step) {
+    std::vector<std::string> names{"key"};
+    std::map<std::string, std::string> slug_of;
+    for (const Column& column : table.columns) {
+      names.push_back(column.slug);
+      if (slug_of.emplace(column.name, column.slug).second) names.push_back(column.name);
+    }
+    std::vector<std::string> paths;
+    for (const std::string& found : closest_names(e.path[step], names)) {
+      const auto named = slug_of.find(found);
+      std::string path;
+      for (std::size_t i = 0; i < e.path.size(); ++i)
+        path += (i == 0 ? "" : ".") + query::name_in_expression(i != step ? e.path[i]
+                                                                : named == slug_of.end()
+                                                                    ? found
+                                                                    : named->second);
+      if (std::ranges::find(paths, path) == paths.end()) paths.push_back(std::move(path));
+    }
+    return paths;
   }
 
   static Sql value_of(const Column& column,
@@ -356,7 +385,14 @@ class Writer {
       if (known.size() < 300) known += (known.empty() ? "" : ", ") + choice.substr(0, 100);
     refuse("'" + text.text.substr(0, 100) + "' is not a choice of " + column.column->slug +
                ". Its choices are " + known,
-           text);
+           text, mistake::kUnknownChoice, similar_choices(text.text, choices));
+  }
+
+  static std::vector<std::string> similar_choices(const std::string& text,
+                                                  std::span<const std::string> choices) {
+    std::vector<std::string> similar = closest_names(text, choices);
+    for (std::string& each : similar) each = query::text_in_expression(each);
+    return similar;
   }
 
   std::string of_keys(const Expression& e, const Operator& row) {

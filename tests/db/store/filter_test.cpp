@@ -494,6 +494,41 @@ TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
   EXPECT_TRUE(keys(table, "depth = 1")->size() == 1);  // the connection still works
 }
 
+TEST_F(Filter, a_mistake_in_a_name_or_choice_is_corrected) {
+  const Table other = make("Terms", {column("Code", ColumnKind::text)});
+  const Table table =
+      make("Units",
+           {column("Depth", ColumnKind::numeric), column("2nd depth", ColumnKind::numeric),
+            column("State", ColumnKind::enumeration), column("Term", ColumnKind::term, other.id)});
+  struct Mistake {
+    std::string text;
+    std::string_view reason;
+    std::size_t offset, length;
+    std::vector<std::string> suggestions;
+  };
+  for (const Mistake& each : std::vector<Mistake>{
+           {"dept > 1", mistake::kUnknownColumn, 0, 4, {"depth"}},
+           {"term.kode = 'x'", mistake::kUnknownColumn, 0, 9, {"term.code"}},
+           {"trem.code = 'x'", mistake::kUnknownColumn, 0, 9, {"term.code"}},
+           {"\"2nd depht\" > 1", mistake::kUnknownColumn, 0, 11, {"\"2nd-depth\""}},
+           {"temperature > 1", mistake::kUnknownColumn, 0, 11, {}},
+           {"state = 'god'", mistake::kUnknownChoice, 8, 5, {"'good'"}},
+           {"depth = 'x'", mistake::kWrongType, 0, 5, {}}}) {
+    SCOPED_TRACE(each.text);
+    const auto found = keys(table, each.text);
+    ASSERT_FALSE(found);
+    const Error& problem = found.error();
+    EXPECT_EQ(problem.reason, each.reason) << problem.detail;
+    EXPECT_EQ(problem.offset, each.offset);
+    EXPECT_EQ(problem.length, each.length);
+    EXPECT_EQ(problem.suggestions, each.suggestions);
+    if (each.suggestions.empty()) continue;
+    std::string corrected = each.text;
+    corrected.replace(each.offset, each.length, each.suggestions.front());
+    EXPECT_TRUE(keys(table, corrected)) << corrected;
+  }
+}
+
 TEST_F(Filter, what_looks_like_sql_is_a_text_like_any_other) {
   const Table table = make("Units", {column("Name", ColumnKind::text)});
   const std::vector<std::string> names{

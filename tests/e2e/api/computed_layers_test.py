@@ -122,6 +122,28 @@ def test_conditions(server):
     ), answer
     answer = server.post(M + "/select", {"where": "slope > 3"})
     assert answer.status == 422 and "computed layers" in answer.json()["detail"], answer
+    assert answer.json()["reason"] == "computed_layers_only"
+
+
+def test_mistakes_are_corrected(server):
+    for text, reason, suggestions in (
+        ("wte > 0", "unknown_layer", ["wet"]),
+        ("wet > 0 and peices.thickness > 1", "unknown_layer", ["pieces.thickness"]),
+        ("wet > 0 and pieces.thikness > 1", "unknown_column", ["pieces.thickness"]),
+        ("pieces.state = 'lose'", "unknown_choice", ["'loose'"]),
+        ("vaild(wet)", "unknown_function", ["valid"]),
+        ("wet > 3 mm", "unit", ["3"]),
+        ("wet", "expects_condition", None),
+    ):
+        problem = server.post(M + "/select", {"where": text}).json()
+        assert problem["status"] == 422 and problem["reason"] == reason, problem
+        assert problem.get("suggestions") == suggestions, problem
+        if suggestions is None:
+            continue
+        assert "Did you mean " + suggestions[0] in problem["detail"], problem
+        begin, length = problem["offset"], problem["length"]
+        corrected = text[:begin] + suggestions[0] + text[begin + length :]
+        server.ok("POST", M + "/select", {"where": corrected})
 
 
 def compute(server, name, expression, expect=201, **more):

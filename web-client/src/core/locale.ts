@@ -49,6 +49,10 @@ export const pageLocale = (): string => locale;
 /** The languages that this person reads, the best first. */
 export const personLanguages = (): readonly string[] => languages;
 
+/** A share of a whole in percent: "12 %", "0.4 %". */
+export const formatPercent = (share: number): string =>
+  `${(share * 100).toLocaleString(locale, { maximumSignificantDigits: share < 0.1 ? 2 : 3 })} %`;
+
 export const formatCount = (n: number): string => n.toLocaleString(locale);
 /** Formats with `decimals` decimals and without grouping: for coordinates. */
 export const formatFixed = (value: number, decimals: number): string =>

@@ -21,6 +21,9 @@ export type Path = Point2[];
 /** Kind of problem. A stable reference on this server. Let programs decide by it; `/problems` describes each. */
 export type ProblemType = "/problems#malformed" | "/problems#unauthenticated" | "/problems#forbidden" | "/problems#not_found" | "/problems#method_not_allowed" | "/problems#not_acceptable" | "/problems#too_slow" | "/problems#conflict" | "/problems#superseded" | "/problems#gone" | "/problems#stale" | "/problems#too_large" | "/problems#unsupported" | "/problems#range_not_satisfied" | "/problems#misdirected" | "/problems#invalid" | "/problems#upgrade_required" | "/problems#version_required" | "/problems#too_many_requests" | "/problems#head_too_large" | "/problems#cancelled" | "/problems#internal" | "/problems#not_implemented" | "/problems#bad_gateway" | "/problems#busy" | "/problems#unavailable" | "/problems#timed_out" | "/problems#gpu_lost" | "/problems#out_of_memory" | "/problems#storage_full";
 
+/** Kind of mistake in a condition or formula. Stable, as `type`. New ones may be added. */
+export type ProblemReason = "syntax" | "expects_condition" | "expects_number" | "unknown_layer" | "unknown_column" | "unknown_function" | "unknown_choice" | "unit" | "wrong_type" | "computed_layers_only" | "too_large";
+
 /** #rrggbb, sRGB. */
 export type BackgroundColor = string;
 
@@ -254,6 +257,18 @@ export interface EditFill {
 /** Outline of an area. Pixels of the camera's window; the last point is joined to the first. If the outline crosses itself, areas that it surrounds twice are outside. */
 export type Outline = Point2[];
 
+/** How an outline changes the selection of the outlines before it. */
+export type Combination = "add" | "subtract" | "intersect";
+
+/** Further outline of a selection. In the window of its own camera. */
+export interface OutlineStep {
+  combine: Combination;
+  camera: Camera;
+  path: Outline;
+  /** Also include hidden surfaces. Default: false. */
+  through?: boolean;
+}
+
 /** Polygon or lasso. Paints the area inside an outline that a camera sees. Needs a value, unless it erases. */
 export interface EditPolygon {
   op: "polygon";
@@ -265,6 +280,8 @@ export interface EditPolygon {
   path: Outline;
   /** Also paint hidden surfaces. Default: false. */
   through?: boolean;
+  /** Further outlines, combined with the first one in their order. All outlines together have at most 16384 points. */
+  steps?: OutlineStep[];
 }
 
 /** Edit. The same object over HTTP and the WebSocket. */
@@ -1020,6 +1037,11 @@ export interface ProblemMessage {
   field?: string;
   /** If the member is a condition or formula: the number of characters (Unicode code points) before the mistake. */
   offset?: number;
+  /** With `offset`: the number of wrong characters, if it is known. */
+  length?: number;
+  /** With `offset` and `length`: texts that would correct the wrong characters, the most likely one first. */
+  suggestions?: string[];
+  reason?: ProblemReason;
 }
 
 /** Problem of a row. */
@@ -1062,6 +1084,11 @@ export interface Problem {
   field?: string;
   /** If the member is a condition or formula: the number of characters (Unicode code points) before the mistake. */
   offset?: number;
+  /** With `offset`: the number of wrong characters, if it is known. */
+  length?: number;
+  /** With `offset` and `length`: texts that would correct the wrong characters, the most likely one first. */
+  suggestions?: string[];
+  reason?: ProblemReason;
   instance?: string;
   /** For many records at once: what is wrong with which line. */
   rows?: RecordsReport;
@@ -2575,6 +2602,17 @@ export interface Within {
   path?: Outline;
   /** Also include hidden surfaces. */
   through?: boolean;
+  /** Further outlines, combined with the first one in their order. All outlines together have at most 16384 points. */
+  steps?: OutlineStep[];
+}
+
+/** Picture of the selection. The part of the selection that the camera sees, in its window. */
+export interface SelectionPicture {
+  camera: Camera;
+  /** Pixels of the picture. */
+  width: number;
+  /** Pixels of the picture. */
+  height: number;
 }
 
 /** Part of the statistics that takes longer. */
@@ -2599,6 +2637,7 @@ export interface SelectRequest {
   layers?: LayerRef[];
   include?: StatisticsPart[];
   into?: SelectInto;
+  picture?: SelectionPicture;
 }
 
 /** Bar of a histogram. Values from `from` (included) to `to`; the last bin includes `to`. */
@@ -2661,6 +2700,8 @@ export interface SelectResponse {
   share: number;
   bounds?: Bounds;
   layers: SelectedLayers;
+  /** PNG in base64, if it was requested: white where the camera sees the selection, transparent elsewhere. */
+  picture?: string;
   /** Result of `into`. */
   edit?: EditResult;
 }

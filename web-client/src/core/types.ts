@@ -50,7 +50,12 @@ export interface ProblemBody {
   title: string;
   detail?: string;
   field?: string;
-  offset?: number; // in an expression: index of the wrong character, from 0
+  // in an expression, in characters (code points): the place of the mistake, the number of wrong
+  // characters, texts that would correct them, and the kind of mistake
+  offset?: number;
+  length?: number;
+  suggestions?: string[];
+  reason?: string;
   rows?: wire.RecordsReport; // for requests with many records
 }
 

@@ -55,14 +55,60 @@ export function complete(text: string, caret: number, all: readonly Suggestion[]
 }
 
 /**
- * Splits the text into three parts around the wrong character (a Unicode code point); at the end of
+ * Splits the text into three parts around the wrong characters (Unicode code points); at the end of
  * the text the middle part is a space.
  */
-export function markedAt(text: string, offset: number): [string, string, string] {
+export function markedAt(text: string, offset: number, length = 1): [string, string, string] {
   const characters = [...text];
   return [
     characters.slice(0, offset).join(""),
-    characters[offset] ?? " ",
-    characters.slice(offset + 1).join(""),
+    characters.slice(offset, offset + Math.max(1, length)).join("") || " ",
+    characters.slice(offset + Math.max(1, length)).join(""),
   ];
+}
+
+/** The place of a mistake in a text, in code points, and what would correct it. */
+export interface Mistake {
+  offset: number;
+  length?: number | undefined;
+  suggestions?: readonly string[] | undefined;
+}
+
+/** The text with a suggestion in place of the wrong characters. */
+export function corrected(text: string, { offset, length = 0 }: Mistake, by: string): string {
+  const characters = [...text];
+  return [...characters.slice(0, offset), by, ...characters.slice(offset + length)].join("");
+}
+
+/** A class that a condition can name only by its number. */
+export interface NamedClass {
+  layer: string; // as the text names it
+  value: number;
+  label: string;
+}
+
+/**
+ * For a class's name that is compared with its layer, as in damage = 'Flaking': the numbers of the
+ * classes with that name, or else with a name that begins alike.
+ */
+export function classNumbers(
+  text: string,
+  { offset, length = 0 }: Mistake,
+  classes: readonly NamedClass[],
+): NamedClass[] {
+  const characters = [...text];
+  const quoted = /^'(.*)'$/s.exec(characters.slice(offset, offset + length).join(""))?.[1];
+  if (!quoted) return [];
+  const before = characters.slice(0, offset).join("");
+  const layer = /("[^"]+"|[a-z_][\w-]*)\s*(?:=|==|<>|!=|(?:not\s+)?in\s*\([^()]*)\s*$/i.exec(
+    before,
+  )?.[1];
+  if (!layer) return [];
+  const fold = (label: string): string => label.trim().toLocaleLowerCase();
+  const wanted = fold(quoted.replaceAll("''", "'"));
+  const own = classes.filter((each) => each.layer === layer.toLowerCase());
+  const same = own.filter(({ label }) => fold(label) === wanted);
+  if (same.length > 0) return same;
+  const start = wanted.slice(0, 3);
+  return own.filter(({ label }) => start.length === 3 && fold(label).startsWith(start)).slice(0, 3);
 }

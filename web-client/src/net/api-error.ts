@@ -31,6 +31,9 @@ export function problemOfText(status: number, text: string): ProblemBody {
         ...(body.detail ? { detail: String(body.detail) } : {}),
         ...(body.field ? { field: String(body.field) } : {}),
         ...(typeof body.offset === "number" ? { offset: body.offset } : {}),
+        ...(typeof body.length === "number" ? { length: body.length } : {}),
+        ...(Array.isArray(body.suggestions) ? { suggestions: body.suggestions.map(String) } : {}),
+        ...(typeof body.reason === "string" ? { reason: body.reason } : {}),
         ...(body.rows ? { rows: body.rows } : {}),
       };
     }

@@ -2235,6 +2235,11 @@ export interface components {
         ColumnList: wire.ColumnList;
         /** Changes to a column */
         ColumnPatch: wire.ColumnPatch;
+        /**
+         * How an outline changes the selection of the outlines before it
+         * @enum {string}
+         */
+        Combination: wire.Combination;
         /** Comment on a model */
         Comment: wire.Comment;
         /** First comment of a thread */
@@ -2428,6 +2433,8 @@ export interface components {
         OpenEdges: wire.OpenEdges;
         /** Outline of an area */
         Outline: wire.Outline;
+        /** Further outline of a selection */
+        OutlineStep: wire.OutlineStep;
         /** Palette */
         Palette: wire.Palette;
         /** Control point of a palette */
@@ -2467,6 +2474,11 @@ export interface components {
         PositionsResponse: wire.PositionsResponse;
         /** Problem (RFC 9457) */
         Problem: wire.Problem;
+        /**
+         * Kind of mistake in a condition or formula
+         * @enum {string}
+         */
+        ProblemReason: wire.ProblemReason;
         /**
          * Kind of problem
          * @enum {string}
@@ -2581,6 +2593,8 @@ export interface components {
         SelectedLayers: wire.SelectedLayers;
         /** Paint the selection */
         SelectInto: wire.SelectInto;
+        /** Picture of the selection */
+        SelectionPicture: wire.SelectionPicture;
         /** Selection of surface */
         SelectRequest: wire.SelectRequest;
         /** Texels and area of a selection */

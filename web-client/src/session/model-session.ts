@@ -17,6 +17,7 @@ import type { FacePick } from "../features/figures/face-pick";
 import type { Figures } from "../features/figures/figures";
 import type { ModelScale } from "./editable-model";
 import type { LayerJobs } from "./layer-jobs";
+import type { LitArea } from "./lit-area";
 import type { LayerList } from "../features/layers/layer-list";
 import type { MarkDrawing } from "../features/records/mark-drawing";
 import type { Measuring } from "../features/measuring/measuring";
@@ -43,6 +44,7 @@ export type SessionPart =
   | keyof Pick<
       ModelSession,
       | "view"
+      | "lit"
       | "layers"
       | "jobs"
       | "appearance"
@@ -75,6 +77,7 @@ export interface ModelSession {
   readonly connectionState: ConnectionState;
   readonly saving: SavingState;
   readonly view: ViewControl;
+  readonly lit: LitArea;
   readonly layers: LayerList;
   readonly jobs: LayerJobs;
   readonly appearance: Appearance;

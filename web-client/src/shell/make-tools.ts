@@ -18,7 +18,7 @@ import { ToolManager } from "../tools/tool-manager";
 
 export interface ToolChanges {
   /** Another tool was activated. */
-  chosen(): void;
+  chosen(name: ToolName): void;
   /** The outline of the active tool changed. */
   outline(): void;
 }
@@ -55,14 +55,17 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
     giveUp: () => session.face.giveUp(),
   };
   const outlineHost = {
-    beginOutline: () => session.painting.beginOutline(),
-    finishOutline: (path: Point[]) => session.painting.finishOutline(path),
+    beginOutline: (at: PointerSample) => session.painting.beginOutline(at),
+    finishOutline: (path: Point[], corners: boolean) =>
+      session.painting.finishOutline(path, corners),
     outlineEnded: () => session.painting.strokeEnded(),
     scale: () => session.view.scale,
     outlineChanged: () => changes.outline(),
+    selection: session.painting.area,
   };
   const lineHost = {
-    ...outlineHost,
+    scale: outlineHost.scale,
+    outlineEnded: outlineHost.outlineEnded,
     beginOutline: () => session.marks.beginLine(),
     finishOutline: (path: Point[]) => session.marks.finishLine(path),
     outlineChanged: () => {
@@ -88,5 +91,5 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
       y: session.view.camera.height / 2,
     })),
   };
-  return new ToolManager(Object.values(tools), "orbit", () => changes.chosen());
+  return new ToolManager(Object.values(tools), "orbit", (name) => changes.chosen(name));
 }

@@ -1,5 +1,5 @@
 // One open model on this page: its life cycle, and the messages between its parts. `view` is the
-// camera, `layers` the layers, `tables` the records behind the layers' keys, `comments` the
+// camera, `lit` the lit part of the surface, `layers` the layers, `tables` the records behind the layers' keys, `comments` the
 // comments on the surface, `hovered` the record under the resting mouse, `appearance` the surface
 // images, light and section, `pointer` the values under the pointer, `painting` the brush and the
 // edits, `together` the participants and the followed view, `cursors` their pointers, `views` the
@@ -26,7 +26,7 @@ import {
 } from "../core/types";
 import { OfflineQueue } from "../net/offline-queue";
 import { Activities } from "../features/activity/activity";
-import { kChangingTools, kMarkingTools, type ToolName } from "../tools/tool";
+import { kChangingTools, kMarkingTools, kSelectingTools, type ToolName } from "../tools/tool";
 import type { ToolManager } from "../tools/tool-manager";
 import { EditableModel, type ModelScale } from "../session/editable-model";
 import { Appearance } from "../features/appearance/appearance";
@@ -34,6 +34,7 @@ import { Comments } from "../features/comments/comments";
 import { FacePick } from "../features/figures/face-pick";
 import { Figures } from "../features/figures/figures";
 import { LayerJobs } from "../session/layer-jobs";
+import { LitArea } from "../session/lit-area";
 import { LockWatch } from "../session/lock-watch";
 import { LayerList } from "../features/layers/layer-list";
 import { MarkDrawing } from "../features/records/mark-drawing";
@@ -69,6 +70,7 @@ export class OpenModelSession implements ModelSession {
   saving: SavingState = { waiting: 0, failing: false };
 
   readonly view: ViewControl;
+  readonly lit: LitArea;
   readonly layers: LayerList;
   readonly jobs: LayerJobs;
   readonly appearance: Appearance;
@@ -124,6 +126,7 @@ export class OpenModelSession implements ModelSession {
         this.hovered.waitAgain();
         this.comments.sight.cameraMoved();
         this.measuring.cameraMoved();
+        this.lit.cameraMoved();
         this._connection.setCamera(this.view.camera.message(), moving);
       },
       whenFree: (action) => this.painting.whenFree(action),
@@ -134,9 +137,14 @@ export class OpenModelSession implements ModelSession {
         this.together.cameToRest();
         this.comments.lookAgain();
         this.measuring.cameToRest();
+        this.lit.cameToRest();
       },
       wentOwnWay: () => this.together.stopFollowing(),
       changed: changes("view"),
+    });
+    this.lit = new LitArea(api, modelId, {
+      camera: () => this.view.camera,
+      changed: changes("lit"),
     });
     this._model = new EditableModel(api, modelId, {
       view: this.view,
@@ -171,6 +179,7 @@ export class OpenModelSession implements ModelSession {
       view: this.view,
       layers: this.layers,
       pointer: this.pointer,
+      lit: this.lit,
       model: () => this.model,
       records: {
         label: (table, key) => this.tables.label(table, key),
@@ -281,7 +290,10 @@ export class OpenModelSession implements ModelSession {
       end: () => this.tools.giveBack(),
     });
     this.tools = makeTools(this, {
-      chosen: () => this.targetChanged("tools"),
+      chosen: (name) => {
+        if (!kSelectingTools.includes(name)) this.painting.area.clear();
+        this.targetChanged("tools");
+      },
       outline: () => this.changed("tools"),
     });
   }
@@ -356,6 +368,7 @@ export class OpenModelSession implements ModelSession {
     this.layers.flush();
     this.tools.stop();
     this.view.stop();
+    this.lit.stop();
     this.pointer.stop();
     this.together.stop();
     this.cursors.stop();

@@ -13,7 +13,8 @@ import type { OpenModelSession } from "./open-model-session";
 import { measureOverlay } from "../features/measuring/measure-overlay";
 import { notices } from "../ui/notices";
 import { onTheme, stageBackground } from "../ui/preferences";
-import { outlineOverlay } from "../features/painting/outline-overlay";
+import { outlineOverlay, selectionOverlay } from "../features/painting/outline-overlay";
+import "../features/painting/selection-bar";
 import "../features/presence/people-overlay";
 import { styled } from "../ui/styled";
 import { sharedStyles } from "../ui/styles";
@@ -88,6 +89,17 @@ export class StrataStage extends LitElement {
       }
       svg.over {
         overflow: visible;
+      }
+      .lit {
+        position: absolute;
+        inset: 0;
+        pointer-events: none;
+        mask: center / 100% 100% no-repeat;
+        background: repeating-linear-gradient(
+          45deg,
+          color-mix(in srgb, var(--lit) 72%, transparent) 0 4px,
+          color-mix(in srgb, var(--lit) 38%, transparent) 4px 9px
+        );
       }
       .shape-cursor {
         position: absolute;
@@ -232,10 +244,13 @@ export class StrataStage extends LitElement {
         aria-label=${texts.model.stage}
       >
         <canvas width="2" height="2"></canvas>
+        ${this.litArea()}
         ${paints ? this.brushCursor() : nothing}
+        ${selectionOverlay(session)}
         ${session.tools.outline ? outlineOverlay(session, session.tools.outline) : nothing}
         ${tool === "measure" ? measureOverlay(session) : nothing}
       </div>
+      <strata-selection-bar .session=${session}></strata-selection-bar>
       <strata-people-overlay .session=${session}></strata-people-overlay>
       ${this.scaleBar()}
       ${
@@ -243,6 +258,14 @@ export class StrataStage extends LitElement {
           ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
           : nothing
       }`;
+  }
+
+  /** Hatching over the lit part of the surface. */
+  private litArea(): TemplateResult | typeof nothing {
+    const { picture } = this.session.lit;
+    return picture
+      ? html`<div class="lit" aria-hidden="true" ${styled({ "mask-image": `url(${picture})` })}></div>`
+      : nothing;
   }
 
   /** The footprint in the picture: exactly the pixels that the stroke covers. */

@@ -649,9 +649,35 @@ export const texts = {
   expressions: {
     computed: (layer) => `„${layer}“ ist berechnet.`,
     names: "Verwendbare Namen",
-    holds: (area) => `Wahr auf ${area}.`,
-    known: (area) => `Hat einen Wert auf ${area}.`,
+    holds: (area, share) => `Wahr auf ${area}, ${share} der Oberfläche.`,
+    known: (area, share) => `Hat einen Wert auf ${area}, ${share} der Oberfläche.`,
     column: (column, layer) => `${column} des Datensatzes in ${layer}`,
+    corrections: "Korrekturen",
+    use: (by) => `Durch ${by} ersetzen`,
+    insert: "Namen einfügen",
+    search: "Ebenen, Spalten und Funktionen suchen",
+    no_name: "Kein Name enthält diesen Text.",
+    range: (low, high, unit) => `${low} bis ${high}${unit ? ` ${unit}` : ""}`,
+    kinds: { presence: "Ja/Nein-Fläche", classes: "Klassen", records: "Datensätze" },
+    groups: {
+      layers: "Ebenen",
+      classes: (layer) => `Klassen von ${layer}`,
+      columns: (layer) => `Spalten der Datensätze in ${layer}`,
+      surface: "Oberfläche",
+      functions: "Funktionen und Operatoren",
+    },
+    examples: {
+      title: "Beispiele mit den Ebenen dieses Modells",
+      take: "Dieses Beispiel verwenden",
+      above: (layer, amount) => `wo ${layer} über ${amount} liegt`,
+      above_outside: (_layer, _amount, area) => `dasselbe, außerhalb von ${area}`,
+      painted: (layer) => `wo ${layer} kartiert ist`,
+      class: (name, value) => `wo ${name} ${value} ist`,
+      filled: (column, _layer) => `wo ${column} einen Wert hat`,
+      difference: (a, b) => `${a} minus ${b}`,
+      twice: (layer) => `${layer} mal zwei`,
+      upper: "die obere Hälfte des Modells",
+    },
     surface: {
       x: "Weltkoordinate",
       y: "Weltkoordinate",
@@ -689,8 +715,8 @@ export const texts = {
   areas: {
     how: {
       polygon:
-        "Klicken Sie die Ecken an. Ein Klick auf die erste Ecke oder Enter schließt das Polygon. Die Rücktaste entfernt die letzte Ecke, Esc bricht ab.",
-      lasso: "Umfahren Sie die Fläche, die bemalt werden soll.",
+        "Klicken Sie die Eckpunkte an. Zum Schließen klicken Sie auf den ersten oder drücken Eingabe. Rücktaste entfernt den letzten Eckpunkt, Esc bricht ab. Danach ziehen Sie Eckpunkte an eine andere Stelle, oder die kleinen Punkte dazwischen, um Eckpunkte einzufügen.",
+      lasso: "Umfahren Sie den Bereich, der ausgewählt werden soll.",
       bucket: "Klicken Sie eine Stelle an, um die zusammenhängende Fläche dort zu füllen.",
     },
     does: "Aktion",
@@ -709,18 +735,36 @@ export const texts = {
     where_lead:
       "Ändert die Oberfläche überall dort, wo diese Bedingung wahr ist. Sie können dies rückgängig machen.",
     condition: "Bedingung",
-    condition_example: "Feuchte > 0.3 and not valid(Risse)",
-    grammar: [
-      ["Feuchte > 0.3", "der Wert der Ebene, mit Dezimalpunkt; auch < <= >= = <>"],
-      ["valid(Risse)", "wo die Ebene kartiert ist"],
-      ["and · or · not", "verknüpfen Bedingungen; mit ( ) gruppieren"],
-      ["+ − * /", "rechnen, mit Leerzeichen: nass - trocken"],
-      ["between 1 and 3 · in (1, 4)", "auch not between, not in"],
-      ["is null · is not null", "ob ein Wert vorhanden ist"],
-      ["min, max, abs, sqrt, round, if(…)", "wie in abs(a - b) < 2"],
-    ],
     apply: "Füllen",
     apply_erase: "Radieren",
+  },
+
+  selection: {
+    title: "Auswahl",
+    keys: "Eingabe füllt die Auswahl, Esc verwirft sie. Umschalt fügt einen Umriss hinzu, Alt zieht einen ab, beide bilden die Schnittmenge.",
+    measuring: "Wird gemessen …",
+    nothing: "Nichts ausgewählt",
+    share: (share) => `${share} der Oberfläche`,
+    elsewhere: (n) =>
+      count(n, "Umriss ist aus einer anderen Ansicht", "Umrisse sind aus einer anderen Ansicht"),
+    mode: "Nächster Umriss",
+    modes: { replace: "Neu", add: "Hinzufügen", subtract: "Abziehen", intersect: "Schnittmenge" },
+    mode_hints: {
+      replace: "Ersetzt die Auswahl",
+      add: "Fügt zur Auswahl hinzu (Umschalt)",
+      subtract: "Zieht von der Auswahl ab (Alt)",
+      intersect: "Behält, was beide gemeinsam haben (Umschalt + Alt)",
+    },
+    delete_corner: "Eckpunkt löschen",
+    fill: "Füllen",
+    erase: "Löschen",
+    discard: "Auswahl verwerfen",
+    full: (n) => `Eine Auswahl kann ${n} Umrisse haben. Füllen oder verwerfen Sie sie.`,
+    in_layer: (layer) => `In ${layer}`,
+    painted: "kartiert",
+    mean: "Mittelwert",
+    lowest: "kleinster Wert",
+    highest: "größter Wert",
   },
 
   maps: {
@@ -923,7 +967,6 @@ export const texts = {
     formula_lead:
       "Berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche: Risiko = Feuchte × Salz.",
     formula_hint: "Risiko",
-    formula_example: "if(valid(Risse), 2, 1) * Feuchte",
     expression: "Ausdruck: eine Zahl oder eine Bedingung (kartiert, wo sie wahr ist)",
     expression_missing: "Geben Sie einen Ausdruck ein.",
     follows: "Automatisch aktualisieren, wenn sich die Eingangsdaten ändern",

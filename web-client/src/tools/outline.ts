@@ -1,6 +1,6 @@
-// Polygon and lasso: an outline in the picture whose inside is painted. During drawing the camera
-// stays fixed, because the points are pixels of the camera at the start. Lines are drawn in the
-// same way.
+// Polygon and lasso: an outline in the picture whose inside is selected, to be painted or measured.
+// During drawing the camera stays fixed, because the points are pixels of the camera at the start.
+// Lines are drawn in the same way.
 
 import type { Point } from "../net/stroke";
 import type { PointerSample } from "../ui/input";
@@ -8,14 +8,29 @@ import type { Outline, Tool } from "./tool";
 
 export interface OutlineHost {
   /** Returns false if nothing can be painted; the host has then shown the reason. */
-  beginOutline(): boolean;
-  /** An area has at least three points, a line two. */
-  finishOutline(path: Point[]): void;
+  beginOutline(at: PointerSample): boolean;
+  /**
+   * An area has at least three points, a line two. `corners`: they were set one by one, so they can
+   * be changed.
+   */
+  finishOutline(path: Point[], corners: boolean): void;
   /** Called after `beginOutline` returned true, when the outline was finished or canceled. */
   outlineEnded(): void;
   /** Window pixels per CSS pixel. */
   scale(): number;
   outlineChanged(): void;
+  /** The selection of finished outlines, if they are not used at once. */
+  readonly selection?: FinishedOutlines;
+}
+
+/** Finished outlines whose corners can be moved. */
+export interface FinishedOutlines {
+  /** Returns true if there is a corner to move at the press. */
+  grab(at: PointerSample): boolean;
+  drag(to: PointerSample): void;
+  /** Ends the drag; `keep` false: the corner returns to its place. */
+  release(keep: boolean): void;
+  key(key: string): boolean;
 }
 
 export const kMostPoints = 4096;
@@ -24,6 +39,7 @@ const kSpacingPx = 2; // CSS pixels
 
 export abstract class OutlineTool {
   protected points: Point[] = [];
+  protected grabbed = false; // a corner of a finished outline
   private _spacing = kSpacingPx;
 
   constructor(
@@ -43,8 +59,26 @@ export abstract class OutlineTool {
     this.giveUp();
   }
 
+  /** Takes a corner of a finished outline instead of beginning another outline. */
+  protected grab(at: PointerSample): boolean {
+    this.grabbed = this.points.length === 0 && (this.host.selection?.grab(at) ?? false);
+    return this.grabbed;
+  }
+  /** Returns whether the press holds a corner. */
+  protected dragGrabbed(samples: PointerSample[]): boolean {
+    const last = samples[samples.length - 1];
+    if (this.grabbed && last) this.host.selection?.drag(last);
+    return this.grabbed;
+  }
+  protected release(keep: boolean): boolean {
+    const held = this.grabbed;
+    this.grabbed = false;
+    if (held) this.host.selection?.release(keep);
+    return held;
+  }
+
   protected begin(at: PointerSample): boolean {
-    if (!this.host.beginOutline()) return false;
+    if (!this.host.beginOutline(at)) return false;
     this._spacing = kSpacingPx;
     this.points = [[at.x, at.y]];
     this.host.outlineChanged();
@@ -67,7 +101,11 @@ export abstract class OutlineTool {
   protected finish(): void {
     const path = this.points;
     this.giveUp();
-    if (path.length >= this._least) this.host.finishOutline(path);
+    if (path.length >= this._least) this.host.finishOutline(path, this.setsCorners);
+  }
+
+  protected get setsCorners(): boolean {
+    return false;
   }
 
   protected isAt(sample: PointerSample, [x, y]: Point): boolean {
@@ -87,21 +125,22 @@ export class LassoTool extends OutlineTool implements Tool {
   readonly name = "lasso";
 
   down(sample: PointerSample): void {
-    this.begin(sample);
+    if (!this.grab(sample)) this.begin(sample);
   }
 
   move(samples: PointerSample[]): void {
-    if (this.points.length > 0) this.follow(samples);
+    if (!this.dragGrabbed(samples) && this.points.length > 0) this.follow(samples);
   }
 
   up(): void {
-    this.finish();
+    if (!this.release(true)) this.finish();
   }
   cancel(): void {
-    this.giveUp();
+    if (!this.release(false)) this.giveUp();
   }
   key(key: string): boolean {
-    if (key !== "Escape" || this.points.length === 0) return false;
+    if (this.points.length === 0) return this.host.selection?.key(key) ?? false;
+    if (key !== "Escape") return false;
     this.giveUp();
     return true;
   }
@@ -117,7 +156,7 @@ export abstract class PlacesTool extends OutlineTool {
   }
 
   key(key: string): boolean {
-    if (this.points.length === 0) return false;
+    if (this.points.length === 0) return this.host.selection?.key(key) ?? false;
     if (key === "Escape") this.giveUp();
     else if (key === "Backspace" || key === "Delete") this.takeBack(this.points.length - 1);
     else if (key === "Enter") this.enter();
@@ -158,8 +197,13 @@ export class PolygonTool extends PlacesTool implements Tool {
     };
   }
 
+  protected override get setsCorners(): boolean {
+    return true;
+  }
+
   down(sample: PointerSample): void {
     this._added = false;
+    if (this.grab(sample)) return;
     this.pointer = [sample.x, sample.y];
     if (this.points.length === 0) {
       this._added = this.begin(sample);
@@ -178,13 +222,17 @@ export class PolygonTool extends PlacesTool implements Tool {
   }
 
   move(samples: PointerSample[]): void {
+    if (this.dragGrabbed(samples)) return;
     const last = samples[samples.length - 1];
     if (last) this.hover(last);
   }
-  up(): void {}
+  up(): void {
+    this.release(true);
+  }
 
   /** A second finger touched: the press of the first one is undone. */
   cancel(): void {
+    this.release(false);
     if (this._added) this.takeBack(this.points.length - 1);
     this._added = false;
   }

@@ -35,6 +35,15 @@ export const kToolKeys: Readonly<Record<Exclude<ToolName, "face">, string>> = {
 };
 /** Tools that add to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
+/** Tools during which a selected area stays: those that select, and those that look. */
+export const kSelectingTools: readonly ToolName[] = [
+  "polygon",
+  "lasso",
+  "orbit",
+  "pan",
+  "pick",
+  "measure",
+];
 /** Tools that change the content of a layer. */
 export const kPaintingTools: readonly ToolName[] = [
   "brush",

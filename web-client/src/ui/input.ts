@@ -11,6 +11,9 @@ export interface PointerSample {
   y: number;
   /** For a pen: 0…1. */
   pressure?: number;
+  /** Keys that are held while the button is pressed. */
+  shift?: boolean;
+  alt?: boolean;
 }
 
 export interface GestureHandler {
@@ -138,10 +141,14 @@ export class StageInput {
     return { x: css.x * scale, y: css.y * scale };
   }
 
-  /** Position and, for a pen, pressure. */
+  /** Position, held keys and, for a pen, pressure. */
   private pressed(event: PointerEvent): PointerSample {
-    const at = this.toWindow(this.cssPosition(event));
-    return event.pointerType === "pen" ? { ...at, pressure: event.pressure } : at;
+    return {
+      ...this.toWindow(this.cssPosition(event)),
+      ...(event.pointerType === "pen" ? { pressure: event.pressure } : {}),
+      ...(event.shiftKey ? { shift: true } : {}),
+      ...(event.altKey ? { alt: true } : {}),
+    };
   }
 
   private onDown(event: PointerEvent): void {

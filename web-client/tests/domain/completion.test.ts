@@ -1,5 +1,11 @@
 import { describe, expect, it } from "vitest";
-import { complete, markedAt, nameInText } from "../../src/domain/completion";
+import {
+  classNumbers,
+  complete,
+  corrected,
+  markedAt,
+  nameInText,
+} from "../../src/domain/completion";
 
 const all = [
   "moisture",
@@ -45,5 +51,33 @@ describe("completion of an expression", () => {
   it("marks the character that is wrong by code point", () => {
     expect(markedAt("ä𝄞b", 1)).toEqual(["ä", "𝄞", "b"]);
     expect(markedAt("ab", 2)).toEqual(["ab", " ", ""]);
+  });
+  it("marks all wrong characters if their number is known", () => {
+    expect(markedAt("ä wte > 1", 2, 3)).toEqual(["ä ", "wte", " > 1"]);
+    expect(markedAt("wte", 0, 0)).toEqual(["", "w", "te"]);
+  });
+  it("replaces the wrong characters by a suggestion", () => {
+    expect(corrected("𝄞 wte > 1", { offset: 2, length: 3 }, "wet")).toBe("𝄞 wet > 1");
+    expect(corrected("wet > 3 mm", { offset: 6, length: 4 }, "3")).toBe("wet > 3");
+    expect(corrected("wet", { offset: 3 }, " > 1")).toBe("wet > 1");
+  });
+  it("finds the number of a class that is named after its layer", () => {
+    const classes = [
+      { layer: "damage", value: 1, label: "Cracks" },
+      { layer: "damage", value: 2, label: "Flaking" },
+      { layer: '"3d"', value: 7, label: "Flaking" },
+    ];
+    const numbers = (text: string): number[] => {
+      const offset = [...text.slice(0, text.indexOf("'"))].length;
+      const length = [...text.slice(text.indexOf("'"))].length;
+      return classNumbers(text, { offset, length }, classes).map(({ value }) => value);
+    };
+    expect(numbers("damage = 'flaking'")).toEqual([2]);
+    expect(numbers("ä = 1 and damage <> 'Flakes'")).toEqual([2]);
+    expect(numbers("damage in (1, 'Cracks'")).toEqual([1]);
+    expect(numbers("\"3d\" = 'Flaking'")).toEqual([7]);
+    expect(numbers("damage = 'Salt'")).toEqual([]);
+    expect(numbers("wet = 'Cracks'")).toEqual([]);
+    expect(numbers("'Cracks' = damage")).toEqual([]);
   });
 });

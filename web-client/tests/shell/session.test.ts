@@ -286,7 +286,11 @@ describe("edits of whole areas", () => {
       session.gestures.toolUp();
       session.gestures.zoom(0.5, 9, 9);
     }
-    session.tools.key("Enter");
+    session.tools.key("Enter"); // closes it
+    expect(edits()).toEqual([]);
+    session.gestures.zoom(0.5, 9, 9);
+    expect(session.view.camera.message()).not.toEqual(camera);
+    session.tools.key("Enter"); // fills the selection
     expect(edits()).toEqual([
       {
         op: "polygon",
@@ -300,8 +304,49 @@ describe("edits of whole areas", () => {
         through: false,
       },
     ]);
-    session.gestures.zoom(0.5, 9, 9);
-    expect(session.view.camera.message()).not.toEqual(camera);
+    expect(session.painting.area.isEmpty).toBe(true);
+  });
+
+  it("outlines of several views are sent as one edit, each with its camera", async () => {
+    await open();
+    session.chooseTool("polygon");
+    const outline = (x: number, keys: { shift?: boolean; alt?: boolean } = {}): void => {
+      for (const [dx, dy] of [
+        [0, 0],
+        [100, 0],
+        [100, 100],
+      ] as const) {
+        session.gestures.toolDown({ x: x + dx, y: 5 + dy, ...keys });
+        session.gestures.toolUp();
+      }
+      session.tools.key("Enter");
+    };
+    outline(5);
+    session.gestures.orbit(40, 0);
+    const second = session.view.camera.message();
+    outline(50, { alt: true });
+    session.painting.paintSelection(true);
+    expect(edits()).toMatchObject([
+      { op: "polygon", erase: true, steps: [{ combine: "subtract", camera: second }] },
+    ]);
+  });
+
+  it("a selection ends with another tool that paints, not with one that looks", async () => {
+    await open();
+    session.chooseTool("lasso");
+    session.gestures.toolDown({ x: 5, y: 5 });
+    session.gestures.toolMove([
+      { x: 100, y: 5 },
+      { x: 100, y: 100 },
+    ]);
+    session.gestures.toolUp();
+    expect(session.painting.area.outlines).toHaveLength(1);
+    session.chooseTool("orbit");
+    session.chooseTool("polygon");
+    expect(session.painting.area.isEmpty).toBe(false);
+    session.chooseTool("brush");
+    expect(session.painting.area.isEmpty).toBe(true);
+    expect(edits()).toEqual([]);
   });
 
   it("the bucket fills what its panel says, or erases it", async () => {

@@ -81,6 +81,24 @@ void read(const nlohmann::json& json, EditFillMode& value) {
 
 nlohmann::json to_json(const EditFillMode& value) { return name(value); }
 
+std::string_view name(Combination value) {
+  switch (value) {
+    case Combination::add: return "add";
+    case Combination::subtract: return "subtract";
+    case Combination::intersect: return "intersect";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, Combination& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "add") value = Combination::add;
+  if (text == "subtract") value = Combination::subtract;
+  if (text == "intersect") value = Combination::intersect;
+}
+
+nlohmann::json to_json(const Combination& value) { return name(value); }
+
 std::string_view name(PalettePointPattern value) {
   switch (value) {
     case PalettePointPattern::solid: return "solid";
@@ -886,12 +904,34 @@ Result<void> check(const EditFill& value, const std::string& field) {
   return {};
 }
 
+void read(const nlohmann::json& json, OutlineStep& value) {
+  read_member(json, "combine", value.combine);
+  read_member(json, "camera", value.camera);
+  read_member(json, "path", value.path);
+  read_optional_member(json, "through", value.through);
+}
+
+nlohmann::json to_json(const OutlineStep& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "combine", value.combine);
+  write_member(json, "camera", value.camera);
+  write_member(json, "path", value.path);
+  write_member(json, "through", value.through);
+  return json;
+}
+
+Result<void> check(const OutlineStep& value, const std::string& field) {
+  if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
+  return {};
+}
+
 void read(const nlohmann::json& json, EditPolygon& value) {
   read_optional_member(json, "value", value.value);
   read_optional_member(json, "erase", value.erase);
   read_member(json, "camera", value.camera);
   read_member(json, "path", value.path);
   read_optional_member(json, "through", value.through);
+  read_optional_member(json, "steps", value.steps);
 }
 
 nlohmann::json to_json(const EditPolygon& value) {
@@ -902,6 +942,7 @@ nlohmann::json to_json(const EditPolygon& value) {
   write_member(json, "camera", value.camera);
   write_member(json, "path", value.path);
   write_member(json, "through", value.through);
+  write_optional_member(json, "steps", value.steps);
   return json;
 }
 
@@ -1818,6 +1859,9 @@ void read(const nlohmann::json& json, ProblemMessage& value) {
   read_member(json, "detail", value.detail);
   read_optional_member(json, "field", value.field);
   read_optional_member(json, "offset", value.offset);
+  read_optional_member(json, "length", value.length);
+  read_optional_member(json, "suggestions", value.suggestions);
+  read_optional_member(json, "reason", value.reason);
 }
 
 nlohmann::json to_json(const ProblemMessage& value) {
@@ -1830,6 +1874,9 @@ nlohmann::json to_json(const ProblemMessage& value) {
   write_member(json, "detail", value.detail);
   write_optional_member(json, "field", value.field);
   write_optional_member(json, "offset", value.offset);
+  write_optional_member(json, "length", value.length);
+  write_optional_member(json, "suggestions", value.suggestions);
+  write_optional_member(json, "reason", value.reason);
   return json;
 }
 
@@ -3010,6 +3057,7 @@ void read(const nlohmann::json& json, Within& value) {
   read_optional_member(json, "camera", value.camera);
   read_optional_member(json, "path", value.path);
   read_optional_member(json, "through", value.through);
+  read_optional_member(json, "steps", value.steps);
 }
 
 nlohmann::json to_json(const Within& value) {
@@ -3019,12 +3067,32 @@ nlohmann::json to_json(const Within& value) {
   write_optional_member(json, "camera", value.camera);
   write_optional_member(json, "path", value.path);
   write_optional_member(json, "through", value.through);
+  write_optional_member(json, "steps", value.steps);
   return json;
 }
 
 Result<void> check(const Within& value, const std::string& field) {
   if (auto ok = value.at ? check(*value.at, join_field(field, "at")) : Result<void>{}; !ok) return ok;
   if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, SelectionPicture& value) {
+  read_member(json, "camera", value.camera);
+  read_member(json, "width", value.width);
+  read_member(json, "height", value.height);
+}
+
+nlohmann::json to_json(const SelectionPicture& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "camera", value.camera);
+  write_member(json, "width", value.width);
+  write_member(json, "height", value.height);
+  return json;
+}
+
+Result<void> check(const SelectionPicture& value, const std::string& field) {
+  if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
   return {};
 }
 
@@ -3049,6 +3117,7 @@ void read(const nlohmann::json& json, SelectRequest& value) {
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "include", value.include);
   read_optional_member(json, "into", value.into);
+  read_optional_member(json, "picture", value.picture);
 }
 
 nlohmann::json to_json(const SelectRequest& value) {
@@ -3059,11 +3128,13 @@ nlohmann::json to_json(const SelectRequest& value) {
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "include", value.include);
   write_optional_member(json, "into", value.into);
+  write_optional_member(json, "picture", value.picture);
   return json;
 }
 
 Result<void> check(const SelectRequest& value, const std::string& field) {
   if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
+  if (auto ok = value.picture ? check(*value.picture, join_field(field, "picture")) : Result<void>{}; !ok) return ok;
   return {};
 }
 
@@ -3160,6 +3231,7 @@ void read(const nlohmann::json& json, SelectResponse& value) {
   read_member(json, "share", value.share);
   read_optional_member(json, "bounds", value.bounds);
   read_member(json, "layers", value.layers);
+  read_optional_member(json, "picture", value.picture);
   read_optional_member(json, "edit", value.edit);
 }
 
@@ -3171,6 +3243,7 @@ nlohmann::json to_json(const SelectResponse& value) {
   write_member(json, "share", value.share);
   write_optional_member(json, "bounds", value.bounds);
   write_member(json, "layers", value.layers);
+  write_optional_member(json, "picture", value.picture);
   write_optional_member(json, "edit", value.edit);
   return json;
 }

@@ -32,6 +32,7 @@ enum class Schema {
   Section,
   Path,
   ProblemType,
+  ProblemReason,
   BackgroundColor,
   Background,
   Widths,
@@ -62,6 +63,8 @@ enum class Schema {
   EditFill,
   Outline,
   EditPolygon,
+  Combination,
+  OutlineStep,
   Edit,
   PalettePoint,
   Palette,
@@ -289,6 +292,7 @@ enum class Schema {
   PickRequest,
   At,
   Within,
+  SelectionPicture,
   StatisticsPart,
   SelectInto,
   SelectRequest,
@@ -316,7 +320,7 @@ enum class Schema {
   Readiness,
   ServerVersion,
 };
-constexpr int kSchemaCount = 290;
+constexpr int kSchemaCount = 294;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -437,6 +441,26 @@ inline constexpr Schema kSchemaOf<EditFill> = Schema::EditFill;
 // Outline of an area. Pixels of the camera's window; the last point is joined to the first. If the outline crosses itself, areas that it surrounds twice are outside.
 using Outline = std::vector<glm::dvec2>;
 
+// How an outline changes the selection of the outlines before it.
+enum class Combination { add, subtract, intersect };
+std::string_view name(Combination value);
+void read(const nlohmann::json& json, Combination& value);
+nlohmann::json to_json(const Combination& value);
+
+// Further outline of a selection. In the window of its own camera.
+struct OutlineStep {
+  Combination combine{};
+  strata::Camera camera;
+  Outline path;
+  bool through = false;  // Also include hidden surfaces.
+  bool operator==(const OutlineStep&) const = default;
+};
+void read(const nlohmann::json& json, OutlineStep& value);
+nlohmann::json to_json(const OutlineStep& value);
+Result<void> check(const OutlineStep& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<OutlineStep> = Schema::OutlineStep;
+
 // Polygon or lasso. Paints the area inside an outline that a camera sees. Needs a value, unless it erases.
 struct EditPolygon {
   static constexpr std::string_view kOp = "polygon";
@@ -445,6 +469,9 @@ struct EditPolygon {
   strata::Camera camera;
   Outline path;
   bool through = false;  // Also paint hidden surfaces.
+  // Further outlines, combined with the first one in their order. All outlines together have at
+  // most 16384 points.
+  std::optional<std::vector<OutlineStep>> steps;
   bool operator==(const EditPolygon&) const = default;
 };
 void read(const nlohmann::json& json, EditPolygon& value);
@@ -1305,6 +1332,11 @@ struct ProblemMessage {
   // If the member is a condition or formula: the number of characters (Unicode code points) before
   // the mistake.
   std::optional<int> offset;
+  std::optional<int> length;  // With `offset`: the number of wrong characters, if it is known.
+  // With `offset` and `length`: texts that would correct the wrong characters, the most likely one
+  // first.
+  std::optional<std::vector<std::string>> suggestions;
+  std::optional<std::string> reason;
   bool operator==(const ProblemMessage&) const = default;
 };
 void read(const nlohmann::json& json, ProblemMessage& value);
@@ -2357,6 +2389,9 @@ struct Within {
   std::optional<strata::Camera> camera;
   std::optional<Outline> path;
   std::optional<bool> through;  // Also include hidden surfaces.
+  // Further outlines, combined with the first one in their order. All outlines together have at
+  // most 16384 points.
+  std::optional<std::vector<OutlineStep>> steps;
   bool operator==(const Within&) const = default;
 };
 void read(const nlohmann::json& json, Within& value);
@@ -2364,6 +2399,19 @@ nlohmann::json to_json(const Within& value);
 Result<void> check(const Within& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Within> = Schema::Within;
+
+// Picture of the selection. The part of the selection that the camera sees, in its window.
+struct SelectionPicture {
+  strata::Camera camera;
+  int width = 0;  // Pixels of the picture.
+  int height = 0;  // Pixels of the picture.
+  bool operator==(const SelectionPicture&) const = default;
+};
+void read(const nlohmann::json& json, SelectionPicture& value);
+nlohmann::json to_json(const SelectionPicture& value);
+Result<void> check(const SelectionPicture& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<SelectionPicture> = Schema::SelectionPicture;
 
 // Part of the statistics that takes longer.
 enum class StatisticsPart { pieces, perimeter, quantiles };
@@ -2392,6 +2440,7 @@ struct SelectRequest {
   std::optional<std::vector<LayerRef>> layers;
   std::optional<std::vector<StatisticsPart>> include;
   std::optional<SelectInto> into;
+  std::optional<SelectionPicture> picture;
   bool operator==(const SelectRequest&) const = default;
 };
 void read(const nlohmann::json& json, SelectRequest& value);
@@ -2474,6 +2523,9 @@ struct SelectResponse {
   double share = 0;  // Share of the whole surface.
   std::optional<Bounds> bounds;
   nlohmann::json layers;
+  // PNG in base64, if it was requested: white where the camera sees the selection, transparent
+  // elsewhere.
+  std::optional<std::string> picture;
   std::optional<EditResult> edit;  // Result of `into`.
   bool operator==(const SelectResponse&) const = default;
 };

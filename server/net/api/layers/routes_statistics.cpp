@@ -1,11 +1,15 @@
+#include <algorithm>
+
 #include "app/figures/class_names.h"
 #include "app/records/readable_area.h"
 #include "core/compensated_sum.h"
+#include "core/text/base64.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
 #include "expression/expression_parser.h"
+#include "media/picture.h"
 #include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -38,8 +42,13 @@ Result<room::Selection> selection_of(const RouteContext& context, const room::Ro
     selection.where = std::move(condition);
   }
   if (within && within->path) {
-    selection.within =
-        room::Outline{*within->camera, *within->path, within->through.value_or(false)};
+    auto outline =
+        outline_of(*within->camera, *within->path, within->through.value_or(false), within->steps);
+    if (!outline) {
+      outline.error().field = "within." + outline.error().field;
+      return tl::unexpected(outline.error());
+    }
+    selection.within = std::move(*outline);
   } else if (within) {
     room::Selection::Around around;
     around.at = place_of(*within->at);
@@ -106,6 +115,15 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
                       request.author());
 }
 
+// Returns a PNG that is white where the byte is 1, and transparent elsewhere.
+std::vector<std::uint8_t> selection_png(const std::vector<std::uint8_t>& seen, int width,
+                                        int height) {
+  std::vector<std::uint8_t> rgba(seen.size() * 4, 0);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] != 0) std::fill_n(rgba.begin() + static_cast<std::ptrdiff_t>(i * 4), 4, 255);
+  return encode_png(rgba, width, height);
+}
+
 void select(const RouteContext& context, const Request& request, const Respond& respond) {
   const auto select_request = body_of<protocol::SelectRequest>(request);
   if (!select_request) return respond(select_request.error());
@@ -127,6 +145,8 @@ void select(const RouteContext& context, const Request& request, const Respond& 
       case protocol::StatisticsPart::perimeter: options.perimeter = true; break;
       case protocol::StatisticsPart::quantiles: options.quantiles = true; break;
     }
+  if (const auto& picture = select_request->picture)
+    options.seen = room::SeenGrid{picture->camera, picture->width, picture->height};
   std::optional<room::EditRequest> edit;
   if (select_request->into) {
     auto made = painting(request, *select_request, **room);
@@ -137,6 +157,8 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   const auto area = (*room)->queries().select(*selection, slugs, options);
   if (!area) return respond(area.error());
   nlohmann::json body = to_json(*area);
+  if (const auto& grid = options.seen)
+    body["picture"] = to_base64(selection_png(area->seen, grid->columns, grid->rows));
   if (edit)
     return apply_edit(context, request, *room, std::move(*edit), respond,
                       [body](nlohmann::json of_edit) mutable {

@@ -1,45 +1,72 @@
-// <strata-expression-field>: an expression over layers, records and the surface, with completion of
-// names. During typing it shows the matching area, or the problem. Fires `input` and, on Enter,
-// `submitted`.
+// <strata-expression-field>: an expression over layers, records and the surface, with a list of the
+// names to insert and completion of typed ones. During typing it shows the matching area, or the
+// problem with its place and corrections; with `lights` it also lights the area in the picture.
+// Fires `input`, on Enter `submitted`, and `measured` with the area or null.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api-error";
-import { labelOf } from "../../domain/cells";
+import type { SelectResponse } from "../../core/protocol.gen";
+import { formatPercent } from "../../core/locale";
 import {
+  classNumbers,
   complete,
-  markedAt,
-  nameInText,
+  corrected,
   type Completion,
-  type Suggestion,
+  type Mistake,
 } from "../../domain/completion";
 import { formatArea } from "../../domain/measure";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
+import {
+  expressionProblem,
+  expressionProblemStyles,
+  type Correction,
+} from "../../session/fields/expression-problem";
+import { icon } from "../../ui/icons";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
+import {
+  examplesFor,
+  nameGroups,
+  namedClasses,
+  withName,
+  type Example,
+  type Name,
+  type NameGroup,
+} from "./expression-names";
+import "./name-list";
+import type { StrataNameList } from "./name-list";
 
 const words = texts.expressions;
 const kPause = 350; // ms after the last key press
-const kSurface = ["x", "y", "z", "area", "nx", "ny", "nz", "height", "slope", "curvature"] as const;
 const kNone: Completion = { from: 0, suggestions: [] };
+
+interface Problem {
+  text: string;
+  message: string;
+  mistake: Mistake | null;
+}
 
 @customElement("strata-expression-field")
 export class StrataExpressionField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property() label = "";
-  @property() placeholder = "";
   /** Whether the expression may also be a number; then it may contain normals and similar names. */
   @property({ type: Boolean }) computes = false;
   @property() initial = "";
+  /** Lights the area in the picture. */
+  @property({ type: Boolean }) lights = false;
 
   @state() private _completion = kNone;
   @state() private _chosen = 0;
   @state() private _told = "";
-  @state() private _problem: { text: string; offset: number | null; message: string } | null = null;
+  @state() private _problem: Problem | null = null;
+  @state() private _listed = false;
   @query("textarea") private _field!: HTMLTextAreaElement;
+  @query("strata-name-list") private _list!: StrataNameList | null;
   private _timer = 0;
-  private _asked = 0;
+  private _running: AbortController | null = null;
 
   constructor() {
     super();
@@ -48,6 +75,7 @@ export class StrataExpressionField extends LitElement {
 
   static override styles = [
     sharedStyles,
+    expressionProblemStyles,
     css`
       :host {
         display: grid;
@@ -93,20 +121,49 @@ export class StrataExpressionField extends LitElement {
         overflow: hidden;
         text-overflow: ellipsis;
       }
-      pre {
-        margin: 0;
-        padding: var(--space-2) var(--space-2);
-        white-space: pre-wrap;
-        word-break: break-word;
-        font: var(--text-small) var(--mono);
-        border-radius: var(--radius-small);
-        background: var(--calm-soft);
+      .tools {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: var(--space-2) var(--space-3);
       }
-      mark {
-        background: none;
-        color: inherit;
-        text-decoration: underline wavy var(--danger) 2px;
-        white-space: pre;
+      .tools button .glyph {
+        transition: rotate var(--fast);
+      }
+      .tools button[aria-expanded="true"] .glyph {
+        rotate: 90deg;
+      }
+      .examples {
+        display: grid;
+        gap: var(--space-half);
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      .examples button {
+        display: grid;
+        grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
+        gap: var(--space-1) var(--space-4);
+        width: 100%;
+        min-height: 0;
+        padding: var(--space-1) var(--space-2);
+        text-align: left;
+        white-space: normal;
+        justify-content: stretch;
+        align-items: baseline;
+        font-size: var(--text-small);
+      }
+      .examples code {
+        font: var(--text-small) var(--mono);
+        overflow-wrap: anywhere;
+      }
+      .examples span {
+        color: var(--ink-soft);
+      }
+      @media (pointer: coarse) {
+        .examples button {
+          padding: var(--space-3) var(--space-2);
+        }
       }
     `,
   ];
@@ -122,11 +179,13 @@ export class StrataExpressionField extends LitElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     window.clearTimeout(this._timer);
-    ++this._asked;
+    this._running?.abort();
+    if (this.lights) this.session.lit.clear();
   }
 
   override render(): TemplateResult {
     const { suggestions } = this._completion;
+    const examples = examplesFor(this.namesOf, this.session.model?.bounds ?? null);
     return html`<div class="editor">
         <label class="field">
           <span>${this.label}</span>
@@ -137,12 +196,12 @@ export class StrataExpressionField extends LitElement {
             spellcheck="false"
             autocapitalize="off"
             autocomplete="off"
-            placeholder=${this.placeholder}
+            placeholder=${examples[0]?.text ?? ""}
             .value=${this.initial}
             role="combobox"
             aria-expanded=${suggestions.length > 0 ? "true" : "false"}
-            aria-controls="names"
-            aria-activedescendant=${suggestions.length > 0 ? `name-${this._chosen}` : ""}
+            aria-controls="completions"
+            aria-activedescendant=${suggestions.length > 0 ? `completion-${this._chosen}` : ""}
             aria-invalid=${this._problem ? "true" : "false"}
             @input=${this.onInput}
             @keydown=${this.onKey}
@@ -152,11 +211,11 @@ export class StrataExpressionField extends LitElement {
         ${
           suggestions.length === 0
             ? nothing
-            : html`<ul id="names" role="listbox" aria-label=${words.names}>
+            : html`<ul id="completions" role="listbox" aria-label=${words.names}>
               ${suggestions.map(
                 ({ text, hint }, index) =>
                   html`<li
-                    id="name-${index}"
+                    id="completion-${index}"
                     role="option"
                     aria-selected=${index === this._chosen ? "true" : "false"}
                     @pointerdown=${(event: Event) => {
@@ -171,60 +230,133 @@ export class StrataExpressionField extends LitElement {
         }
       </div>
       ${this._problem ? this.toldProblem(this._problem) : nothing}
-      <p class="hint" role="status" ?hidden=${this._told === ""}>${this._told}</p>`;
+      <p class="hint" role="status" ?hidden=${this._told === ""}>${this._told}</p>
+      <div class="tools">
+        <button type="button" aria-expanded=${this._listed ? "true" : "false"} @click=${() => void this.toggleList()}>
+          ${icon("chevron")}${words.insert}
+        </button>
+      </div>
+      ${
+        this._listed
+          ? html`<strata-name-list
+            .groups=${this.groups()}
+            @insert=${(event: CustomEvent<Name>) => this.insert(event.detail)}
+            @closed=${() => {
+              this._listed = false;
+              this.focus();
+            }}
+          ></strata-name-list>`
+          : this.examples(examples)
+      }`;
   }
 
-  private toldProblem({
-    text,
-    offset,
-    message,
-  }: {
-    text: string;
-    offset: number | null;
-    message: string;
-  }): TemplateResult {
-    const [before, at, after] = markedAt(text, offset ?? 0);
-    return html`${offset === null ? nothing : html`<pre aria-hidden="true">${before}<mark>${at}</mark>${after}</pre>`}
-      <p class="error" role="alert">${message}</p>`;
+  private examples(examples: readonly Example[]): TemplateResult {
+    return html`<div>
+      <p class="caption" id="examples">${words.examples.title}</p>
+      <ul class="examples" aria-labelledby="examples">
+        ${examples.map(
+          ({ text, does }) =>
+            html`<li>
+              <button type="button" class="quiet" title=${words.examples.take} @click=${() => this.put(text, text.length)}>
+                <code>${text}</code><span>${does}</span>
+              </button>
+            </li>`,
+        )}
+      </ul>
+    </div>`;
+  }
+
+  private toldProblem({ text, message, mistake }: Problem): TemplateResult {
+    return expressionProblem({
+      text,
+      message,
+      mistake,
+      corrections: mistake ? this.corrections(text, mistake) : [],
+      correct: (by) => {
+        // the problem belongs to the text without spaces around it
+        const fixed = mistake ? corrected(text, mistake, by) : text;
+        this.put(fixed, fixed.length);
+      },
+    });
+  }
+
+  private corrections(text: string, mistake: Mistake): Correction[] {
+    const suggested = (mistake.suggestions ?? []).map((each) => ({ text: each }));
+    if (suggested.length > 0) return suggested;
+    return classNumbers(text, mistake, namedClasses(this.session.layers.all)).map(
+      ({ value, label }) => ({ text: String(value), hint: label }),
+    );
   }
 
   /** Shows a problem that the server reported for the whole text. */
   refuse(error: ApiError): void {
-    this._problem = {
-      text: this.value,
-      offset: error.problem.offset ?? null,
-      message: error.message,
-    };
+    this._problem = this.problemOf(error);
     this._told = "";
     this.focus();
   }
 
-  private names(): Suggestion[] {
-    const names: Suggestion[] = [];
-    for (const layer of this.session.layers.all) {
-      const slug = nameInText(layer.slug);
-      names.push({ text: slug, hint: layer.name });
-      if (layer.table === undefined) continue;
-      for (const column of this.session.tables.find(layer.table)?.columns ?? [])
-        names.push({
-          text: `${slug}.${nameInText(column.slug)}`,
-          hint: words.column(labelOf(column), layer.name),
-        });
-    }
-    const surface = this.computes ? kSurface : kSurface.slice(0, 4);
-    for (const name of surface) names.push({ text: name, hint: words.surface[name] });
-    for (const [text, hint] of words.functions) names.push({ text, hint });
-    return names;
+  private problemOf({ message, problem }: ApiError, text = this.value): Problem {
+    const { offset, length, suggestions } = problem;
+    return {
+      text,
+      message,
+      mistake: offset === undefined ? null : { offset, length, suggestions },
+    };
+  }
+
+  private get namesOf(): Parameters<typeof nameGroups>[0] {
+    const { layers, tables } = this.session;
+    return { layers: layers.all, table: (id) => tables.find(id), computes: this.computes };
+  }
+
+  private groups(): NameGroup[] {
+    return nameGroups(this.namesOf);
+  }
+
+  private async toggleList(): Promise<void> {
+    this._listed = !this._listed;
+    await this.updateComplete;
+    if (this._listed) this._list?.focus();
+    else this.focus();
+  }
+
+  private insert(name: Name): void {
+    const { value, selectionStart, selectionEnd } = this._field;
+    const { text, caret } = withName(value, [selectionStart, selectionEnd], name);
+    this.put(text, caret);
+  }
+
+  private put(text: string, caret: number): void {
+    this._field.value = text;
+    this.focus();
+    this._field.setSelectionRange(caret, caret);
+    this.textChanged();
+    this._completion = kNone;
   }
 
   private onInput(event: Event): void {
     event.stopPropagation();
-    this._completion = complete(this._field.value, this._field.selectionStart, this.names());
+    const names = this.groups().flatMap((group) =>
+      group.names.map(({ text, label, hint }) => ({
+        text,
+        hint: [label, hint].filter(Boolean).join(" · "),
+      })),
+    );
+    this._completion = complete(this._field.value, this._field.selectionStart, names);
     this._chosen = 0;
+    this.textChanged();
+  }
+
+  private textChanged(): void {
     this._problem = null;
     window.clearTimeout(this._timer);
     this._timer = window.setTimeout(() => void this.preview(), kPause);
     this.dispatchEvent(new CustomEvent("input"));
+    this.tellMeasured(null);
+  }
+
+  private tellMeasured(measured: SelectResponse | null): void {
+    this.dispatchEvent(new CustomEvent<SelectResponse | null>("measured", { detail: measured }));
   }
 
   private onKey(event: KeyboardEvent): void {
@@ -261,57 +393,49 @@ export class StrataExpressionField extends LitElement {
   /** Asks the server for the area where the text is true; for a number, where it has a value. */
   private async preview(): Promise<void> {
     const text = this.value;
-    const asked = ++this._asked;
+    this._running?.abort();
+    const running = (this._running = new AbortController());
     this._told = "";
-    if (text === "") return;
-    let tried = await this.tryOut(text, words.holds, 0);
-    if (this.computes && tried.error?.message.startsWith(kWantsCondition))
-      tried = await this.tryOut(`(${text}) is not null`, words.known, 1);
-    if (asked !== this._asked) return;
-    const { error, told, before } = tried;
-    this._told = told;
-    if (!error || error.status !== 422 || (this.computes && isForComputing(error))) return;
-    const { offset } = error.problem;
-    const message = error.message.replace(
-      /\(at character (\d+)\)/,
-      (_, n: string) => `(at character ${Number(n) - before})`,
-    );
-    this._problem = {
-      text,
-      offset: offset === undefined ? null : Math.max(0, offset - before),
-      message,
-    };
-  }
-
-  /** `before`: number of characters before the person's own text. */
-  private async tryOut(
-    where: string,
-    inWords: (area: string) => string,
-    before: number,
-  ): Promise<{ error?: ApiError; told: string; before: number }> {
-    const { api, modelId } = this.session;
+    if (text === "") {
+      if (this.lights) this.session.lit.clear();
+      return;
+    }
     try {
-      return {
-        told: inWords(
-          formatArea(
-            (
-              await api.json("POST /models/{model}/select", {
-                path: { model: modelId },
-                body: { where },
-              })
-            ).area_m2,
-          ),
-        ),
-        before,
-      };
+      const { area, told } = await this.measure(text, running.signal);
+      if (running.signal.aborted) return;
+      this._told = told(formatArea(area.area_m2), formatPercent(area.share));
+      this.tellMeasured(area);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      return { error, told: "", before };
+      if (running.signal.aborted || error.status === 499) return;
+      // names that only computed layers can use cannot be tried out before the layer exists
+      const unknown = this.computes && error.problem.reason === "computed_layers_only";
+      if (!unknown) this._problem = this.problemOf(error, text);
     }
   }
-}
 
-const kWantsCondition = "Expected a condition, not a number";
-/** Names that only computed layers can use cannot be tried out before the layer exists. */
-const isForComputing = (error: ApiError): boolean =>
-  kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));
+  private async measure(
+    text: string,
+    signal: AbortSignal,
+  ): Promise<{ area: SelectResponse; told: (area: string, share: string) => string }> {
+    try {
+      return { area: await this.select(text, signal), told: words.holds };
+    } catch (error) {
+      const isNumber =
+        error instanceof ApiError && error.problem.reason === "expects_condition" && this.computes;
+      if (!isNumber) throw error;
+      // at the end, so that places of mistakes in the text stay
+      return { area: await this.select(`${text}\nis not null`, signal), told: words.known };
+    }
+  }
+
+  private select(where: string, signal: AbortSignal): Promise<SelectResponse> {
+    const { api, modelId, lit } = this.session;
+    if (this.lights) return lit.show({ where });
+    return api.json("POST /models/{model}/select", {
+      path: { model: modelId },
+      body: { where },
+      signal,
+    });
+  }
+}

@@ -245,7 +245,6 @@ export class StrataLayerDialog extends LitElement {
         computes
         .session=${this.session}
         label=${words.expression}
-        placeholder=${words.formula_example}
         .initial=${layer?.expression ?? ""}
         @submitted=${() => this._form.requestSubmit()}
       ></strata-expression-field>

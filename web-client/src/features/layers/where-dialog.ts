@@ -1,10 +1,12 @@
-// <strata-where-dialog>: fills or erases a layer where a condition over the layers is true.
+// <strata-where-dialog>: fills or erases a layer where a condition over the layers is true. It is
+// placed next to the picture, where that area is lit before anything changes.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api-error";
 import { formatArea } from "../../domain/measure";
+import type { SelectResponse } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import "../../ui/dialog";
 import "./expression-field";
@@ -23,6 +25,7 @@ export class StrataWhereDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @state() private _erases = false;
   @state() private _working = false;
+  @state() private _measured: SelectResponse | null = null;
   @query("strata-expression-field") private _condition!: StrataExpressionField;
 
   constructor() {
@@ -30,41 +33,21 @@ export class StrataWhereDialog extends LitElement {
     followSession(this, "painting", "layers", "tables");
   }
 
-  static override styles = [
-    sharedStyles,
-    formStyles,
-    css`
-      dl {
-        display: grid;
-        grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
-        gap: var(--space-1) var(--space-4);
-        margin: 0;
-        font-size: var(--text-small);
-      }
-      dt {
-        overflow-wrap: anywhere;
-        font-family: var(--mono);
-      }
-      dd {
-        margin: 0;
-        color: var(--ink-soft);
-      }
-    `,
-  ];
+  static override styles = [sharedStyles, formStyles];
 
   override render(): TemplateResult {
     const words = texts.areas;
     const { session, layer } = this;
-    return html`<strata-dialog heading=${words.where_title(labelOf(layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog docked heading=${words.where_title(labelOf(layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="where" @submit=${(event: Event) => this.onSubmit(event)}>
         <p class="hint">${words.where_lead}</p>
         <strata-expression-field
           .session=${session}
           label=${words.condition}
-          placeholder=${words.condition_example}
+          lights
+          @measured=${(event: CustomEvent<SelectResponse | null>) => (this._measured = event.detail)}
           @submitted=${() => void this.apply()}
         ></strata-expression-field>
-        <dl>${words.grammar.map(([text, does]) => html`<dt>${text}</dt><dd>${does}</dd>`)}</dl>
         ${radioGroup<boolean>({
           label: words.does,
           class: "segments",
@@ -87,6 +70,7 @@ export class StrataWhereDialog extends LitElement {
       </form>
       <button slot="actions" class="primary" form="where" ?disabled=${this._working} @click=${() => void this.apply()}>
         ${this._erases ? words.apply_erase : words.apply}
+        ${this._measured ? html`<span class="numeric" aria-hidden="true">${formatArea(this._measured.area_m2)}</span>` : nothing}
       </button>
     </strata-dialog>`;
   }

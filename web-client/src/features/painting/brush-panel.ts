@@ -6,7 +6,7 @@ import { customElement, property } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
 import { readNumber, typedNumber } from "../../core/locale";
 import type { MarkKind } from "../../domain/marks";
-import { formatLength, formatNumber } from "../../domain/measure";
+import { formatArea, formatLength, formatNumber } from "../../domain/measure";
 import type { Layer } from "../../core/types";
 import { kWidths, type WidthUnit } from "./brush-settings";
 import { describeValue } from "../../session/layer-values";
@@ -77,6 +77,20 @@ export class StrataBrushPanel extends LitElement {
       .locked .glyph {
         flex: none;
       }
+      .facts {
+        display: grid;
+        grid-template-columns: auto 1fr;
+        gap: var(--space-half) var(--space-3);
+        margin: var(--space-1) 0 var(--space-2);
+        font-size: var(--text-body);
+      }
+      .facts dt {
+        color: var(--ink-soft);
+      }
+      .facts dd {
+        margin: 0;
+        text-align: right;
+      }
       .pair {
         display: flex;
         flex-wrap: wrap;
@@ -120,6 +134,7 @@ export class StrataBrushPanel extends LitElement {
     const words = texts.areas;
     return html`<h2>${texts.tools[tool]}</h2>
       <p class="hint">${words.how[tool]}</p>
+      ${tool === "bucket" ? nothing : this.selection(layer)}
       ${radioGroup<boolean>({
         label: words.does,
         class: "segments",
@@ -146,6 +161,32 @@ export class StrataBrushPanel extends LitElement {
           : this.through()
       }
       ${this.whole(layer)}`;
+  }
+
+  /** The values of the layer in the selected area. */
+  private selection(layer: Layer): TemplateResult {
+    const { area } = this.session.painting;
+    const words = texts.selection;
+    const found = area.measured?.layers[layer.slug];
+    if (area.isEmpty || !found) return html`<p class="hint">${words.keys}</p>`;
+    const measures = layer.kind === "numeric" && layer.palette.mode !== "categorical";
+    const amount = (value: number | undefined): string =>
+      value === undefined ? "–" : describeValue(layer, value, this.session.tables);
+    const rows: [string, string][] = [
+      [words.painted, formatArea(found.area_m2)],
+      ...(measures && found.texels > 0
+        ? ([
+            [words.lowest, amount(found.min)],
+            [words.mean, amount(found.mean)],
+            [words.highest, amount(found.max)],
+          ] as [string, string][])
+        : []),
+    ];
+    return html`<div>
+      <h3 class="caption">${words.in_layer(labelOf(layer))}</h3>
+      <dl class="facts">${rows.map(([what, value]) => html`<dt>${what}</dt><dd class="numeric">${value}</dd>`)}</dl>
+      <p class="hint">${words.keys}</p>
+    </div>`;
   }
 
   /** The record and the column of new lines and points. */

@@ -1,4 +1,5 @@
-// The outline of polygon, lasso and line during drawing, over the picture.
+// The outline of polygon, lasso and line during drawing, and the finished outlines of the selection,
+// over the picture.
 
 import { html, nothing, svg, type TemplateResult } from "lit";
 import { colorOf, cssColor } from "../../domain/palette";
@@ -6,6 +7,7 @@ import { kSnapPx } from "../../tools/outline";
 import type { Outline } from "../../tools/tool";
 import type { ModelSession } from "../../session/model-session";
 import { lengthSoFar } from "../../session/line-length";
+import { middleAfter } from "./area-selection";
 
 export function outlineOverlay(
   session: ModelSession,
@@ -37,3 +39,38 @@ export function outlineOverlay(
     </svg>
     ${area ? nothing : lengthSoFar(session.view, session.marks.metresSoFar, pointer ?? points[points.length - 1]!)}`;
 }
+
+const kDashes = { add: "none", subtract: "3 5", intersect: "9 4" };
+
+/** The outlines that were drawn in the current view, with the handles of their corners. */
+export function selectionOverlay(session: ModelSession): TemplateResult | typeof nothing {
+  const { area } = session.painting;
+  if (area.isEmpty) return nothing;
+  const { scale } = session.view;
+  const at = ([x, y]: readonly number[]): [number, number] => [x! / scale, y! / scale];
+  const outlines = area.outlines.flatMap((outline, index) =>
+    area.isInView(outline) ? [{ outline, index }] : [],
+  );
+  return html`<svg class="over" aria-hidden="true">
+    ${outlines.map(({ outline: { path, combine, corners }, index }) => {
+      const points = path.map((point) => at(point).join(",")).join(" ");
+      return svg`<polygon points=${points} fill="none" stroke="var(--mark-rim)" stroke-width="3.4" stroke-linejoin="round" />
+        <polygon points=${points} fill="none" stroke="var(--mark-light)" stroke-width="1.6" stroke-linejoin="round" stroke-dasharray=${kDashes[combine]} />
+        ${corners ? path.map((_, corner) => handle(at(middleAfter(path, corner)), 3, false)) : nothing}
+        ${
+          corners
+            ? path.map((point, corner) =>
+                handle(
+                  at(point),
+                  5,
+                  area.active?.outline === index && area.active.corner === corner,
+                ),
+              )
+            : nothing
+        }`;
+    })}
+  </svg>`;
+}
+
+const handle = ([x, y]: [number, number], size: number, active: boolean): TemplateResult =>
+  svg`<circle cx=${x} cy=${y} r=${active ? size + 2 : size} fill=${active ? "var(--lit)" : "var(--mark-light)"} stroke="var(--mark-dark)" stroke-width="1.5" fill-opacity=${size > 3 ? 1 : 0.75} />`;

@@ -9,6 +9,8 @@ import { formatArea, metresPer } from "../../domain/measure";
 import type { Applied, Edit, Picked } from "../../core/protocol.gen";
 import type { Layer, Model } from "../../core/types";
 import { whyLocked } from "../../session/layer-lock";
+import type { LitArea } from "../../session/lit-area";
+import { AreaSelection, kMostOutlines } from "./area-selection";
 import { BrushSettings } from "./brush-settings";
 import { describeValue, type RecordLabels, valueProblem } from "../../session/layer-values";
 import { notices } from "../../ui/notices";
@@ -22,6 +24,7 @@ export interface PaintingHost {
   readonly view: ViewControl;
   readonly layers: LayersPart;
   readonly pointer: PointerWatch;
+  readonly lit: LitArea;
   model(): Model | null;
   records: RecordLabels;
   mayPaint(): boolean;
@@ -33,6 +36,8 @@ const kThinnest = 0.08; // share of the radius at the lowest pen pressure
 
 export class Painting {
   readonly brush = new BrushSettings();
+  /** What polygon and lasso have selected. */
+  readonly area: AreaSelection;
   stroking = false; // also while an outline is drawn
   penUsed = false; // a pen with pressure was used
 
@@ -40,7 +45,18 @@ export class Painting {
   private _afterStroke: (() => void)[] = [];
   private readonly _wholeEdits = new Set<string>(); // sent, but not answered
 
-  constructor(private readonly _host: PaintingHost) {}
+  constructor(private readonly _host: PaintingHost) {
+    const { layers, lit, view } = _host;
+    this.area = new AreaSelection({
+      lit,
+      camera: () => view.camera.message(),
+      scale: () => view.scale,
+      layers: () => (layers.selected ? [layers.selected.slug] : []),
+      fill: () => this.paintSelection(this.brush.areas.erases),
+      failed: (error) => notices.error(error),
+      changed: () => _host.changed(),
+    });
+  }
 
   setBrush(change: (brush: BrushSettings) => void): void {
     change(this.brush);
@@ -156,23 +172,39 @@ export class Painting {
     this.sendEdit(target.layer, { op: "fill", ...target.paint, mode: this.brush.areas.reach, at });
   }
 
-  beginOutline(): boolean {
+  beginOutline(at: PointerSample): boolean {
+    if (this.area.refusesMore(at)) {
+      notices.show("problem", texts.selection.full(kMostOutlines));
+      return false;
+    }
     if (!this.areaTarget()) return false;
+    this.area.begin(at);
     this.stroking = true;
     return true;
   }
 
-  finishOutline(path: Point[]): void {
-    const target = this.areaTarget();
-    if (!target) return;
-    const camera = this._host.view.camera.message();
-    this.sendEdit(target.layer, {
+  /** Selects the inside, which is painted later. */
+  finishOutline(path: Point[], corners: boolean): void {
+    this.area.add(path, this.brush.through, corners);
+  }
+
+  /** Paints or erases what is selected, as one edit. */
+  paintSelection(erases: boolean): void {
+    const layer = this.layerToPaint();
+    const [first] = this.area.outlines;
+    const steps = this.area.within?.steps;
+    if (!layer || !first) return;
+    const value = this.valueFor(layer, erases);
+    if (value === null) return;
+    this.sendEdit(layer, {
       op: "polygon",
-      ...target.paint,
-      camera,
-      path,
-      through: this.brush.through,
+      ...(erases ? { erase: true } : { value }),
+      camera: first.camera,
+      path: first.path,
+      through: first.through ?? false,
+      ...(steps ? { steps } : {}),
     });
+    this.area.clear();
   }
 
   /** The server's answer to a whole edit from this page: shows the size of the change. */

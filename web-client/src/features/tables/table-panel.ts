@@ -10,7 +10,12 @@ import { cssColor, recordColor } from "../../domain/palette";
 import type { CellValue, Column, Table, TableRecord } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import { mayBeText, takesTyping, type StrataCellInput } from "../../session/fields/cell-input";
+import { corrected } from "../../domain/completion";
 import { FileDrop } from "../../ui/drop";
+import {
+  expressionProblem,
+  expressionProblemStyles,
+} from "../../session/fields/expression-problem";
 import { followSession } from "../../session/follow-session";
 import { growth } from "../../ui/growth";
 import { icon } from "../../ui/icons";
@@ -58,7 +63,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     followSession(this, "tables", "layers", "editors", "together");
   }
 
-  static override styles = [sharedStyles, tableStyles];
+  static override styles = [sharedStyles, expressionProblemStyles, tableStyles];
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
@@ -156,15 +161,19 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
   private filterProblem(): TemplateResult | typeof nothing {
     const { problem, filter } = this.view.rows;
     if (!problem) return nothing;
-    const { offset } = problem;
-    const characters = [...filter];
-    return html`<div class="wrong" role="alert">
-      <span>${problem.detail ?? problem.title}</span>
-      ${
-        problem.field === "filter" && offset !== undefined
-          ? html`<code>${characters.slice(0, offset).join("")}<mark>${characters[offset] ?? " "}</mark>${characters.slice(offset + 1).join("")}</code>`
-          : nothing
-      }
+    const { offset, length, suggestions = [] } = problem;
+    const mistake =
+      problem.field === "filter" && offset !== undefined ? { offset, length, suggestions } : null;
+    return html`<div class="wrong">
+      ${expressionProblem({
+        text: filter,
+        message: problem.detail ?? problem.title,
+        mistake,
+        corrections: mistake ? suggestions.map((text) => ({ text })) : [],
+        correct: (by) => {
+          if (mistake) this.view.rows.setQuery({ filter: corrected(filter, mistake, by) });
+        },
+      })}
     </div>`;
   }
 

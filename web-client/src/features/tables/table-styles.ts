@@ -51,15 +51,6 @@ export const tableStyles = css`
     border-bottom: var(--edge) solid var(--line);
     background: var(--danger-soft);
   }
-  .wrong code {
-    font-family: var(--mono);
-    white-space: pre-wrap;
-    overflow-wrap: anywhere;
-  }
-  .wrong mark {
-    background: var(--danger);
-    color: var(--surface);
-  }
   .scroller {
     flex: 1;
     position: relative;

@@ -1,0 +1,245 @@
+// The names that a condition or formula of the open model can contain, in groups, and examples
+// made of its layers.
+
+import type { Bounds, Column, Table } from "../../core/protocol.gen";
+import type { Layer } from "../../core/types";
+import { labelOf } from "../../domain/cells";
+import { nameInText, type NamedClass, type Suggestion } from "../../domain/completion";
+import { formatNumber } from "../../domain/measure";
+import { purposeOf } from "../../domain/palette";
+import { texts } from "../../texts";
+
+const words = texts.expressions;
+
+export const kSurfaceNames = [
+  "x",
+  "y",
+  "z",
+  "area",
+  "nx",
+  "ny",
+  "nz",
+  "height",
+  "slope",
+  "curvature",
+] as const;
+const kEverywhere = 4; // the first ones also work in conditions over stored layers
+
+export interface Name extends Suggestion {
+  /** A name for people; the text itself where it is absent. */
+  label?: string;
+  /** The value of a class: it is inserted alone after a comparison with its layer. */
+  value?: number;
+}
+
+export interface NameGroup {
+  title: string;
+  names: Name[];
+}
+
+export interface NamesOf {
+  layers: readonly Layer[];
+  table(id: number): Table | null;
+  /** Whether the expression may also be a number. */
+  computes: boolean;
+}
+
+const isMeasurement = ({ kind, palette }: Layer): boolean =>
+  kind === "numeric" && palette.mode !== "categorical";
+
+/** The classes that a layer's legend names; none for layers of records. */
+const classesOf = (layer: Layer): { at: number; label: string }[] =>
+  layer.kind === "numeric" && layer.palette.mode === "categorical" && !layer.palette.column
+    ? layer.palette.points.flatMap(({ at, label }) => (label ? [{ at, label }] : []))
+    : [];
+
+function layerHint(layer: Layer): string {
+  const purpose = purposeOf(layer);
+  if (purpose !== "measurement") return words.kinds[purpose];
+  const { min, max } = layer.palette;
+  return words.range(formatNumber(min), formatNumber(max), layer.unit ?? "");
+}
+
+function columnHint({ kind, unit, choices }: Column): string {
+  if (kind === "enumeration" && choices) return choices.map((each) => `'${each}'`).join(", ");
+  return unit || texts.column_dialog.kinds[kind];
+}
+
+/** The names of the classes, for errors that name a class instead of its number. */
+export const namedClasses = (layers: readonly Layer[]): NamedClass[] =>
+  layers.flatMap((layer) =>
+    classesOf(layer).map(({ at, label }) => ({
+      layer: nameInText(layer.slug),
+      value: at,
+      label,
+    })),
+  );
+
+export function nameGroups({ layers, table, computes }: NamesOf): NameGroup[] {
+  const groups: NameGroup[] = [
+    {
+      title: words.groups.layers,
+      names: layers.map((layer) => ({
+        text: nameInText(layer.slug),
+        label: labelOf(layer),
+        hint: layerHint(layer),
+      })),
+    },
+  ];
+  for (const layer of layers) {
+    const slug = nameInText(layer.slug);
+    const classes = classesOf(layer);
+    // the only class is where the layer is painted
+    if (classes.length > 1)
+      groups.push({
+        title: words.groups.classes(labelOf(layer)),
+        names: classes.map(({ at, label }) => ({
+          text: `${slug} = ${at}`,
+          label,
+          hint: "",
+          value: at,
+        })),
+      });
+    const columns = layer.table === undefined ? [] : (table(layer.table)?.columns ?? []);
+    if (columns.length > 0)
+      groups.push({
+        title: words.groups.columns(labelOf(layer)),
+        names: columns.map((column) => ({
+          text: `${slug}.${nameInText(column.slug)}`,
+          label: labelOf(column),
+          hint: columnHint(column),
+        })),
+      });
+  }
+  const surface = computes ? kSurfaceNames : kSurfaceNames.slice(0, kEverywhere);
+  groups.push({
+    title: words.groups.surface,
+    names: surface.map((text) => ({ text, hint: words.surface[text] })),
+  });
+  groups.push({
+    title: words.groups.functions,
+    names: words.functions.map(([text, hint]) => ({ text, hint })),
+  });
+  return groups.filter(({ names }) => names.length > 0);
+}
+
+/** The groups with the names that contain all words of the search. */
+export function foundIn(groups: readonly NameGroup[], search: string): NameGroup[] {
+  const wanted = search.toLocaleLowerCase().split(/\s+/).filter(Boolean);
+  if (wanted.length === 0) return [...groups];
+  return groups
+    .map(({ title, names }) => ({
+      title,
+      names: names.filter(({ text, label = "", hint }) => {
+        const whole = `${text} ${label} ${hint} ${title}`.toLocaleLowerCase();
+        return wanted.every((word) => whole.includes(word));
+      }),
+    }))
+    .filter(({ names }) => names.length > 0);
+}
+
+/**
+ * The text with a name at the selection, and the caret behind it: with the spaces that separate it
+ * from its neighbors. A class is only its number after a comparison with its layer.
+ */
+export function withName(
+  text: string,
+  [from, to]: readonly [number, number],
+  name: Name,
+): { text: string; caret: number } {
+  const before = text.slice(0, from);
+  const after = text.slice(to);
+  const layer = name.value === undefined ? "" : (name.text.split(" = ")[0] ?? "");
+  const compared =
+    layer !== "" &&
+    new RegExp(`(^|[\\s(])${escaped(layer)}\\s*(=|==|<>|!=|in\\s*\\([^()]*)\\s*$`, "i").test(
+      before,
+    );
+  const written = compared ? String(name.value) : name.text;
+  const gap = before === "" || /[\s(]$/.test(before) ? "" : " ";
+  const opens = written.endsWith("(") || written.endsWith(" ");
+  const space = after === "" ? "" : opens || /^[\s),]/.test(after) ? "" : " ";
+  const inserted = gap + written;
+  return { text: before + inserted + space + after, caret: (before + inserted).length };
+}
+
+const escaped = (text: string): string => text.replaceAll(/[.*+?^${}()|[\]\\]/g, "\\$&");
+
+// ── examples ─────────────────────────────────────────────────────────────────────────────────────
+
+export interface Example {
+  text: string;
+  does: string;
+}
+
+const kMostExamples = 4;
+
+/** A number in the middle of the legend, with few digits. */
+function middleOf(low: number, high: number): number {
+  const middle = (low + high) / 2;
+  const digits = Math.floor(Math.log10(Math.abs(high - low) || 1)) - 1;
+  const step = 10 ** digits;
+  return Number((Math.round(middle / step) * step).toPrecision(4));
+}
+
+/** Conditions, and with `computes` formulas, over layers that the model has. */
+export function examplesFor(
+  { layers, table, computes }: NamesOf,
+  bounds: Bounds | null,
+): Example[] {
+  const examples: Example[] = [];
+  const add = (text: string, does: string): void => {
+    if (examples.length < kMostExamples) examples.push({ text, does });
+  };
+  const measured = layers.filter(isMeasurement);
+  const [first, second] = measured;
+  const area = layers.find(
+    (layer) => layer.kind === "numeric" && layer.palette.mode === "categorical",
+  );
+  const withClasses = layers.find((layer) => classesOf(layer).length > 1);
+  if (first) {
+    const slug = nameInText(first.slug);
+    const middle = middleOf(first.palette.min, first.palette.max);
+    const amount = `${formatNumber(middle)}${first.unit ? ` ${first.unit}` : ""}`;
+    if (computes && second)
+      add(
+        `${slug} - ${nameInText(second.slug)}`,
+        words.examples.difference(labelOf(first), labelOf(second)),
+      );
+    else if (computes) add(`${slug} * 2`, words.examples.twice(labelOf(first)));
+    add(`${slug} > ${middle}`, words.examples.above(labelOf(first), amount));
+    if (area)
+      add(
+        `${slug} > ${middle} and not valid(${nameInText(area.slug)})`,
+        words.examples.above_outside(labelOf(first), amount, labelOf(area)),
+      );
+  } else if (area) {
+    add(`valid(${nameInText(area.slug)})`, words.examples.painted(labelOf(area)));
+  }
+  if (withClasses) {
+    const [, some] = classesOf(withClasses);
+    if (some)
+      add(
+        `${nameInText(withClasses.slug)} = ${some.at}`,
+        words.examples.class(labelOf(withClasses), some.label),
+      );
+  }
+  for (const layer of layers) {
+    const columns = layer.table === undefined ? [] : (table(layer.table)?.columns ?? []);
+    const choice = columns.find(({ kind, choices }) => kind === "enumeration" && choices?.length);
+    const column = choice ?? columns.find(({ kind }) => kind === "numeric" || kind === "text");
+    if (!column) continue;
+    const path = `${nameInText(layer.slug)}.${nameInText(column.slug)}`;
+    if (choice)
+      add(
+        `${path} = '${choice.choices![0]!.replaceAll("'", "''")}'`,
+        words.examples.class(labelOf(choice), choice.choices![0]!),
+      );
+    else add(`${path} is not null`, words.examples.filled(labelOf(column), labelOf(layer)));
+    break;
+  }
+  if (examples.length < 2 && bounds)
+    add(`z > ${middleOf(bounds.min[2], bounds.max[2])}`, words.examples.upper);
+  if (computes && examples.length < kMostExamples) add("slope", words.surface.slope);
+  return examples;
+}
