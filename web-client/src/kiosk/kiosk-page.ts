@@ -154,7 +154,7 @@ export class StrataKiosk extends LitElement {
     const place = words.stop(index + 1, stops.length);
     return html`<main class="panel ${resting ? "resting" : ""}" ?inert=${covered}>
       <div class="words" ?inert=${session.card !== null} tabindex=${resting ? nothing : "0"} role="region" aria-label=${session.title || place}>
-        ${resting ? html`<p class="tour">${session.tour?.name}</p>` : html`<p class="where">${place}</p>`}
+        ${resting ? html`<p class="tour">${session.tour?.name}</p>` : html`<p class="where">${place}${this.dots()}</p>`}
         <h1 tabindex="-1">${session.title}</h1>
         ${session.text ? html`<p>${session.text}</p>` : nothing}
       </div>
@@ -162,45 +162,62 @@ export class StrataKiosk extends LitElement {
     </main>`;
   }
 
+  private dots(): TemplateResult | typeof nothing {
+    const { stops, index } = this.session;
+    return stops.length > 1 && stops.length <= kMostDots
+      ? html`<span class="dots" aria-hidden="true">${stops.map((_, at) => html`<i class=${at === index ? "here" : ""}></i>`)}</span>`
+      : nothing;
+  }
+
   private controls(): TemplateResult {
     const { session } = this;
     const { words, index, stops } = session;
     const behind = session.card !== null;
-    return html`${
-      session.named.length > 0
-        ? html`<div class="row scrolls" role="group" aria-label=${words.records} ?inert=${behind}>
-            <span class="label" aria-hidden="true">${words.records}</span>
-            ${session.named.map(({ table, key, name }) => html`<button class="record" @click=${() => void session.openCard(table, key)}>${name}</button>`)}
-          </div>`
-        : nothing
-    }
-      ${
-        session.choices.length > 1 && session.show && !session.show.away
-          ? html`<div class="row scrolls layers" role="group" aria-label=${words.layers} ?inert=${behind}>
-            ${session.choices.map(
-              (choice) =>
-                html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.chooseLayer(choice)}>${choice ? nameOfLayer(choice, session.language) : words.as_kept}</button>`,
-            )}
-          </div>`
-          : nothing
-      }
-      ${
-        session.languages.length > 1
-          ? html`<div class="row scrolls languages" role="group" aria-label=${words.languages} ?inert=${behind}>
-            ${session.languages.map(
-              (tag) =>
-                html`<button lang=${tag} aria-pressed=${String(tag === session.language)} @click=${() => session.chooseLanguage(tag)}>
-                  ${nameOnButton(tag)}
-                </button>`,
-            )}
-          </div>`
-          : nothing
-      }
+    return html`${this.choices(behind)}
       <div class="row steps" ?inert=${behind}>
         <button class="previous" ?disabled=${index === 0} @click=${() => session.step(-1)}>${arrowBack}${words.previous}</button>
-        <span class="dots" aria-hidden="true">${stops.length > 1 && stops.length <= kMostDots ? stops.map((_, at) => html`<i class=${at === index ? "here" : ""}></i>`) : nothing}</span>
+        ${session.languages.length > 1 ? this.languages() : nothing}
         <button class="next main" ?disabled=${index === stops.length - 1} @click=${() => session.step(1)}>${words.next}${arrowOn}</button>
       </div>`;
+  }
+
+  private choices(behind: boolean): TemplateResult | typeof nothing {
+    const { session } = this;
+    const { words, named } = session;
+    const layers = session.show?.away ? [] : session.choices;
+    if (named.length === 0 && layers.length < 2) return nothing;
+    return html`<div class="choices" ?inert=${behind}>
+      ${
+        named.length > 0
+          ? html`<div class="row scrolls" role="group" aria-label=${words.records}>
+              <span class="label" aria-hidden="true">${words.records}</span>
+              ${named.map(({ table, key, name }) => html`<button class="record" @click=${() => void session.openCard(table, key)}>${name}</button>`)}
+            </div>`
+          : nothing
+      }
+      ${
+        layers.length > 1
+          ? html`<div class="row scrolls layers" role="group" aria-label=${words.layers}>
+              ${layers.map(
+                (choice) =>
+                  html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.chooseLayer(choice)}>${choice ? nameOfLayer(choice, session.language) : words.as_kept}</button>`,
+              )}
+            </div>`
+          : nothing
+      }
+    </div>`;
+  }
+
+  private languages(): TemplateResult {
+    const { session } = this;
+    return html`<div class="row scrolls languages" role="group" aria-label=${session.words.languages}>
+      ${session.languages.map(
+        (tag) =>
+          html`<button lang=${tag} aria-pressed=${String(tag === session.language)} @click=${() => session.chooseLanguage(tag)}>
+            ${nameOnButton(tag)}
+          </button>`,
+      )}
+    </div>`;
   }
 
   private card(): TemplateResult {

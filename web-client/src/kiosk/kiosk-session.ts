@@ -25,6 +25,9 @@ import {
 import type { KioskStore } from "./store";
 import { textsIn, type KioskTexts } from "./texts";
 
+/** Around the object: --room-top and --room of the styles. */
+const kRoom = { top: "#edebe7", bottom: "#dedad3" };
+
 export interface NamedRecord {
   table: string;
   key: number;
@@ -317,6 +320,7 @@ export class KioskSession {
       this.show = this.makeShow(self.model);
       this.show.open();
     }
+    this.show.setRoom(kRoom);
     await this.readViews();
   }
 

@@ -1,22 +1,36 @@
 // Styles of the kiosk: large and calm, with all controls in the lower half. Targets are at least 15
-// mm (57 CSS pixels), and larger on touch-only screens. Upright screens have the object above the
-// texts, wide screens next to them.
+// mm (57 CSS pixels), and larger on touch-only and large screens. Upright screens have the object
+// above the texts, wide screens next to them. Text is for readers at a distance of 2 m.
 
 import { css } from "lit";
 
 export const kioskStyles = css`
   :host {
-    --target: 60px;
-    --gap: clamp(10px, 1.3vmin, 20px);
-    --rim: clamp(16px, 2.6vmin, 44px);
+    --target: max(60px, 5vmin);
+    --gap: clamp(10px, 1.3vmin, 28px);
+    --rim: clamp(16px, 2.8vmin, 64px);
+    --round: clamp(22px, 2.6vmin, 56px);
+    --room: #dedad3; /* around the object: the colors that the server draws behind it */
+    --room-top: #edebe7;
+    --surface: color-mix(in srgb, var(--room) 22%, #fff);
+    --raised: #fff;
+    --ink: #20292a;
+    --ink-soft: color-mix(in srgb, var(--ink) 80%, var(--surface));
+    --line: color-mix(in srgb, var(--ink) 20%, var(--surface));
+    --line-strong: color-mix(in srgb, var(--ink) 55%, var(--surface));
+    --accent: #2c6a63;
+    --accent-ink: #fff;
+    --accent-soft: color-mix(in srgb, var(--accent) 16%, var(--raised));
+    --heading: var(--serif);
+    --shade: rgb(16 20 20 / 0.16);
     position: fixed;
     inset: 0;
     display: grid;
-    --words: 40; /* largest share of the height for texts, in percent */
+    --words: 38; /* largest share of the height for texts, in percent */
     grid-template: minmax(0, 1fr) auto / minmax(0, 1fr);
-    background: linear-gradient(rgb(241 240 236), rgb(214 211 204)); /* the server's background */
+    background: var(--room); /* the lower end of the stage: no edge between the two */
     color: var(--ink);
-    font: clamp(17px, 1.7vmin + 7px, 34px) / 1.5 var(--sans);
+    font: clamp(17px, 1.75vmin + 8px, 48px) / 1.45 var(--sans);
     overflow: hidden;
     user-select: none;
     -webkit-user-select: none;
@@ -24,10 +38,11 @@ export const kioskStyles = css`
     -webkit-tap-highlight-color: transparent;
     touch-action: none;
     overscroll-behavior: none;
+    color-scheme: light;
   }
   @media (pointer: coarse) {
     :host {
-      --target: 68px;
+      --target: max(68px, 5vmin);
     }
   }
   * {
@@ -42,7 +57,7 @@ export const kioskStyles = css`
   }
   h1,
   h2 {
-    font: 600 1.75em/1.15 var(--serif);
+    font: 600 1.9em/1.12 var(--heading);
     letter-spacing: -0.01em;
     text-wrap: balance;
     outline: none;
@@ -66,15 +81,14 @@ export const kioskStyles = css`
     outline-offset: 3px;
   }
   button[aria-pressed="true"] {
-    border-color: var(--calm);
-    color: var(--calm);
-    background: var(--calm-soft);
+    border-color: var(--accent);
+    background: var(--accent-soft);
   }
   .layers button[aria-pressed="true"],
   button.main {
-    border-color: var(--calm);
-    background: var(--calm);
-    color: var(--calm-ink);
+    border-color: var(--accent);
+    background: var(--accent);
+    color: var(--accent-ink);
   }
   button:disabled {
     visibility: hidden;
@@ -104,7 +118,7 @@ export const kioskStyles = css`
     margin: var(--rim);
     padding: 0.35em 1.1em;
     border-radius: 99px;
-    background: rgb(255 255 255 / 0.8);
+    background: color-mix(in srgb, var(--raised) 84%, transparent);
     font-size: 0.85em;
     text-align: center;
     pointer-events: none;
@@ -130,8 +144,8 @@ export const kioskStyles = css`
     box-sizing: border-box;
     border: 3px solid #fff;
     border-radius: 50%;
-    background: var(--calm);
-    box-shadow: 0 1px 6px rgb(32 41 42 / 0.4);
+    background: var(--accent);
+    box-shadow: 0 1px 6px rgb(0 0 0 / 0.4);
   }
   .place-of-tap p {
     position: absolute;
@@ -143,7 +157,7 @@ export const kioskStyles = css`
     padding: 0.45em 1em;
     border-radius: 1em;
     background: var(--raised);
-    box-shadow: 0 4px 24px rgb(32 41 42 / 0.24);
+    box-shadow: 0 4px 24px rgb(0 0 0 / 0.24);
     text-align: center;
     line-height: 1.25;
     overflow-wrap: anywhere;
@@ -163,9 +177,9 @@ export const kioskStyles = css`
     gap: var(--gap);
     padding: var(--rim);
     padding-bottom: max(var(--rim), env(safe-area-inset-bottom));
-    border-radius: 28px 28px 0 0;
+    border-radius: var(--round) var(--round) 0 0;
     background: var(--surface);
-    box-shadow: 0 -8px 40px rgb(32 41 42 / 0.1);
+    box-shadow: 0 -8px 40px var(--shade);
     touch-action: pan-y;
   }
   .words {
@@ -182,10 +196,23 @@ export const kioskStyles = css`
     white-space: pre-line;
     overflow-wrap: anywhere;
   }
-  .where {
+  .words .where {
+    display: flex;
+    align-items: center;
+    gap: 0.9em;
+    margin: 0 0 0.2em;
     color: var(--ink-soft);
     font-size: 0.85em;
     font-variant-numeric: tabular-nums;
+  }
+  .choices {
+    display: flex;
+    flex: none;
+    flex-wrap: wrap;
+    gap: var(--gap) calc(2.5 * var(--gap));
+  }
+  .choices > .row {
+    max-width: calc(100% + 2 * var(--rim));
   }
   .row {
     display: flex;
@@ -200,6 +227,10 @@ export const kioskStyles = css`
     touch-action: pan-x;
     margin: -6px calc(-1 * var(--rim));
     padding: 6px var(--rim);
+  }
+  .choices > .row.scrolls:not(:first-child) {
+    margin-inline-start: 0;
+    padding-inline-start: 0;
   }
   .row.layers {
     touch-action: pan-y; /* a horizontal swipe selects the next layer */
@@ -219,7 +250,14 @@ export const kioskStyles = css`
   .steps {
     justify-content: space-between;
   }
-  .steps button {
+  .row.languages {
+    flex: 1 1 0;
+    justify-content: safe center;
+    min-width: 0;
+    margin-inline: 0;
+    padding-inline: 6px;
+  }
+  .steps > button {
     display: inline-flex;
     align-items: center;
     justify-content: center;
@@ -228,21 +266,18 @@ export const kioskStyles = css`
   }
   .dots {
     display: flex;
-    flex-wrap: wrap;
-    justify-content: center;
-    gap: 0.5em;
+    gap: 0.35em;
   }
   .dots i {
-    width: 0.5em;
-    height: 0.5em;
-    border-radius: 50%;
+    width: 1.5em;
+    height: 0.28em;
+    border-radius: 99px;
     background: var(--line-strong);
     opacity: 0.45;
   }
   .dots i.here {
-    background: var(--calm);
+    background: var(--accent);
     opacity: 1;
-    transform: scale(1.5);
   }
 
   .card {
@@ -317,13 +352,12 @@ export const kioskStyles = css`
     width: min(100%, 26em);
     margin-bottom: 4vh;
     padding: calc(1.2 * var(--rim)) var(--rim);
-    border-radius: 28px;
+    border-radius: var(--round);
     background: var(--raised);
     box-shadow: var(--shadow);
   }
   .count {
-    font: 600 3.4em/1 var(--serif);
-    color: var(--calm);
+    font: 600 3.4em/1 var(--heading);
     font-variant-numeric: tabular-nums;
   }
 
@@ -354,8 +388,8 @@ export const kioskStyles = css`
     min-height: calc(1.25 * var(--target));
     padding: 0.3em 2em;
     border-radius: 99px;
-    background: var(--calm);
-    color: var(--calm-ink);
+    background: var(--accent);
+    color: var(--accent-ink);
     font-size: 1.15em;
     animation: breathe 4s ease-in-out infinite;
   }
@@ -375,20 +409,35 @@ export const kioskStyles = css`
       animation: none;
     }
   }
+  /* Nobody is there: the object and its title on the room's own color, for people who pass by. */
   .panel.resting {
-    padding-bottom: calc(2.5 * var(--rim) + 1.25 * var(--target) + 3em); /* for the invitation */
+    padding-top: 0;
+    padding-bottom: calc(2.2 * var(--rim) + 1.25 * var(--target) + 2em); /* for the invitation */
+    background: none;
+    box-shadow: none;
     text-align: center;
   }
   .panel.resting .words {
     flex: 0 1 auto;
-    margin-block: auto;
     overflow: hidden;
+  }
+  .panel.resting h1 {
+    font-size: 2.3em;
   }
   .panel.resting .words p {
     margin-inline: auto;
   }
-  .tour {
-    color: var(--accent);
+  .panel.resting h1 + p {
+    display: -webkit-box;
+    overflow: hidden;
+    -webkit-box-orient: vertical;
+    -webkit-line-clamp: 3;
+    line-clamp: 3;
+    white-space: normal; /* no empty lines */
+  }
+  .words .tour {
+    margin: 0 0 0.3em;
+    color: var(--ink-soft);
     font: 600 0.95em var(--sans);
     letter-spacing: 0.02em;
   }
@@ -412,16 +461,37 @@ export const kioskStyles = css`
     :host {
       --target: 58px;
       --words: 58;
+      --gap: 8px;
     }
-    .dots,
     .row.scrolls > .label {
       display: none;
+    }
+    .steps {
+      flex-wrap: wrap;
+    }
+    .row.languages {
+      flex-basis: 100%;
+      order: -1;
+      justify-content: start;
+      margin-inline: calc(-1 * var(--rim));
+      padding-inline: var(--rim);
     }
   }
 
   @media (orientation: landscape) {
     :host {
-      grid-template: minmax(0, 1fr) / minmax(360px, 36fr) minmax(0, 64fr);
+      grid-template: minmax(0, 1fr) / minmax(360px, 34fr) minmax(0, 66fr);
+      background: linear-gradient(var(--room-top), var(--room)); /* next to the stage */
+    }
+    .steps {
+      flex-wrap: wrap;
+    }
+    .row.languages {
+      flex-basis: 100%;
+      order: -1;
+      justify-content: start;
+      margin-inline: calc(-1 * var(--rim));
+      padding-inline: var(--rim);
     }
     strata-kiosk-stage,
     .place-of-tap,
@@ -434,15 +504,19 @@ export const kioskStyles = css`
       max-height: calc(100% - 2 * var(--rim));
       margin: var(--rim);
       margin-inline-end: 0;
-      border-radius: 28px;
-      box-shadow: 0 8px 40px rgb(32 41 42 / 0.12);
+      border-radius: var(--round);
+      box-shadow: 0 8px 40px var(--shade);
     }
     .begin {
       inset-inline-end: auto;
-      width: 36%;
+      width: 34%;
       min-width: 360px;
       padding: calc(2.5 * var(--rim)) calc(2 * var(--rim));
       padding-inline-end: var(--rim);
+    }
+    .panel.resting h1 + p {
+      -webkit-line-clamp: 5;
+      line-clamp: 5;
     }
     .begin::before {
       position: fixed;
@@ -451,11 +525,10 @@ export const kioskStyles = css`
     }
   }
   @media (orientation: landscape) and (max-width: 1300px) {
-    .dots,
     .row.scrolls > .label {
       display: none;
     }
-    .steps button {
+    .steps > button {
       min-width: calc(1.6 * var(--target));
       padding-inline: 0.8em;
     }

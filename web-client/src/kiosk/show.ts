@@ -7,8 +7,16 @@ import { Connection } from "../net/connection";
 import type { SocketLike } from "../net/socket";
 import type { FrameMessage } from "../net/frame-header";
 import type { GestureHandler, PointerSample } from "../ui/input";
-import { placeLike } from "../math/fit-to-window";
-import type { LayerOverride, Look, Model, Picked, View, Welcome } from "../core/protocol.gen";
+import { placeOfObject } from "./fit";
+import type {
+  Background,
+  LayerOverride,
+  Look,
+  Model,
+  Picked,
+  View,
+  Welcome,
+} from "../core/protocol.gen";
 import { completeLayer, type Layer } from "../core/types";
 import { looksOfView } from "../domain/views";
 import { OrbitTool } from "../tools/navigate";
@@ -108,6 +116,11 @@ export class KioskShow {
     this._connection.check();
   }
 
+  /** What the server draws around the object. */
+  setRoom(room: Background): void {
+    this._connection.setBackground(room);
+  }
+
   /** Shows the view with these layers; `flightS`: duration of the camera's movement. */
   goTo(view: View, layers: LayerOverride[], flightS: number): void {
     this._viewShown = view;
@@ -118,7 +131,7 @@ export class KioskShow {
     this.view.setSection(view.camera.section ?? [], flightS > 0);
     const flightMs = this.drawn ? flightS * 1000 : 0;
     this._flightEndsMs = performance.now() + flightMs;
-    this.view.fly(placeLike(view.camera, this.view.camera), flightMs);
+    this.view.fly(placeOfObject(view.camera, this.view.camera), flightMs);
   }
 
   /**
@@ -157,7 +170,7 @@ export class KioskShow {
     this.view.setViewport(width, height, scale);
     if (!this._viewShown || !this._standsAtView || !this.model) return;
     const leftMs = Math.max(0, this._flightEndsMs - performance.now());
-    this.view.fly(placeLike(this._viewShown.camera, this.view.camera), leftMs);
+    this.view.fly(placeOfObject(this._viewShown.camera, this.view.camera), leftMs);
   }
 
   frameDrawn(part: FrameMessage): void {
