@@ -73,7 +73,7 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   const mesh::TriangleMesh pot = mesh::make_demo_pot(detail);
   progress.begin_stage(0.05, 0.5);
   auto atlas = STRATA_TRY(mesh::make_atlas(pot, kResolution, progress));
-  const mesh::Geometry geometry = mesh::build_geometry(pot, atlas);
+  mesh::Geometry geometry = mesh::build_geometry(pot, atlas);
 
   store::NewModel fresh;
   Model& model = fresh.model;
@@ -89,7 +89,7 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   model.method = "Made by formula, not scanned";
   progress.begin_stage(0.5, 0.6);
   progress.report(0, "Saving the pot");
-  STRATA_TRY(put_geometry(geometry, progress, fresh));
+  STRATA_TRY(put_geometry(std::move(geometry), progress, fresh));
   return store.models().create(fresh, [&progress] { return progress.cancelled(); });
 }
 

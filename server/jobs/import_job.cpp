@@ -153,7 +153,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   progress.begin_stage(kPainted, kBuilt);
   progress.report(0, "Building the model");
   if (progress.cancelled()) return cancelled_problem();
-  const mesh::Geometry geometry = mesh::build_geometry(loaded.mesh, atlas);
+  mesh::Geometry geometry = mesh::build_geometry(loaded.mesh, atlas);
   loaded.mesh = {};  // it is in the geometry now; large scans need the memory
   atlas.corner_uvs = {};
 
@@ -174,7 +174,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
   model.atlas = atlas.report;
   model.repairs = loaded.repairs;
-  STRATA_TRY(put_geometry(geometry, progress, fresh));
+  STRATA_TRY(put_geometry(std::move(geometry), progress, fresh));
 
   progress.begin_stage(kBuilt, 1);
   progress.report(0, "Saving");

@@ -1,15 +1,51 @@
 #include "jobs/model_geometry.h"
 
+#include <algorithm>
 #include <future>
 
+#include "mesh/analysis/vertex_openness.h"
 #include "mesh/surface/detail_levels.h"
 #include "mesh/surface/open_edges.h"
 #include "store/content/models.h"
 
 namespace strata::jobs {
 
-Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
-                          store::NewModel& fresh) {
+namespace {
+
+// A part of a stage of `progress`, which cannot be divided.
+constexpr const char* kShading = "Shading the model";
+
+// Without memory for it, the model has no light from all around, which is no reason to refuse it.
+Result<void> unless_cancelled(const Result<void>& baked) {
+  if (baked || baked.error().code != ErrorCode::cancelled) return {};
+  return tl::unexpected(baked.error());
+}
+
+// Makes the coarser copies, and bakes the light into all of them.
+Result<std::vector<mesh::Geometry>> shaded_levels(mesh::Geometry& geometry, Progress& progress) {
+  const auto traced = [](const mesh::Geometry& level) {
+    return level.triangle_count() <= mesh::kMostTracedTriangles;
+  };
+  if (traced(geometry)) {  // the copies have its vertices
+    STRATA_TRY(unless_cancelled(mesh::bake_openness(geometry, progress)));
+    return mesh::make_detail_levels(geometry, progress);
+  }
+  auto levels = STRATA_TRY(mesh::make_detail_levels(geometry, progress));
+  const auto finest = std::ranges::find_if(levels, traced);
+  if (finest == levels.end()) return levels;
+  const auto baked = mesh::bake_openness(*finest, progress);
+  STRATA_TRY(unless_cancelled(baked));
+  if (!baked) return levels;
+  progress.report(1, kShading);
+  mesh::copy_openness(*finest, geometry);
+  for (mesh::Geometry& level : levels)
+    if (&level != &*finest) mesh::copy_openness(*finest, level);
+  return levels;
+}
+
+}  // namespace
+
+Result<void> put_geometry(mesh::Geometry geometry, Progress& progress, store::NewModel& fresh) {
   Model& model = fresh.model;
   model.origin = geometry.origin;
   model.triangles = geometry.triangle_count();
@@ -23,7 +59,7 @@ Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
   // In parallel: making the coarser copies keeps one core busy for as long.
   auto open_edges =
       std::async(std::launch::async, [&geometry] { return mesh::measure_open_edges(geometry); });
-  const auto levels = STRATA_TRY(mesh::make_detail_levels(geometry, progress));
+  const auto levels = STRATA_TRY(shaded_levels(geometry, progress));
   for (const mesh::Geometry& level : levels)
     fresh.detail_levels.push_back(mesh::encode_geometry(level));
   fresh.geometry = mesh::encode_geometry(geometry);

@@ -8,8 +8,7 @@
 namespace strata::jobs {
 
 // Puts a geometry into a new model, with the derived data: its stored form and that of its coarser
-// copies, counts, box, area and open edges. Refused only when canceled.
-Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
-                          store::NewModel& fresh);
+// copies, the light at its vertices, counts, box, area and open edges. Refused only when canceled.
+Result<void> put_geometry(mesh::Geometry geometry, Progress& progress, store::NewModel& fresh);
 
 }  // namespace strata::jobs

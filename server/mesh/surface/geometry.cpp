@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint32_t kStoneGrey = 0xffcfd3d6u;
+// An alpha of the file is not used: the byte holds the openness (analysis/vertex_openness.h).
+constexpr std::uint32_t kOpen = 0xff000000u;
 constexpr double kRoundOriginAbove = 16;
 
 // Spreads the low 21 bits of `value` so that two zero bits are between them.
@@ -127,7 +129,7 @@ class VertexSplitter {
     }
     geometry_.vertices.push_back(
         {glm::vec3(mesh_.positions[source] - geometry_.origin), normals_[source], uv,
-         mesh_.vertex_colors.empty() ? kStoneGrey : mesh_.vertex_colors[source],
+         mesh_.vertex_colors.empty() ? kStoneGrey : mesh_.vertex_colors[source] | kOpen,
          position_of_[source]});
     return index;
   }

@@ -17,7 +17,7 @@ struct Vertex {
   glm::vec3 position;
   std::uint32_t normal;  // snorm 10:10:10:2 (GL_INT_2_10_10_10_REV), unit length
   glm::vec2 uv;
-  // RGBA8, red in the low byte; a stone gray such as 0xffcfd3d6 where the scan has no color
+  // red in the low byte; a stone gray where the scan has none; highest: analysis/vertex_openness.h
   std::uint32_t color;
   std::uint32_t position_index;  // of the welded position: vertices split at seams share it
 };

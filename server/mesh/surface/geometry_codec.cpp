@@ -21,7 +21,9 @@ namespace strata::mesh {
 namespace {
 
 constexpr char kMagic[4] = {'S', 'G', 'E', 'O'};
-constexpr std::uint8_t kVersion = 1;
+// In version 1 the highest byte of a color was an alpha of the file, which nothing used.
+constexpr std::uint8_t kVersion = 2, kVersionWithoutOpenness = 1;
+constexpr std::uint32_t kOpen = 0xff000000u;
 constexpr int kLevel = 1;
 constexpr std::size_t kHeaderBytes = 3 * 8 + 3 * 8;
 constexpr std::size_t kPositionBytes = 3 * 8, kVertexBytes = 5 * 4, kIndexBytes = 4;
@@ -180,9 +182,10 @@ Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
   const std::size_t prefix = sizeof kMagic + 1;
   if (bytes.size() <= prefix || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
     return damaged("it does not begin like stored geometry");
-  if (bytes[sizeof kMagic] != kVersion) {
-    return damaged("it has version " + std::to_string(bytes[sizeof kMagic]) +
-                   ", this server reads version 1");
+  const std::uint8_t version = bytes[sizeof kMagic];
+  if (version != kVersion && version != kVersionWithoutOpenness) {
+    return damaged("it has version " + std::to_string(version) +
+                   ", this server reads versions 1 and 2");
   }
   const std::span<const std::uint8_t> frame = bytes.subspan(prefix);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
@@ -198,7 +201,10 @@ Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
   const std::size_t read =
       ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());
   if (ZSTD_isError(read) || read != size) return damaged("its checksum does not match");
-  return deserialize(content);
+  auto geometry = STRATA_TRY(deserialize(content));
+  if (version == kVersionWithoutOpenness)
+    for (Vertex& vertex : geometry.vertices) vertex.color |= kOpen;
+  return geometry;
 }
 
 }  // namespace strata::mesh

@@ -175,6 +175,16 @@ TEST(MeshGeometry, what_is_encoded_is_decoded_bit_for_bit) {
   expect_equal(Geometry{}, *empty);
 }
 
+TEST(MeshGeometry, of_version_1_is_open_everywhere) {
+  Geometry geometry = build_geometry(square({0, 0, 0}, 1), {});
+  const Geometry open = geometry;
+  for (auto& vertex : geometry.vertices) vertex.color &= 0x40ffffffu;
+  auto bytes = encode_geometry(geometry);
+  expect_equal(*decode_geometry(bytes), geometry);
+  bytes[4] = 1;
+  expect_equal(*decode_geometry(bytes), open);
+}
+
 TEST(MeshGeometry, damaged_bytes_are_refused) {
   const auto good = encode_geometry(build_geometry(square({0, 0, 0}, 1), {}));
   ASSERT_TRUE(decode_geometry(good));

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "mesh/surface/geometry.h"
+
+namespace strata::test {
+
+// Without an atlas: all that needs no texture coordinates.
+inline mesh::Geometry geometry_of(const mesh::TriangleMesh& mesh) {
+  return mesh::build_geometry(mesh, {});
+}
+
+inline void add(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& other, double scale,
+                bool inside_out) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const auto& position : other.positions) mesh.positions.push_back(scale * position);
+  for (std::size_t i = 0; i < other.triangles.size(); i += 3)
+    for (const std::size_t corner : {0, 1, 2})
+      mesh.triangles.push_back(first + other.triangles[i + (inside_out ? 2 - corner : corner)]);
+}
+
+// A ball of radius 1.
+inline mesh::TriangleMesh ball(int rows = 64) {
+  mesh::TriangleMesh mesh;
+  const int columns = 2 * rows;
+  mesh.positions.push_back({0, 0, 1});
+  for (int row = 1; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const double down = std::numbers::pi * row / rows,
+                   around = 2 * std::numbers::pi * column / columns;
+      mesh.positions.push_back(
+          {std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), std::cos(down)});
+    }
+  mesh.positions.push_back({0, 0, -1});
+  const auto at = [&](int row, int column) {
+    return static_cast<std::uint32_t>(1 + (row - 1) * columns + column % columns);
+  };
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  for (int column = 0; column < columns; ++column) {
+    for (const auto corner : {0u, at(1, column), at(1, column + 1)})
+      mesh.triangles.push_back(corner);
+    for (int row = 1; row + 1 < rows; ++row)
+      for (const auto corner : {at(row, column), at(row + 1, column), at(row, column + 1),
+                                at(row, column + 1), at(row + 1, column), at(row + 1, column + 1)})
+        mesh.triangles.push_back(corner);
+    for (const auto corner : {at(rows - 1, column), last, at(rows - 1, column + 1)})
+      mesh.triangles.push_back(corner);
+  }
+  return mesh;
+}
+
+}  // namespace strata::test
