@@ -11,10 +11,7 @@ layout(location = 1) in float surface_light;
 #else
 layout(location = 1) in vec4 surface_normal;
 #endif
-layout(location = 2) in vec3 surface_color;
-#ifdef SECTION
-const vec3 kInsideColor = vec3(0.47, 0.36, 0.31);
-#endif
+layout(location = 2) in vec4 surface_color;
 layout(std140, binding = 0) uniform MeshBlock { MeshUniforms mesh; };
 
 #if LOOKS > 0
@@ -35,9 +32,12 @@ float light_here() {
   vec3 n = normalize(surface_normal.xyz);
   if (is_seen_from_behind(surface_normal.w)) n = -n;
 #if defined(RAKING_LIGHT)
-  return min(0.04 + mesh.key_light.w * max(0.0, dot(n, mesh.key_light.xyz)), 1.0);
+  float fill = mesh.fill_light.w;
+  float from_eye = 0.5 * abs(surface_normal.w);
+  float from_side = mesh.key_light.w * max(0.0, dot(n, mesh.key_light.xyz));
+  return min(0.04 + mix(from_side, from_eye, fill), 1.0);
 #else
-  return museum_light(n, mesh);
+  return museum_light(n, surface_color.a, mesh);
 #endif
 #endif
 }
@@ -46,7 +46,7 @@ void main() {
   uvec2 q = uvec2(clamp(surface_uv, 0.0, 1.0) * 65536.0);
   packed_uv = min(q.x, 65535u) | (min(q.y, 65534u) << 16);  // never kBackground
 
-  vec3 color = surface_color;
+  vec3 color = surface_color.rgb;
 #if LOOKS > 0
   for (int i = 0; i < LOOKS; ++i) {
     vec4 look = texture(looks[i], surface_uv);
@@ -54,13 +54,19 @@ void main() {
   }
 #endif
   float light = light_here();
-  lit = vec4(color * light, light);
+  float exposure = mesh.rim_light.w;
+  color *= light * exposure;
+#if defined(HEADLIGHT) || defined(RAKING_LIGHT) || defined(UNLIT)
+  if (exposure != 1.0)  // otherwise no color is too bright: what a scan stores is shown as it is
+#endif
+    color = tone_mapped(color);
+  lit = vec4(color, min(light, 1.0));
 #ifdef SECTION
   bool inside = !gl_FrontFacing && mesh.eye_is_cut_away != 0u;
   gl_FragDepth = marked_depth(gl_FragCoord.z, inside);
   if (inside) {
     packed_uv = kBackground;  // nothing is painted there
-    lit = vec4(kInsideColor, 1.0);
+    lit = vec4(1.0);  // shade_pass colors it
   }
 #endif
 }

@@ -20,18 +20,18 @@ layout(location = 1) out float surface_light;
 #else
 layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye
 #endif
-layout(location = 2) out vec3 surface_color;
+layout(location = 2) out vec4 surface_color;  // a: the share of the sky that reaches the surface
 
 void main() {
   gl_Position = mesh.clip_from_model * vec4(position, 1.0);
   surface_uv = uv;
   float to_eye = dot(normal.xyz, normalize(mesh.eye.xyz - position * mesh.eye.w));
 #ifdef LIT_VERTICES
-  surface_light = museum_light(is_seen_from_behind(to_eye) ? -normal.xyz : normal.xyz, mesh);
+  surface_light = museum_light(is_seen_from_behind(to_eye) ? -normal.xyz : normal.xyz, color.a, mesh);
 #else
   surface_normal = vec4(normal.xyz, to_eye);
 #endif
-  surface_color = color.rgb;
+  surface_color = color;
 #ifdef SECTION
   for (uint i = 0u; i < kSectionPlanes; ++i) gl_ClipDistance[i] = dot(mesh.section[i].xyz, position) + mesh.section[i].w;
 #endif

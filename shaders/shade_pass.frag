@@ -1,4 +1,5 @@
 #version 450 core
+#include "shared/cut.h"
 #include "shared/mesh.h"
 #include "shared/pages.h"
 #include "shared/shade.h"
@@ -156,9 +157,29 @@ vec4 add_layer(vec4 below, ShadeLayer layer, uint mode, uint type, uint units, u
 }
 #endif
 
+#ifdef CUT
+// Of the g-buffer: an inside has light but no texture coordinate. The border of the picture is no
+// border of the cut.
+bool is_inside(ivec2 pixel) {
+  pixel = clamp(pixel, ivec2(0), textureSize(surface_uv, 0) - 1);
+  return texelFetch(surface_uv, pixel, 0).r == kBackground && texelFetch(surface_light, pixel, 0).a > 0.0;
+}
+
+vec3 cut_color(ivec2 pixel) {
+  int width = max(1, int(kCutOutlinePixels * shade.patterns.w + 0.5));
+  bool whole = is_inside(pixel + ivec2(width, 0)) && is_inside(pixel - ivec2(width, 0)) &&
+               is_inside(pixel + ivec2(0, width)) && is_inside(pixel - ivec2(0, width));
+  float ink = whole ? cut_hatch(gl_FragCoord.xy - shade.patterns.xy, shade.patterns.w) : 1.0;
+  return mix(kCutGround, kCutInk, ink);
+}
+#endif
+
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 surface = texelFetch(surface_light, pixel, 0);
+#ifdef CUT
+  if (texelFetch(surface_uv, pixel, 0).r == kBackground) surface.rgb = cut_color(pixel);
+#endif
   vec4 color = vec4(shade.first_pass != 0u ? surface.rgb : vec3(0.0), 1.0);
 #if CHUNK_COUNT > 0
   uint q = texelFetch(surface_uv, pixel, 0).r;

@@ -1,14 +1,26 @@
 #pragma once
 #include "shared/mesh.h"
 #ifndef __cplusplus
-// The default light: a soft key from the upper left, a weak fill from the camera's right, and a sky
-// that is brighter at the top.
-float museum_light(vec3 normal, MeshUniforms mesh) {
-  float key = dot(normal, mesh.key_light.xyz);
-  float wrapped = max(0.0, key * 0.8 + 0.2);
-  float fill = max(0.0, dot(normal, mesh.fill_light.xyz));
+// Light is a factor of colors as they are stored. Stored colors are about the square roots of
+// light, so sums of light become factors by a square root.
+
+// The default light: a key from the upper left, a fill from the right and a rim from behind, all
+// soft, and a sky that is brighter at the top. 0.97 on a plane that faces the eye: layers then have
+// the colors of their legends. `openness` is the share of the sky that reaches the surface.
+float museum_light(vec3 normal, float openness, MeshUniforms mesh) {
+  float key = max(0.0, dot(normal, mesh.key_light.xyz) * 0.83 + 0.17);
+  float fill = max(0.0, dot(normal, mesh.fill_light.xyz) * 0.71 + 0.29);
+  float rim = max(0.0, dot(normal, mesh.rim_light.xyz));
   float sky = 0.5 + 0.5 * dot(normal, mesh.up.xyz);
-  return min(0.22 + 0.18 * sky + 0.56 * wrapped * wrapped + 0.16 * fill, 1.0);
+  return sqrt(0.73 * key + 0.26 * rim + openness * (0.26 * fill + 0.12 + 0.19 * sky));
+}
+
+// Rolls off what is brighter than a picture can show, and keeps the hue.
+vec3 tone_mapped(vec3 color) {
+  const float kKnee = 0.9, kRest = 1.0 - kKnee;
+  float peak = max(color.r, max(color.g, color.b));
+  float over = max(0.0, peak - kKnee);
+  return color * (min(peak, kKnee) + kRest * over / (over + kRest)) / max(peak, 1e-4);
 }
 
 // Two-sided: scans are open and their windings are not always right. At silhouettes smooth normals

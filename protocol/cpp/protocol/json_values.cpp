@@ -57,6 +57,9 @@ void read_core(const nlohmann::json& json, strata::Light& value) {
   read_core(json.at("mode"), value.mode);
   if (const auto direction = json.find("direction"); direction != json.end())
     read_core(*direction, value.direction);
+  value.exposure_ev = json.value("exposure", value.exposure_ev);
+  value.fill = json.value("fill", value.fill);
+  value.layer_opacity = json.value("layer_opacity", value.layer_opacity);
 }
 void read_core(const nlohmann::json& json, strata::ValueType& value) {
   if (auto type = parse_value_type(json.get_ref<const std::string&>())) value = *type;
@@ -103,7 +106,12 @@ nlohmann::json write_core(const strata::LightMode& value) {
   return kLightModes.at(static_cast<std::size_t>(value));
 }
 nlohmann::json write_core(const strata::Light& value) {
-  return {{"mode", write_core(value.mode)}, {"direction", write_core(value.direction)}};
+  const strata::Light plain;
+  nlohmann::json json{{"mode", write_core(value.mode)}, {"direction", write_core(value.direction)}};
+  if (value.exposure_ev != plain.exposure_ev) json["exposure"] = value.exposure_ev;
+  if (value.fill != plain.fill) json["fill"] = value.fill;
+  if (value.layer_opacity != plain.layer_opacity) json["layer_opacity"] = value.layer_opacity;
+  return json;
 }
 nlohmann::json write_core(const strata::ValueType& value) { return name(value); }
 nlohmann::json write_core(const strata::LayerKind& value) {

@@ -357,10 +357,13 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                    request.style.background,
                    request.background_rows,
                    {},
-                   patterns_of(request, camera_, model->mesh().geometry())};
+                   patterns_of(request, camera_, model->mesh().geometry()),
+                   !camera_.section.empty() && eye_is_cut_away(camera_)};
   for (const LayerStyle& style : request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
-    input.layers.push_back({&layer->textures(), style.palette, style.opacity, style.bare});
+    const double factor = style.bare ? 1 : opacity_of_layers(request.style.light);
+    input.layers.push_back({&layer->textures(), style.palette,
+                            style.opacity * static_cast<float>(factor), style.bare});
   }
   STRATA_TRY(scene.tables().flush());
   STRATA_TRY(scene.shade_pass().shade(input, scene.tables()));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "shared/cluster.h"
@@ -166,6 +167,9 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
   }
   view.light = light.mode;
   uniforms.fill_light = direction({0.80, 0.05, 0.45});
+  uniforms.fill_light.w = static_cast<float>(light.fill);
+  uniforms.rim_light = direction({0.35, 0.75, -0.45});
+  uniforms.rim_light.w = static_cast<float>(std::exp2(light.exposure_ev / 2));
   uniforms.up = direction({0, 1, 0.15});
   std::ranges::copy(section_in_model(camera, origin), uniforms.section);
   uniforms.eye_is_cut_away = eye_is_cut_away(camera) ? 1 : 0;

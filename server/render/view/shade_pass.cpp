@@ -43,11 +43,11 @@ Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir,
   auto background =
       STRATA_TRY(gl::Program::load(shader_dir, {"picture.vert", "background_pass.frag"}));
   pass.background_ = std::move(background);
-  STRATA_TRY(pass.program({}));
+  STRATA_TRY(pass.program({}, false));
   return pass;
 }
 
-Result<const gl::Program*> ShadePass::program(const Batch& batch) {
+Result<const gl::Program*> ShadePass::program(const Batch& batch, bool shows_inside) {
   std::string kinds;
   for (std::size_t i = 0; program_per_kinds_ && i < batch.layers.size(); ++i) {
     const auto& layer = batch.layers[i];
@@ -55,10 +55,11 @@ Result<const gl::Program*> ShadePass::program(const Batch& batch) {
              std::to_string(layer.type) + "u, " + std::to_string(batch.units[i]) + "u, " +
              std::to_string(layer.patterned) + "u) ";
   }
-  const std::pair key{batch.chunks.size(), kinds};
+  const std::tuple key{batch.chunks.size(), kinds, shows_inside};
   const auto built = programs_.find(key);
   if (built != programs_.end()) return &built->second;
   std::vector<std::string> defines{"CHUNK_COUNT " + std::to_string(batch.chunks.size())};
+  if (shows_inside) defines.emplace_back("CUT");
   if (!kinds.empty()) defines.push_back("LAYERS " + kinds);
   auto program =
       STRATA_TRY(gl::Program::load(shader_dir_, {"picture.vert", "shade_pass.frag"}, defines));
@@ -190,7 +191,7 @@ Result<void> ShadePass::draw_background(const ShadeInput& input) {
 Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch, bool first,
                                      const PageTables& tables) {
   if (input.surface_rect.width == 0) return {};
-  auto built = STRATA_TRY(program(batch));
+  auto built = STRATA_TRY(program(batch, input.shows_inside));
   STRATA_TRY(layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)));
   layers_.bind_uniform(1);
   tables.bind(0);

@@ -4,7 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "gl/framebuffer.h"
@@ -40,6 +40,7 @@ struct ShadeInput {
   glm::vec2 background_rows{0, 1};  // FrameRequest::background_rows
   std::vector<Layer> layers;        // bottom to top
   Patterns patterns{};
+  bool shows_inside = false;  // of a solid that a section cuts open
 };
 
 // Colors a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the
@@ -70,7 +71,7 @@ class ShadePass {
     std::vector<Chunk> chunks;
   };
   bool can_take(const Batch& batch, const Chunk& chunk, bool listed) const;
-  Result<const gl::Program*> program(const Batch& batch);
+  Result<const gl::Program*> program(const Batch& batch, bool shows_inside);
   std::vector<Batch> plan(std::span<const ShadeInput::Layer> layers);
   Result<void> draw_background(const ShadeInput& input);
   Result<void> draw_surface(const ShadeInput& input, const Batch& batch, bool first,
@@ -82,8 +83,8 @@ class ShadePass {
   std::filesystem::path shader_dir_;
   bool program_per_kinds_ = false;
   gl::Program background_;
-  // by chunks and kinds, built on first use
-  std::map<std::pair<std::size_t, std::string>, gl::Program> programs_;
+  // by chunks, kinds and whether they show insides, built on first use
+  std::map<std::tuple<std::size_t, std::string, bool>, gl::Program> programs_;
   gl::VertexArray no_vertices_{"picture"};
   PaletteTextures palettes_;
   StreamBuffer uniforms_{"shade uniforms"}, layers_{"shade layers"};

@@ -1,5 +1,6 @@
 """Surface images (looks), light, sections and scans of several files, over HTTP and from the
 command line."""
+import math
 import os
 import subprocess
 import tempfile
@@ -159,6 +160,23 @@ def test_looks(server, camera):
             422,
         ),
         (
+            "too much exposure",
+            "POST",
+            M + "/frame",
+            {"camera": camera, "light": {"mode": "museum", "exposure": 3.5}},
+            {},
+            422,
+        ),
+        (
+            "a cut without a direction",
+            "POST",
+            M + "/section",
+            {"section": [[0, 0, 1, 0], [0, 0, 0, 1]]},
+            {},
+            422,
+        ),
+        ("no cut", "POST", M + "/section", {"section": []}, {}, 422),
+        (
             "seven planes",
             "POST",
             M + "/frame",
@@ -218,6 +236,44 @@ def test_raking(server, camera):
     row = len(left) // 2
     at = lambda rows, share: sum(rows[row][int(len(rows[0]) * share)])
     assert at(left, 0.42) > at(left, 0.58) + 60 and at(right, 0.58) > at(right, 0.42) + 60
+
+
+def test_exposure_and_fill(server, camera):
+    center = lambda rows: rows[len(rows) // 2][len(rows[0]) // 2]
+    brightness = lambda **light: sum(center(frame(server, camera=camera, light=light)))
+    plain = brightness(mode="museum")
+    assert brightness(mode="museum", exposure=-2) < plain * 0.6
+    assert plain < brightness(mode="museum", exposure=2) <= 3 * 255
+    side = {"mode": "raking", "direction": [1, 0, 0.3]}
+    dark, filled = (frame(server, camera=camera, light={**side, "fill": fill}) for fill in (0, 0.5))
+    row = len(dark) // 2
+    at = lambda rows: sum(rows[row][int(len(rows[0]) * 0.4)])
+    assert at(filled) > at(dark) + 60
+    light = {"mode": "raking", "direction": [-1, 0, 0.5], "exposure": 0.5, "fill": 0.25}
+    made = server.ok(
+        "POST",
+        M + "/views",
+        {
+            "name": "Raking",
+            "camera": camera,
+            "layers": [],
+            "light": {**light, "layer_opacity": 0.5},
+        },
+    )
+    assert made.json()["light"] == {**light, "layer_opacity": 0.5}
+
+
+def test_area_of_a_section(server):
+    area = lambda *planes: [
+        cut.get("area_m2")
+        for cut in server.ok("POST", M + "/section", {"section": planes}).json()["cuts"]
+    ]
+    circle = math.pi * 0.05**2  # a ball with waves of 4 %
+    (whole,) = area([0, 0, 1, 0])
+    assert abs(whole - circle) < 0.02 * circle, whole
+    half, other = area([0, 0, 2, 0], [1, 0, 0, 0])
+    assert abs(half - circle / 2) < 0.03 * circle and abs(other - circle / 2) < 0.03 * circle
+    assert area([0, 0, 1, -1000]) == [0]
 
 
 def test_section(server, camera):

@@ -98,7 +98,7 @@ test("a section opens the pot, and the brush paints what is seen then", async ()
   inside = ({ data }) => {
     let count = 0;
     for (let at = 0; at < data.length; at += 4)
-      if ([120, 92, 79].every((wanted, c) => Math.abs(data[at + c] - wanted) < 4)) ++count;
+      if ([219, 209, 194].every((wanted, c) => Math.abs(data[at + c] - wanted) < 4)) ++count;
     return count;
   };
   uncut = inside(await stage()); // some of the clay also has that color

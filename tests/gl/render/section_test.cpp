@@ -11,8 +11,8 @@ namespace strata::test {
 namespace {
 
 constexpr int kResolution = 1024, kSize = 400;
-constexpr int kUndecidedOneIn = 5'000;              // the planes are an additional threshold
-constexpr std::array<int, 3> kInside{120, 92, 79};  // gbuffer_pass.frag
+constexpr int kUndecidedOneIn = 5'000;  // the planes are an additional threshold
+constexpr std::array<int, 3> kInside{219, 209, 194}, kInk{61, 48, 41};  // shaders/shared/cut.h
 
 // A ball of radius 1 with a hollow of radius 0.7: the outer surface is in the left half of the
 // atlas.
@@ -36,6 +36,14 @@ int count(const render::StrokeOutcome& outcome, bool outer) {
   for (const auto& tile : outcome.tiles)
     if ((tile.address.x < kResolution / kTileSize / 2) == outer) count += tile.written.count();
   return count;
+}
+
+// Whether a color is that of a cut solid's inside: its ground, its ink or a mixture.
+bool is_inside(const std::array<int, 3>& color) {
+  const double ink = double(kInside[0] - color[0]) / (kInside[0] - kInk[0]);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::abs(kInside[i] + ink * (kInk[i] - kInside[i]) - color[i]) > 3) return false;
+  return ink > -0.02 && ink < 1.02;
 }
 
 class Section : public testing::Test {
@@ -69,26 +77,69 @@ class Section : public testing::Test {
 
 TEST_F(Section, a_cut_ball_shows_its_hollow_and_a_closed_wall) {
   const int middle = kSize / 2;
-  EXPECT_EQ(pixel(camera_, at_radius(0.85), middle), kInside);
-  EXPECT_EQ(pixel(camera_, middle, kSize - at_radius(0.85)), kInside);
-  EXPECT_NE(pixel(camera_, middle, middle), kInside) << "the hollow is surface";
+  EXPECT_TRUE(is_inside(pixel(camera_, at_radius(0.85), middle)));
+  EXPECT_TRUE(is_inside(pixel(camera_, middle, kSize - at_radius(0.85))));
+  EXPECT_FALSE(is_inside(pixel(camera_, middle, middle))) << "the hollow is surface";
   Camera whole = camera_;
   whole.section.clear();
-  EXPECT_NE(pixel(whole, at_radius(0.85), middle), kInside);
+  EXPECT_FALSE(is_inside(pixel(whole, at_radius(0.85), middle)));
   Camera nothing = camera_;
   nothing.section = {{1, 0, 0, -5}};
   EXPECT_EQ(pixel(nothing, middle, middle), pixel(camera_, 2, middle)) << "all is cut away";
+}
+
+TEST_F(Section, the_cut_is_hatched_at_45_degrees_and_has_an_outline) {
+  render::FrameRequest request;
+  request.view = renderer_.add_view(model_);
+  request.camera = camera_;
+  request.width = request.height = kSize;
+  const auto frame = renderer_.draw(request);
+  const auto at = [&](int x, int y) {
+    const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * kSize + x)];
+    return std::array<int, 3>{p[0], p[1], p[2]};
+  };
+  // The oracle: lines 9 pixels apart, 1.25 wide, from the center of the model's box.
+  const mesh::Geometry& geometry = *scene_.geometry;
+  const glm::dvec3 center = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
+  const glm::dvec4 origin = camera_.projection * camera_.view * glm::dvec4(center, 1);
+  const auto hatch = [&](int x, int y) {
+    const double right = x + 0.5 - kSize / 2.0 * (1 + origin.x),
+                 up = kSize / 2.0 * (1 - origin.y) - y - 0.5;
+    const double across = (right - up) * std::sqrt(0.5) / 9;
+    const double middle = std::abs(across - std::floor(across) - 0.5) * 9;
+    return std::clamp(0.5 * 1.25 - middle + 0.5, 0.0, 1.0);
+  };
+  int lines = 0, inside = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const double radius = std::hypot(x + 0.5 - kSize / 2.0, y + 0.5 - kSize / 2.0) / kSize * 2.5;
+      if (radius < 0.75 || radius > 0.95) continue;
+      ++inside;
+      if (hatch(x, y) > 0.5) ++lines;
+      for (std::size_t i = 0; i < 3; ++i)
+        ASSERT_NEAR(at(x, y)[i], kInside[i] + hatch(x, y) * (kInk[i] - kInside[i]), 2.0)
+            << x << " " << y;
+    }
+  EXPECT_GT(inside, 20'000);
+  EXPECT_NEAR(double(lines) / inside, 1.25 / 9, 0.03);
+  // From the middle to the right, the cut begins and ends with ink.
+  int begin = at_radius(0.6), end = at_radius(1.1);
+  while (!is_inside(at(begin, kSize / 2))) ++begin;
+  while (!is_inside(at(end, kSize / 2))) --end;
+  for (const int x : {begin, begin + 1, end - 1, end}) EXPECT_EQ(at(x, kSize / 2), kInk) << x;
+  EXPECT_NEAR(begin, at_radius(0.7), 4);
+  EXPECT_NEAR(end, at_radius(1), 4);
 }
 
 TEST_F(Section, the_wall_is_closed_for_perspective_and_mirrored_cameras) {
   Camera camera =
       perspective_camera({4, 0, 0}, {0, 0, 0}, kSize, kSize, 2 * 57.29578 * std::atan(1.25 / 4));
   camera.section = camera_.section;
-  EXPECT_EQ(pixel(camera, at_radius(0.85), kSize / 2), kInside);
+  EXPECT_TRUE(is_inside(pixel(camera, at_radius(0.85), kSize / 2)));
   Camera mirrored = camera_;
   mirrored.view = glm::scale(glm::dmat4(1), {-1, 1, 1}) * mirrored.view;
-  EXPECT_EQ(pixel(mirrored, at_radius(0.85), kSize / 2), kInside);
-  EXPECT_NE(pixel(mirrored, kSize / 2, kSize / 2), kInside);
+  EXPECT_TRUE(is_inside(pixel(mirrored, at_radius(0.85), kSize / 2)));
+  EXPECT_FALSE(is_inside(pixel(mirrored, kSize / 2, kSize / 2)));
 }
 
 TEST_F(Section, from_the_side_that_is_kept_nothing_is_closed) {
@@ -104,7 +155,7 @@ TEST_F(Section, a_box_of_six_planes_keeps_what_is_inside) {
   const int middle = kSize / 2;
   EXPECT_EQ(pixel(camera_, middle + 2, at_radius(0.6)), pixel(camera_, 2, at_radius(0.6)))
       << "above the box";
-  EXPECT_EQ(pixel(camera_, at_radius(0.7), middle), kInside)
+  EXPECT_TRUE(is_inside(pixel(camera_, at_radius(0.7), middle)))
       << "the wall at the near side of the box";
 }
 

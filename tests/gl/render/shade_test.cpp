@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "support/color_difference.h"
 #include "support/gl_scene.h"
 
 namespace strata::test {
@@ -105,6 +106,55 @@ TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
       renderer_->remove_layer(layer);
     }
   }
+}
+
+TEST(ColorDifference, is_that_of_the_published_examples) {
+  EXPECT_NEAR(ciede2000({50, 2.6772, -79.7751}, {50, 0, -82.7485}), 2.0425, 1e-4);
+  EXPECT_NEAR(ciede2000({50, 2.5, 0}, {50, 0, -2.5}), 4.3065, 1e-4);
+  EXPECT_NEAR(ciede2000({50, 2.5, 0}, {58, 24, 15}), 19.4535, 1e-4);
+  EXPECT_NEAR(ciede2000({90.8027, -2.0831, 1.4410}, {91.1528, -1.6435, 0.0447}), 1.4441, 1e-4);
+  EXPECT_NEAR(ciede2000({2.0776, 0.0795, -1.1350}, {0.9033, -0.0636, -0.5514}), 0.9082, 1e-4);
+  EXPECT_NEAR(color_difference({255, 255, 255}, {0, 0, 0}), 100, 0.01);
+}
+
+TEST_F(Shade, a_class_has_the_colour_of_its_legend_in_museum_light_and_without_light) {
+  for (const Rgba color : {Rgba{255, 255, 255, 255},
+                           {119, 119, 119, 255},
+                           {20, 20, 20, 255},
+                           {200, 30, 40, 255},
+                           {0, 114, 178, 255},
+                           {230, 159, 0, 255},
+                           {0, 158, 115, 255},
+                           {204, 121, 167, 255}}) {
+    const auto palette =
+        std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
+    request_.style.layers = {{filled_layer(ValueType::u8, 1), palette, 1}};
+    SCOPED_TRACE(std::to_string(color[0]) + " " + std::to_string(color[1]));
+    for (const double ev : {-3.0, 0.0, 3.0}) {
+      request_.style.light = {LightMode::museum, {0, 0, 1}, ev};
+      EXPECT_LE(color_difference(pixel(renderer_.draw(request_), 128, 128), rgb(color)), 3)
+          << "whatever the exposure";
+      request_.style.light = {LightMode::unlit, {0, 0, 1}, ev};
+      EXPECT_EQ(pixel(renderer_.draw(request_), 128, 128), rgb(color));
+    }
+  }
+}
+
+TEST_F(Shade, layers_are_weaker_in_raking_light_if_the_light_says_so) {
+  const auto red =
+      std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {250, 0, 0, 255}, {}}}, {}});
+  const auto layer = filled_layer(ValueType::u8, 1);
+  const auto at = [&](LightMode mode, double opacity, bool with_layer) {
+    request_.style.light = {mode, {-1, 0, 0.5}, 0, 0, opacity};
+    request_.style.layers.clear();
+    if (with_layer) request_.style.layers = {{layer, red, 1}};
+    return pixel(renderer_.draw(request_), 128, 128);
+  };
+  const auto bare = at(LightMode::raking, 1, false), full = at(LightMode::raking, 1, true),
+             weak = at(LightMode::raking, 0.3, true);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(weak[i], bare[i] + 0.3 * (full[i] - bare[i]), 1.5) << "channel " << i;
+  EXPECT_EQ(at(LightMode::museum, 0.3, true), at(LightMode::museum, 1, true));
 }
 
 TEST_F(Shade, a_step_changes_colour_exactly_at_its_point) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -195,14 +196,26 @@ TEST_F(SurfaceImages, raking_light_shows_what_leans_towards_it) {
   EXPECT_GE(bright(kMiddle), lit);
 }
 
-// Returns the standard light on a plane with this normal, in the axes of the eye.
-double museum_light(const glm::dvec3& normal) {
+// Returns the standard light on an open plane with this normal, in the axes of the eye.
+double museum_light(const glm::dvec3& normal, double openness = 1) {
   const auto from = [&](const glm::dvec3& direction) {
     return glm::dot(normal, glm::normalize(direction));
   };
-  const double wrapped = std::max(0.0, 0.8 * from({-0.45, 0.60, 0.75}) + 0.2);
-  return std::min(1.0, 0.22 + 0.18 * (0.5 + 0.5 * from({0, 1, 0.15})) + 0.56 * wrapped * wrapped +
-                           0.16 * std::max(0.0, from({0.80, 0.05, 0.45})));
+  const double key = std::max(0.0, 0.83 * from({-0.45, 0.60, 0.75}) + 0.17),
+               fill = std::max(0.0, 0.71 * from({0.80, 0.05, 0.45}) + 0.29),
+               rim = std::max(0.0, from({0.35, 0.75, -0.45})), sky = 0.5 + 0.5 * from({0, 1, 0.15});
+  return std::sqrt(0.73 * key + 0.26 * rim + openness * (0.26 * fill + 0.12 + 0.19 * sky));
+}
+
+// The code of a color after exposure, as the picture shows it.
+int exposed(const Color& color, std::size_t channel, double factor) {
+  const double peak = factor * *std::ranges::max_element(color) / 255;
+  const double over = std::max(0.0, peak - 0.9);
+  const double shown = std::min(peak, 0.9) + 0.1 * over / (over + 0.1);
+  return static_cast<int>(std::lround(color[channel] * factor * shown / peak));
+}
+Color exposed(const Color& color, double factor) {
+  return {exposed(color, 0, factor), exposed(color, 1, factor), exposed(color, 2, factor)};
 }
 
 TEST_F(SurfaceImages,
@@ -216,16 +229,76 @@ TEST_F(SurfaceImages,
       request_.camera = orthographic_camera(eye, {0, 0, 0}, kSize, kSize, 0.5);
       const glm::dvec3 up = glm::dmat3(request_.camera.view) * glm::dvec3(0, 0, 1);
       request_.style.light.mode = LightMode::unlit;
-      Color expected = pixel(kSize / 2, kSize / 2);
+      const Color plain = pixel(kSize / 2, kSize / 2);
       // the same brightness from behind
-      for (int& channel : expected)
-        channel = static_cast<int>(std::lround(channel * museum_light(eye.z > 0 ? up : -up)));
+      const Color expected = exposed(plain, museum_light(eye.z > 0 ? up : -up));
       request_.style.light.mode = LightMode::museum;
       SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " +
                    std::to_string(eye.z));
       expect_near(pixel(kSize / 2, kSize / 2), expected, 2);
     }
   }
+}
+
+TEST_F(SurfaceImages, exposure_brightens_the_surface_and_rolls_off_what_is_too_bright) {
+  request_.style.images = {{add(plain({30, 39, 25, 255}))}};
+  const Color dark{30, 39, 25};
+  expect_near(pixel(kSize / 2, kSize / 2), dark, 0);
+  for (const double ev : {-3.0, -1.0, 0.5, 2.0, 3.0}) {
+    SCOPED_TRACE(ev);
+    request_.style.light.exposure_ev = ev;
+    expect_near(pixel(kSize / 2, kSize / 2), exposed(dark, std::exp2(ev / 2)));
+  }
+  // Orange stays orange: the channels keep their proportions.
+  const Color orange{230, 120, 40};
+  request_.style.images = {{add(plain({230, 120, 40, 255}))}};
+  expect_near(pixel(kSize / 2, kSize / 2), exposed(orange, std::exp2(1.5)));
+  EXPECT_LT(pixel(kSize / 2, kSize / 2)[0], 255);
+  request_.style.light.exposure_ev = 0;
+  expect_near(pixel(kSize / 2, kSize / 2), orange, 0);
+}
+
+TEST_F(SurfaceImages, a_fill_lights_the_shadows_of_raking_light) {
+  const auto at = [&](double fill, const glm::dvec3& direction) {
+    request_.style.light = {LightMode::raking, direction, 0, fill};
+    return pixel(kSize / 2, kSize / 2)[0];
+  };
+  request_.style.light.mode = LightMode::unlit;
+  const int plain = pixel(kSize / 2, kSize / 2)[0];
+  // A plane that faces the viewer is as bright with any fill.
+  for (const double fill : {0.0, 0.3, 1.0}) EXPECT_NEAR(at(fill, {-1, 0, 0.3}), plain * 0.54, 2);
+  // In a shadow, the fill is all the light.
+  request_.camera = orthographic_camera({1.2, 0, 1.6}, {0, 0, 0}, kSize, kSize, 0.5);
+  for (const double fill : {0.0, 0.3, 1.0})
+    EXPECT_NEAR(at(fill, {1, 0, 0.1}), plain * (0.04 + fill * 0.5 * 0.8), 2);
+}
+
+TEST_F(SurfaceImages, the_numbers_of_a_light_are_in_their_ranges) {
+  const auto field = [&](const Light& light) {
+    request_.style.light = light;
+    return refusal(request_).field;
+  };
+  EXPECT_EQ(field({LightMode::museum, {0, 0, 1}, 3.01}), "light.exposure");
+  EXPECT_EQ(field({LightMode::museum, {0, 0, 1}, std::nan("")}), "light.exposure");
+  EXPECT_EQ(field({LightMode::raking, {0, 0, 1}, 0, -0.01}), "light.fill");
+  EXPECT_EQ(field({LightMode::raking, {0, 0, 1}, 0, 0, 1.01}), "light.layer_opacity");
+}
+
+TEST_F(SurfaceImages, a_cavity_gets_less_of_the_sky) {
+  auto scene = make_scene(flat_square(), 256);
+  mesh::Geometry dark = *scene.geometry;
+  for (auto& vertex : dark.vertices) vertex.color &= 0x40ffffffu;
+  const auto view = [&](std::shared_ptr<const mesh::Geometry> geometry) {
+    Scene of{scene};
+    of.geometry = std::move(geometry);
+    request_.view = renderer_.add_view(renderer_.add(of));
+    return pixel(kSize / 2, kSize / 2);
+  };
+  const Color plain = view(scene.geometry);
+  EXPECT_EQ(view(std::make_shared<const mesh::Geometry>(dark)), plain) << "without light";
+  request_.style.light.mode = LightMode::museum;
+  expect_near(view(std::make_shared<const mesh::Geometry>(dark)),
+              exposed(plain, museum_light({0, 0, 1}, 64.0 / 255)), 2);
 }
 
 TEST_F(SurfaceImages, a_view_is_drawn_anew_when_only_its_light_changes) {

@@ -413,11 +413,17 @@ export interface LookShown {
 /** Kind of light. */
 export type LightMode = "museum" | "headlight" | "raking" | "unlit";
 
-/** Light of a view. museum: soft, from above. headlight: from the eye. raking: from one side, which shows relief. unlit: the colors without light. */
+/** Light of a view. museum: three soft lights. headlight: from the eye. raking: from one side, which shows relief. unlit: the colors without light. */
 export interface Light {
   mode: LightMode;
   /** Raking light: the direction to the light, in the axes of the eye (x right, y up, z towards the viewer). */
   direction?: Point3;
+  /** Makes the surface brighter or darker, in EV: 1 is twice the light. Layers keep the colors of their legends. Default: 0. */
+  exposure?: number;
+  /** Raking light: the share of the light that comes from the eye instead, so that shadows show detail. Default: 0. */
+  fill?: number;
+  /** Raking light: the opacity of all layers is multiplied by it, so that relief stays visible. Default: 1. */
+  layer_opacity?: number;
 }
 
 /** How a view shows a layer. Absent members have the layer's own defaults. */
@@ -2730,6 +2736,23 @@ export interface ProfileSample {
 export interface Profile {
   length_mm: number;
   samples: ProfileSample[];
+}
+
+/** Request to measure a section. */
+export interface SectionRequest {
+  section: Plane[];
+}
+
+/** Cut of one plane of a section. */
+export interface SectionCut {
+  /** Of the cut solid, inside what the other planes keep. Absent where the surface is open at the cut, so that it bounds no area. */
+  area_m2?: number;
+}
+
+/** Measures of a section. */
+export interface SectionMeasures {
+  /** In the order of the planes. */
+  cuts: SectionCut[];
 }
 
 /** Request to compare two layers. */

@@ -1210,6 +1210,25 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/section": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Measure a section */
+        post: operations["measureSection"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/select": {
         parameters: {
             query?: never;
@@ -2589,6 +2608,12 @@ export interface components {
         ScriptTokenMade: wire.ScriptTokenMade;
         /** Planes that cut the model open */
         Section: wire.Section;
+        /** Cut of one plane of a section */
+        SectionCut: wire.SectionCut;
+        /** Measures of a section */
+        SectionMeasures: wire.SectionMeasures;
+        /** Request to measure a section */
+        SectionRequest: wire.SectionRequest;
         /** Contents of layers in a selection */
         SelectedLayers: wire.SelectedLayers;
         /** Paint the selection */
@@ -5349,6 +5374,31 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Profile"];
                     "text/csv": string;
+                };
+            };
+        };
+    };
+    measureSection: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SectionRequest"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SectionMeasures"];
                 };
             };
         };

@@ -66,4 +66,5 @@ export class ViewSettings {
   }
 }
 
-const isUsual = (light: Light | null): boolean => (light?.mode ?? "museum") === "museum";
+const isUsual = (light: Light | null): boolean =>
+  (light?.mode ?? "museum") === "museum" && (light?.exposure ?? 0) === 0;

@@ -1729,6 +1729,12 @@ export const texts = {
       raking: "Licht von einer Seite: zeigt Inschriften, Werkspuren, Abnutzung",
       unlit: "Exakte Farben ohne Licht",
     },
+    exposure: "Belichtung",
+    exposure_hint: "Hellt die Oberfläche auf oder dunkelt sie ab. Layer behalten ihre Farben.",
+    fill_light: "Aufhelllicht",
+    fill_light_hint: "Licht von der Kamera aus, damit Schatten Zeichnung haben",
+    raking_layers: "Layer",
+    raking_layers_hint: "Deckkraft aller Layer im Streiflicht, damit das Relief sichtbar bleibt",
     light_direction: "Lichtrichtung",
     light_pad_hint:
       "Ziehen Sie, oder drücken Sie die Pfeiltasten. Nahe am Rand streift das Licht die Oberfläche.",
@@ -1745,6 +1751,11 @@ export const texts = {
     section_of_view: (planes) =>
       `Schnitt der gespeicherten Ansicht, mit ${count(planes, "Schnittebene", "Schnittebenen")}`,
     section_remove: "Ausschalten",
+    cut_area: (area) =>
+      area === null
+        ? "Die Oberfläche ist am Schnitt offen, daher hat der Schnitt keine Fläche."
+        : `Schnittfläche: ${area}`,
+    cut_measuring: "Die Schnittfläche wird gemessen…",
     cut_position: "Lage des Schnitts",
     flip: "Andere Seite zeigen",
     box_from: (axis) => `Quader von ${axis}`,

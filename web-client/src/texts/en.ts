@@ -1680,6 +1680,12 @@ export const texts = {
       raking: "Light from one side: shows inscriptions, tool marks, wear",
       unlit: "Exact colors without light",
     },
+    exposure: "Exposure",
+    exposure_hint: "Brightens or darkens the surface. Layers keep their colors.",
+    fill_light: "Fill light",
+    fill_light_hint: "Light from the camera, so that shadows show detail",
+    raking_layers: "Layers",
+    raking_layers_hint: "Opacity of all layers in raking light, so that relief stays visible",
     light_direction: "Light direction",
     light_pad_hint: "Drag, or use the arrow keys. Near the rim the light rakes the surface.",
     light_from: (from: number, above: number) =>
@@ -1697,6 +1703,11 @@ export const texts = {
       `Section of the saved view, with ${count(planes, "plane", "planes")}`,
     section_remove: "Turn off",
     cut_position: "Cut position",
+    cut_area: (area: string | null) =>
+      area === null
+        ? "The surface is open at the cut, so the cut has no area."
+        : `Area of the cut: ${area}`,
+    cut_measuring: "Measuring the cut…",
     flip: "Show the other side",
     box_from: (axis: string) => `Box from ${axis}`,
     box_to: (axis: string) => `Box to ${axis}`,

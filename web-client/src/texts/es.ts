@@ -1724,6 +1724,12 @@ export const texts = {
       raking: "Luz desde un lado: muestra inscripciones, huellas de herramienta, desgaste",
       unlit: "Colores exactos, sin luz",
     },
+    exposure: "Exposición",
+    exposure_hint: "Aclara u oscurece la superficie. Las capas conservan sus colores.",
+    fill_light: "Luz de relleno",
+    fill_light_hint: "Luz desde la cámara, para que las sombras muestren detalle",
+    raking_layers: "Capas",
+    raking_layers_hint: "Opacidad de todas las capas con luz rasante, para que se vea el relieve",
     light_direction: "Dirección de la luz",
     light_pad_hint: "Arrastre o use las flechas. Cerca del borde, la luz es rasante.",
     light_from: (from, above) => {
@@ -1742,6 +1748,11 @@ export const texts = {
     section_of_view: (planes) =>
       `Sección de la vista guardada, con ${countOf(planes, "plano", "planos")}`,
     section_remove: "Desactivar",
+    cut_area: (area) =>
+      area === null
+        ? "La superficie está abierta en el corte, por lo que el corte no tiene área."
+        : `Área del corte: ${area}`,
+    cut_measuring: "Midiendo el corte…",
     cut_position: "Posición del corte",
     flip: "Mostrar el otro lado",
     box_from: (axis) => `Caja desde ${axis}`,

@@ -3297,6 +3297,36 @@ nlohmann::json to_json(const Profile& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, SectionRequest& value) {
+  read_member(json, "section", value.section);
+}
+
+nlohmann::json to_json(const SectionRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "section", value.section);
+  return json;
+}
+
+void read(const nlohmann::json& json, SectionCut& value) {
+  read_optional_member(json, "area_m2", value.area_m2);
+}
+
+nlohmann::json to_json(const SectionCut& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "area_m2", value.area_m2);
+  return json;
+}
+
+void read(const nlohmann::json& json, SectionMeasures& value) {
+  read_member(json, "cuts", value.cuts);
+}
+
+nlohmann::json to_json(const SectionMeasures& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "cuts", value.cuts);
+  return json;
+}
+
 void read(const nlohmann::json& json, CrossTableRequest& value) {
   read_member(json, "rows", value.rows);
   read_member(json, "columns", value.columns);

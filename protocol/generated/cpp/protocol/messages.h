@@ -301,6 +301,9 @@ enum class Schema {
   ProfileRequest,
   ProfileSample,
   Profile,
+  SectionRequest,
+  SectionCut,
+  SectionMeasures,
   CrossTableRequest,
   CrossTable,
   Extent,
@@ -320,7 +323,7 @@ enum class Schema {
   Readiness,
   ServerVersion,
 };
-constexpr int kSchemaCount = 294;
+constexpr int kSchemaCount = 297;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -2572,6 +2575,38 @@ void read(const nlohmann::json& json, Profile& value);
 nlohmann::json to_json(const Profile& value);
 template <>
 inline constexpr Schema kSchemaOf<Profile> = Schema::Profile;
+
+// Request to measure a section.
+struct SectionRequest {
+  std::vector<glm::dvec4> section;
+  bool operator==(const SectionRequest&) const = default;
+};
+void read(const nlohmann::json& json, SectionRequest& value);
+nlohmann::json to_json(const SectionRequest& value);
+template <>
+inline constexpr Schema kSchemaOf<SectionRequest> = Schema::SectionRequest;
+
+// Cut of one plane of a section.
+struct SectionCut {
+  // Of the cut solid, inside what the other planes keep. Absent where the surface is open at the
+  // cut, so that it bounds no area.
+  std::optional<double> area_m2;
+  bool operator==(const SectionCut&) const = default;
+};
+void read(const nlohmann::json& json, SectionCut& value);
+nlohmann::json to_json(const SectionCut& value);
+template <>
+inline constexpr Schema kSchemaOf<SectionCut> = Schema::SectionCut;
+
+// Measures of a section.
+struct SectionMeasures {
+  std::vector<SectionCut> cuts;  // In the order of the planes.
+  bool operator==(const SectionMeasures&) const = default;
+};
+void read(const nlohmann::json& json, SectionMeasures& value);
+nlohmann::json to_json(const SectionMeasures& value);
+template <>
+inline constexpr Schema kSchemaOf<SectionMeasures> = Schema::SectionMeasures;
 
 // Request to compare two layers.
 struct CrossTableRequest {

@@ -1,5 +1,8 @@
+#include <cmath>
+
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
+#include "mesh/analysis/section_area.h"
 #include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -13,9 +16,12 @@
 #include "room/layers.h"
 #include "room/queries.h"
 #include "room/room.h"
+#include "room/surface.h"
 
 namespace strata::net {
 namespace {
+
+constexpr double kShortestNormal = 1e-12;  // of a plane
 
 std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
   std::vector<std::string> slugs;
@@ -113,6 +119,23 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
   return response;
 }
 
+Result<Response> section(const RouteContext& context, const Request& request) {
+  const auto body = STRATA_TRY(body_of<protocol::SectionRequest>(request));
+  for (std::size_t i = 0; i < body.section.size(); ++i)
+    if (!(glm::length(glm::dvec3(body.section[i])) > kShortestNormal))
+      return fail(ErrorCode::invalid, "Plane without a direction",
+                  "The first three numbers of a plane must not all be 0.",
+                  "section[" + std::to_string(i) + "]");
+  auto room = STRATA_TRY(open_room(context, request));
+  const double square = std::pow(room->model().metres(), 2);
+  protocol::SectionMeasures measures;
+  for (const auto& [area] : mesh::cut_areas(*room->surface().geometry(), body.section)) {
+    measures.cuts.emplace_back();
+    if (area) measures.cuts.back().area_m2 = *area * square;
+  }
+  return json_response(protocol::to_json(measures));
+}
+
 Result<Response> pick(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::PickRequest>(request));
   auto room = STRATA_TRY(open_room(context, request));
@@ -145,6 +168,13 @@ void add_query_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/profile",
               .handler = answering(
                   [&context](const Request& request) { return profile(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/section",
+              .handler = answering(
+                  [&context](const Request& request) { return section(context, request); }),
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .is_question = true});

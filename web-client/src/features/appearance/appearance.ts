@@ -4,7 +4,15 @@
 import { nameOfFile } from "../../domain/file-names";
 import { type Api, kAsItIs } from "../../net/api";
 import type { Bounds } from "../../math/camera";
-import type { Light, Look, LookEvent, LookPatch, LookShown, Plane } from "../../core/protocol.gen";
+import type {
+  Light,
+  Look,
+  LookEvent,
+  LookPatch,
+  LookShown,
+  Plane,
+  SectionCut,
+} from "../../core/protocol.gen";
 import {
   noSection,
   sectionChoice,
@@ -18,7 +26,14 @@ import { reorder } from "../../ui/reorder";
 import { texts } from "../../texts";
 
 export const kMostLooksShown = 4;
-const kFirstRaking: [number, number, number] = [-0.85, 0.4, 0.35];
+/** Fill and weak layers let tool marks show under painted layers, and shadows show detail. */
+const kFirstLight: Required<Light> = {
+  mode: "museum",
+  direction: [-0.85, 0.4, 0.35],
+  exposure: 0,
+  fill: 0.3,
+  layer_opacity: 0.3,
+};
 
 export interface AppearanceHost {
   /** Null: the default surface images. */
@@ -34,7 +49,7 @@ const after = <T>(all: readonly T[], one: T): T => all[(all.indexOf(one) + 1) % 
 
 export class Appearance {
   looks: Look[] = []; // ascending by order: the last is on top
-  light: Required<Light> = { mode: "museum", direction: kFirstRaking };
+  light = kFirstLight;
   section: SectionChoice = noSection();
 
   private _overrides = new Map<number, LookSettings>();
@@ -179,15 +194,25 @@ export class Appearance {
     this._host.changed();
   }
 
+  /** The areas that these planes cut, in their order. */
+  async measureSection(planes: Plane[]): Promise<SectionCut[]> {
+    const path = { model: this._modelId };
+    const body = { section: planes };
+    return (await this._api.json("POST /models/{model}/section", { path, body })).cuts;
+  }
+
   get isDefault(): boolean {
-    return this.light.mode === "museum" && this.section.mode === "off" && !this.hasLookOverrides;
+    const { mode, exposure } = this.light;
+    return (
+      mode === "museum" && exposure === 0 && this.section.mode === "off" && !this.hasLookOverrides
+    );
   }
 
   // ── named views ────────────────────────────────────────────────────────────────────────────────
 
   /** The settings that a named view keeps, without the section, which belongs to the camera. */
   toKeep(): { looks: LookShown[]; light: Light } {
-    return { looks: this.shownLooks(), light: this.light };
+    return { looks: this.shownLooks(), light: lightShown(this.light) };
   }
 
   /** Applies the settings of a named view. Returns a function that restores the previous ones. */
@@ -199,7 +224,7 @@ export class Appearance {
     this.take({
       _overrides: settings,
       _stack: stack,
-      light: { direction: kFirstRaking, ...view.light },
+      light: lightOf(view.light),
       section: ofView,
     });
     return () => this.take({ _overrides, _stack, light, section });
@@ -217,7 +242,7 @@ export class Appearance {
 
   reset(): void {
     this.forgetOwnLooks();
-    this.light = { mode: "museum", direction: kFirstRaking };
+    this.light = kFirstLight;
     this.section = noSection();
     this.send();
     this.sendSection();
@@ -234,7 +259,7 @@ export class Appearance {
   }
 
   private send(): void {
-    this._host.send(this.hasLookOverrides ? this.shownLooks() : null, this.light);
+    this._host.send(this.hasLookOverrides ? this.shownLooks() : null, lightShown(this.light));
     this._host.changed();
   }
 
@@ -267,4 +292,20 @@ export class Appearance {
     if (this._overrides.delete(id)) this.send();
     this._host.changed();
   }
+}
+
+/** The settings that have an effect in this light. */
+function lightShown({ mode, direction, exposure, fill, layer_opacity }: Required<Light>): Light {
+  return {
+    mode,
+    direction,
+    ...(exposure === 0 ? {} : { exposure }),
+    ...(mode === "raking" ? { fill, layer_opacity } : {}),
+  };
+}
+
+/** The light of a named view. Absent numbers have the defaults of the contract. */
+function lightOf(light: Light): Required<Light> {
+  const raking = light.mode === "raking" ? { fill: 0, layer_opacity: 1 } : {};
+  return { ...kFirstLight, ...raking, ...light };
 }

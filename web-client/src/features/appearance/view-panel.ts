@@ -8,7 +8,9 @@ import { kAxes, withBoxSide, worldPosition, type SectionMode } from "../../math/
 import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
 import { icon } from "../../ui/icons";
 import "../../ui/light-pad";
+import "./light-sliders";
 import "./look-list";
+import "./section-area";
 import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
 import type { TourRequest } from "../../session/requests";
@@ -147,6 +149,7 @@ export class StrataViewPanel extends FoldingPanel {
           ></strata-light-pad>`
           : nothing
       }
+      <strata-light-sliders .session=${this.session}></strata-light-sliders>
     </div>`;
   }
 
@@ -168,6 +171,7 @@ export class StrataViewPanel extends FoldingPanel {
         choose: (value) => appearance.setSection({ mode: value }),
       })}
       ${this.sectionOf(mode)}
+      <strata-section-area .session=${this.session}></strata-section-area>
     </div>`;
   }
 

@@ -179,13 +179,36 @@ describe("how a person sees the model", () => {
   it("goes back to the beginning at once", () => {
     appearance.setLight({ mode: "raking", direction: [1, 0, 0.2] });
     appearance.setSection({ mode: "x" });
-    expect(sent.at(-1)![1]).toEqual({ mode: "raking", direction: [1, 0, 0.2] });
+    expect(sent.at(-1)![1]).toEqual({
+      mode: "raking",
+      direction: [1, 0, 0.2],
+      fill: 0.3,
+      layer_opacity: 0.3,
+    });
     expect(planes).toHaveLength(1);
     expect(appearance.isDefault).toBe(false);
     appearance.reset();
     expect(appearance.isDefault).toBe(true);
     expect(planes).toEqual([]);
     expect(sent.at(-1)![1].mode).toBe("museum");
+  });
+
+  it("counts an exposure as a change, in every light", () => {
+    appearance.setLight({ exposure: -1.5 });
+    expect(sent.at(-1)![1]).toMatchObject({ mode: "museum", exposure: -1.5 });
+    expect(sent.at(-1)![1]).not.toHaveProperty("fill");
+    expect(appearance.isDefault).toBe(false);
+    appearance.reset();
+    expect(sent.at(-1)![1]).not.toHaveProperty("exposure");
+  });
+
+  it("shows a view of an earlier release as it was", () => {
+    const back = appearance.showView({ camera: {}, light: { mode: "raking", direction: [1, 0, 1] } });
+    expect(sent.at(-1)![1]).toMatchObject({ fill: 0, layer_opacity: 1 });
+    expect(appearance.toKeep().light).toEqual(sent.at(-1)![1]);
+    back();
+    appearance.setLight({ mode: "raking" });
+    expect(sent.at(-1)![1]).toMatchObject({ fill: 0.3, layer_opacity: 0.3 });
   });
 
   it("steps through lights and cuts by a key each", () => {

@@ -304,6 +304,8 @@ interface Seen {
   section: SectionChoice;
   light: "museum" | "headlight" | "raking" | "unlit";
   direction: [number, number, number];
+  exposure: number;
+  fill: number;
   layers: { visible: boolean; opacity: number; ownPalette: boolean; key: number | null }[];
   looks: { visible: boolean; opacity: number }[];
 }
@@ -321,6 +323,8 @@ const whatIsSeen: fc.Arbitrary<Seen> = fc.record({
     "unlit" as const,
   ),
   direction: fc.tuple(share, share, fc.constant(0.5)),
+  exposure: fc.double({ min: -3, max: 3, noNaN: true }),
+  fill: share,
   layers: fc.array(
     fc.record({
       visible: fc.boolean(),
@@ -343,7 +347,8 @@ function see(seen: Seen): void {
   view.setPerspective(seen.perspective);
   view.zoomAt(seen.zoom, 300, 200);
   appearance.setSection(seen.section);
-  appearance.setLight({ mode: seen.light, direction: seen.direction });
+  const { light: mode, direction, exposure, fill } = seen;
+  appearance.setLight({ mode, direction, exposure, fill });
   layers.all.forEach((each, index) => {
     const { visible, opacity, ownPalette, key } = seen.layers[index]!;
     layers.setVisible(each, visible);
@@ -448,7 +453,7 @@ describe("going to a view", () => {
         { look: 1, opacity: 1 },
         { look: 2, opacity: 1 },
       ],
-      light: { mode: "raking", direction: [1, 0, 1] },
+      light: { mode: "raking", direction: [1, 0, 1], fill: 0.3, layer_opacity: 0.3 },
     });
   });
 
