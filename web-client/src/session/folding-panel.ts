@@ -34,11 +34,13 @@ export const foldingStyles = [
       font: inherit;
     }
     h2 svg.glyph {
-      transform: rotate(90deg);
+      width: 1rem;
+      height: 1rem;
+      color: var(--ink-soft);
       transition: transform var(--fast);
     }
     h2 button[aria-expanded="true"] svg.glyph {
-      transform: rotate(180deg);
+      transform: rotate(90deg);
     }
     .number {
       font: 600 var(--text-small) var(--sans, inherit);
@@ -88,7 +90,7 @@ export abstract class FoldingPanel extends LitElement {
     const { isOpen } = this;
     return html`<div class="heading">
         <h2>
-          <button class="quiet" aria-expanded=${isOpen} aria-controls="parts" @click=${this.toggle}>${icon("up")}${this.heading}${this.besideHeading()}</button>
+          <button class="quiet" aria-expanded=${isOpen} aria-controls="parts" @click=${this.toggle}>${icon("chevron")}${this.heading}${this.besideHeading()}</button>
         </h2>
         ${this.tools()}
       </div>

@@ -46,6 +46,7 @@ export const detailStyles = css`
   .version {
     margin: var(--space-5) 0 0;
     color: var(--ink-soft);
+    font-size: var(--text-small);
   }
   .keys dt {
     color: var(--ink);

@@ -5,6 +5,7 @@ import { customElement, query, state } from "lit/decorators.js";
 import type { ServerVersion } from "../core/protocol.gen";
 import "../ui/dialog";
 import type { StrataDialog } from "../ui/dialog";
+import { keyCaps } from "../ui/key-caps";
 import { hasFingersOnly } from "../ui/pointers";
 import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
@@ -38,7 +39,7 @@ export class StrataHelpDialog extends LitElement {
     const part = (title: string, rows: readonly (readonly [string, string])[]): TemplateResult =>
       html`<section>
         <h3>${title}</h3>
-        <dl class="keys">${rows.map(([keys, does]) => html`<div><dt>${keys}</dt><dd>${does}</dd></div>`)}</dl>
+        <dl class="keys">${rows.map(([keys, does]) => html`<div><dt>${keyCaps(keys, words.key_names)}</dt><dd>${does}</dd></div>`)}</dl>
       </section>`;
     return html`<strata-dialog wide prose long heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <div class="parts">
@@ -49,8 +50,9 @@ export class StrataHelpDialog extends LitElement {
         <a href="/guide/" target="_blank">${words.guide}</a>
         <a href="/guide/reference/keyboard" target="_blank">${words.all_keys}</a>
         <a href="/docs" target="_blank">${words.contract}</a>
+        <a href="/third-party-notices.txt" target="_blank">${words.licenses}</a>
       </p>
-      ${this._version ? html`<p class="version">Strata ${this._version}</p>` : nothing}
+      <p class="version">${this._version ? html`Strata ${this._version}<br />` : nothing}${words.fonts}</p>
       <button slot="actions" @click=${this.showTour}>${texts.tour.again}</button>
     </strata-dialog>`;
   }

@@ -2103,6 +2103,10 @@ export const texts = {
     guide: "Handbuch (englisch)",
     all_keys: "Alle Tasten",
     contract: "HTTP-Schnittstelle",
+    licenses: "Lizenzen",
+    fonts: "Schriften: Inter und Source Serif 4, unter der SIL Open Font License.",
+    key_names:
+      "Strg · Umschalt · Enter · Esc · Rücktaste · Entf · Tab · Leertaste · Pfeile · Pfeiltasten · Auf · Ab · Links · Rechts · Bild · Pos1 · Ende · F2",
     mouse: "Maus",
     touch: "Touch",
     keys: "Tasten",

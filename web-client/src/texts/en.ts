@@ -2042,6 +2042,10 @@ export const texts = {
     guide: "Guide",
     all_keys: "All keys",
     contract: "HTTP interface",
+    licenses: "Licenses",
+    fonts: "Fonts: Inter and Source Serif 4, under the SIL Open Font License.",
+    key_names:
+      "Ctrl · Shift · Enter · Escape · Backspace · Delete · Tab · Space · Arrows · Up · Down · Left · Right · Page · Home · End · F2",
     mouse: "Mouse",
     touch: "Touch",
     keys: "Keys",

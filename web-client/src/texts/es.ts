@@ -2095,6 +2095,10 @@ export const texts = {
     guide: "Guía (en inglés)",
     all_keys: "Todas las teclas",
     contract: "Interfaz HTTP",
+    licenses: "Licencias",
+    fonts: "Fuentes: Inter y Source Serif 4, con la licencia SIL Open Font License.",
+    key_names:
+      "Ctrl · Mayús · Intro · Esc · Retroceso · Supr · Tab · Espacio · Flechas · Arriba · Abajo · Izquierda · Derecha · Re Pág · Av Pág · Inicio · Fin · F2",
     mouse: "Ratón",
     touch: "Pantalla táctil",
     keys: "Teclas",
@@ -2132,10 +2136,10 @@ export const texts = {
         "terminar el polígono o la línea · quitar el último vértice · cancelar",
       ],
       ["V · H", "girar · desplazar"],
-      ["C y después clic", "comentar allí; Intro: en el centro de la vista"],
+      ["C, y después clic", "comentar allí; Intro: en el centro de la vista"],
       ["Ctrl + Intro · Esc", "enviar el comentario · cerrarlo y conservarlo sin enviar"],
       [
-        "M y después clic",
+        "M, y después clic",
         "medir longitudes, áreas y perfiles; M otra vez: un punto en el centro; Intro termina, Esc borra",
       ],
       ["[ · ]", "pincel más estrecho · más ancho"],
@@ -2155,7 +2159,7 @@ export const texts = {
       ["F", "crear una figura a escala en PDF, SVG, PNG o TIFF"],
       ["Esc", "dejar de seguir; mover la vista también lo termina"],
       [
-        "I y después clic",
+        "I, y después clic",
         "en una capa de registros: abrir el registro que hay allí y pintar con él",
       ],
       ["?", "esta ayuda"],

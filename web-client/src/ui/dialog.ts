@@ -70,7 +70,7 @@ export class StrataDialog extends LitElement {
         border-radius: var(--radius-large);
         background: var(--surface);
         color: var(--ink);
-        box-shadow: var(--shadow);
+        box-shadow: var(--shadow-high);
         outline: none; /* focused when no content is focusable */
       }
       dialog[open] {
@@ -98,7 +98,7 @@ export class StrataDialog extends LitElement {
         margin: 4.125rem var(--space-3) auto auto;
       }
       :host([aside]) dialog::backdrop {
-        background: var(--thin-veil);
+        background: transparent; /* dims nothing that is asked about */
       }
       :host([docked]) dialog {
         position: fixed;

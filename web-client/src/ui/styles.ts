@@ -51,8 +51,8 @@ export const sharedStyles = css`
     text-decoration: none;
     white-space: nowrap;
     transition:
-      background 120ms,
-      border-color 120ms;
+      background var(--fast),
+      border-color var(--fast);
   }
   button:hover:not(:disabled),
   .button:hover {
@@ -253,6 +253,7 @@ export const sharedStyles = css`
   .segments {
     display: inline-flex;
     flex-wrap: wrap;
+    gap: var(--space-half);
     max-width: 100%;
     padding: var(--space-half);
     border: var(--edge) solid var(--line);

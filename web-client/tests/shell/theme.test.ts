@@ -3,6 +3,7 @@ import { basename, join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import { themeOf } from "../../src/ui/preferences";
+import { designSheet } from "./design-sheet";
 
 const kSource = join(__dirname, "../../src");
 const css = readFileSync(join(kSource, "shell", "theme.css"), "utf8");
@@ -67,7 +68,7 @@ function declarationsOf(path: string): [name: string, value: string][] {
     ? [text]
     : [...text.matchAll(/css`([^`]*)`/g)].map((found) => found[1]!);
   return styles.flatMap((style) =>
-    [...style.matchAll(/(?<=^|[\s{])([a-z-]+): ([^;{}]+);/g)].map(
+    [...style.matchAll(/(?<=^|[\s{])([a-z-]+):\s+([^;{}]+);/g)].map(
       ([, name, value]) => [name!, value!] as [string, string],
     ),
   );
@@ -82,6 +83,12 @@ function strayIn(value: string): boolean {
       Number(number) > 0 && Number(number) * (unit === "rem" ? 16 : 1) < (unit === "ms" ? 300 : 48),
   );
 }
+
+describe("the picture of the tokens", () => {
+  it("shows theme.css; `npm run design` writes it", async () => {
+    await expect(designSheet(css)).toMatchFileSnapshot("../../../docs/developer/design.svg");
+  });
+});
 
 describe("measures", () => {
   it("are tokens wherever a style sets space, sizes of texts, corners or durations", () => {

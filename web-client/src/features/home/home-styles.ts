@@ -152,8 +152,8 @@ export const homeStyles = css`
     color: inherit;
     text-decoration: none;
     transition:
-      box-shadow 160ms,
-      border-color 160ms;
+      box-shadow var(--fast),
+      border-color var(--fast);
   }
   li > a:hover {
     border-color: var(--line-strong);

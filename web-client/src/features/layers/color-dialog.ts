@@ -80,19 +80,21 @@ export class StrataColorDialog extends LitElement {
       }
       li {
         display: grid;
-        grid-template-columns: 1.375rem 2.125rem minmax(0, 1fr) auto 6rem;
+        grid-template-columns: auto minmax(0, 1fr) auto 6.5rem;
         align-items: center;
         gap: var(--space-2);
         font-size: var(--text-small);
       }
-      li .swatch {
-        width: 1.375rem;
-        height: 1.375rem;
-      }
+      /* The well shows the class as on the surface, with its pattern. */
       li input[type="color"] {
-        width: 2.125rem;
-        height: 1.75rem;
-        padding: var(--space-half);
+        width: var(--control-small);
+        height: var(--control-small);
+      }
+      li input[type="color"]::-webkit-color-swatch {
+        opacity: 0;
+      }
+      li input[type="color"]::-moz-color-swatch {
+        opacity: 0;
       }
       li select {
         min-height: var(--control-small);
@@ -232,9 +234,9 @@ export class StrataColorDialog extends LitElement {
         const text = name(point, index);
         const records = this._classes?.classes[index]?.records;
         return html`<li>
-          <span class="swatch" ${styled(swatchStyle(point))}></span>
           <input
             type="color"
+            ${styled(swatchStyle(point))}
             aria-label=${words.color_of(text)}
             .value=${opaqueColor(point.color)}
             @input=${(event: Event) => this.changePoint(index, { color: `${(event.target as HTMLInputElement).value}ff` })}

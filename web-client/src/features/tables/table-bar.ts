@@ -67,7 +67,7 @@ export class StrataTableBar extends LitElement {
     }
     .filter {
       position: relative;
-      flex: 1 1 10rem;
+      flex: 100 1 10rem; /* takes the free space before the gap does */
       min-width: 12rem;
       max-width: 40rem;
       margin-left: var(--space-2);
