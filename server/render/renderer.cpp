@@ -255,10 +255,12 @@ void Renderer::remove_layer(LayerHandle layer) {
 void Renderer::write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done) {
   impl_->post(Lane::ordered,
               std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
+  impl_->refinements.content_changed();
 }
 
 void Renderer::paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done) {
   impl_->post(Lane::ordered, std::make_shared<PaintJob>(layer, std::move(stroke), std::move(done)));
+  impl_->refinements.content_changed();
 }
 
 void Renderer::add_view(ModelHandle model, Done<ViewHandle> done) {
@@ -273,7 +275,7 @@ void Renderer::remove_view(ViewHandle view) {
 }
 
 void Renderer::draw(FrameRequest request, Done<SharedFrame> done) {
-  if (request.samples > 1) return impl_->refine(std::move(request), std::move(done));
+  if (request.refinement) return impl_->refine(std::move(request), std::move(done));
   impl_->refinements.overtake(request.view);
   auto pushed = impl_->frames.push(std::move(request), std::move(done));
   if (pushed.displaced) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -124,12 +125,16 @@ struct FrameRequest {
   bool large = false;
   bool acting = false;        // the person is acting: viewers do not delay the frame
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
-  // Of each pixel, 1 to kMaxSamples. More than one: a refinement, which is the mean of that many
-  // pictures whose cameras differ by parts of a pixel. It is drawn while the GPU thread has nothing
-  // else to do, ends as `superseded` when its view requests something else, and leaves the view's
-  // own picture as it is. On a CPU it takes at most about two seconds, with fewer samples if
-  // necessary, or is refused as `too_large`. `changed` is ignored.
+  // Of each pixel, 1 to kMaxSamples. More than one: the picture is the mean of that many, whose
+  // cameras differ by parts of a pixel. It is drawn into buffers of its own, so the view's picture
+  // stays as it is; `changed` is ignored.
   int samples = 1;
+  // On a CPU, there are fewer samples, at least one, if all would take longer. 0: no limit.
+  std::chrono::milliseconds samples_time{0};
+  // The picture on the screen, once more with several samples. It is drawn while the GPU thread has
+  // nothing else to do, evicts nothing, and ends as `superseded` when its view requests something
+  // else. It is refused as `too_large` if `samples_time` is too short for a few samples.
+  bool refinement = false;
   ViewStyle style;
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's
   // last frame: only the rectangles that they cover are shaded and returned. A changed camera, size

@@ -26,6 +26,7 @@ constexpr auto kQuietAfter = 200ms;
 constexpr auto kActsFor = 2s;
 // The refinement waits longer after an edit: people who paint make pauses between their strokes.
 constexpr std::chrono::milliseconds kRestAfterCamera{700}, kRestAfterChange{2000};
+constexpr auto kRefinementTime = 2s;  // on a CPU
 constexpr auto kFirstRetry = 50ms;
 constexpr auto kLastRetry = 5000ms;
 
@@ -369,6 +370,8 @@ void Viewer::step() {
     request.acting = Clock::now() - impl_->last_act < kActsFor;
     request.moving = draw.quality == FlowControl::Quality::moving;
     request.samples = draw.samples;
+    request.refinement = draw.samples > 1;
+    request.samples_time = kRefinementTime;
     // A rectangle is added to the existing picture.
     if (request.moving && !draw.changed) impl_->moving = impl_->link.moving();
     if (request.moving) reduced = impl_->moving;

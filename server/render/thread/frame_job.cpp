@@ -10,12 +10,10 @@
 namespace strata::render {
 namespace {
 
-// The refinement of a picture on a CPU, with at least so many samples: fewer would show less than
-// they cost.
-constexpr double kRefinementBudget_ms = 2000;
+// A refinement with fewer samples would show less than it costs.
 constexpr int kMinSamples = 4;
 // texture coordinates, light, depth, picture, mean
-constexpr std::uint64_t kRefinementBytesPerPixel = 4 + 4 + 4 + 4 + 8;
+constexpr std::uint64_t kSampledBytesPerPixel = 4 + 4 + 4 + 4 + 8;
 constexpr int kPixelsOfMeanPerStep = 1 << 20;
 
 constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
@@ -57,11 +55,11 @@ ShadeInput::Patterns patterns_of(const FrameRequest& request, const Camera& came
 
 Step FrameJob::step(GpuScene& scene) {
   const auto begin = std::chrono::steady_clock::now();
-  // A refinement needs its view's model alone, once.
+  // Samples need their view's model alone, once.
   auto view = sample_view_ ? Result<View*>(sample_view_.get()) : scene.view(task_.request.view);
   const auto refuse = [&](const Error& problem) {
     // An incomplete picture must not be updated in parts.
-    if (view && !refines()) {
+    if (view && !is_sampled()) {
       (*view)->drawing = false;
       (*view)->picture_complete = false;
     }
@@ -93,8 +91,8 @@ Step FrameJob::step(GpuScene& scene) {
         return Step::more;
       case Stage::shade: {
         auto complete = STRATA_TRY(shade_band(scene, **view));
-        if (complete && !refines()) stage_ = Stage::readback;
-        if (complete && refines()) {
+        if (complete && !is_sampled()) stage_ = Stage::readback;
+        if (complete && is_sampled()) {
           auto last = STRATA_TRY(add_sample(scene));
           stage_ = last ? Stage::mean : Stage::gbuffer;
         }
@@ -122,7 +120,7 @@ Step FrameJob::step(GpuScene& scene) {
     pixels_ = {};
     frame_.render_ms = busy_ms_;
     frame_.level = (*view)->key.level;
-    if (progress_.cleared && !scene.info().software && !refines())
+    if (progress_.cleared && !scene.info().software && !is_sampled())
       scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
     answer(std::make_shared<const Frame>(std::move(frame_)));
   }
@@ -178,7 +176,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
         "The number of samples per pixel must be from 1 to " + std::to_string(kMaxSamples) + ".",
         "samples");
   camera_ = request.camera;
-  if (refines()) return start_refinement(scene, view.model);
+  if (is_sampled()) return start_samples(scene, view.model);
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
   const auto has_gbuffer = [&](const DepthKey& needed) {
@@ -198,17 +196,17 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
 }
 
 // The view keeps its own picture and g-buffer: rectangles of later edits are added to them.
-Result<void> FrameJob::start_refinement(GpuScene& scene, ModelHandle model) {
+Result<void> FrameJob::start_samples(GpuScene& scene, ModelHandle model) {
   const FrameRequest& request = task_.request;
   const auto pixels =
       static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height);
-  // Nothing is evicted for it.
-  if (!has_layers(scene))
+  // Nothing is evicted for a refinement.
+  if (request.refinement && !has_layers(scene))
     return fail(ErrorCode::out_of_memory, "Picture not refined",
                 "A layer of the picture left the GPU because memory is short.");
-  if (!scene.memory().fits(pixels * kRefinementBytesPerPixel))
+  if (request.refinement && !scene.memory().fits(pixels * kSampledBytesPerPixel))
     return tl::unexpected(
-        scene.memory().used_up(pixels * kRefinementBytesPerPixel, "a refined picture"));
+        scene.memory().used_up(pixels * kSampledBytesPerPixel, "a refined picture"));
   samples_ = request.samples;
   mean_ = STRATA_TRY(Accumulation::create(request.width, request.height, scene.memory()));
   sample_view_ = std::make_unique<View>();
@@ -238,18 +236,22 @@ Result<void> FrameJob::start_sample(GpuScene& scene) {
 
 Result<bool> FrameJob::add_sample(GpuScene& scene) {
   // A software renderer works while it is called.
-  if (sample_ == 0 && scene.info().software) {
+  const auto limit_ms = static_cast<double>(task_.request.samples_time.count());
+  if (sample_ == 0 && limit_ms > 0 && scene.info().software) {
     const double sample_ms = std::max(busy_ms_ - samples_begin_ms_, 1.0);
+    const int fit = std::min(static_cast<int>(limit_ms / sample_ms), samples_);
     const int least = std::min(kMinSamples, samples_);
-    samples_ = std::min(static_cast<int>(kRefinementBudget_ms / sample_ms), samples_);
-    if (samples_ < least)
+    if (task_.request.refinement && fit < least)
       return fail(ErrorCode::too_large, "Picture not refined",
                   "One sample of each pixel takes " + std::to_string(std::lround(sample_ms)) +
                       " ms, so the time is too short for " + std::to_string(least) + " samples.");
+    samples_ = std::max(1, fit);
   }
   scene.accumulation_pass().add(sample_view_->picture, *mean_, samples_);
   sample_drawn_ = gl::Fence::place();
   if (++sample_ < samples_) {
+    // Nobody waits for the picture of a removed view.
+    if (!task_.request.refinement) STRATA_TRY(scene.view(task_.request.view));
     STRATA_TRY(start_sample(scene));
     return false;
   }
@@ -294,7 +296,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
   // A software renderer works during the calls, a GPU until the picture can be read.
-  if (scene.info().software && !refines())
+  if (scene.info().software && !is_sampled())
     scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
   return true;
 }
@@ -307,7 +309,7 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
       camera_.projection * camera_.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
   frame_.height = request.height;
-  if (request.changed && !refines() && view.shows(request)) {
+  if (request.changed && !is_sampled() && view.shows(request)) {
     const auto features = static_cast<std::int64_t>(view.seen_features.count);
     frame_.rects = screen_rects(*request.changed, clip, request.width, request.height,
                                 request.align_to_16, kRectCost_px + features * kFeatureCost_px,
@@ -319,7 +321,7 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   }
   surface_ =
       screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
-  if (refines()) return {};
+  if (is_sampled()) return {};
   std::size_t bytes = 0;
   for (const PixelRect& rect : frame_.rects) bytes += rgba_bytes(rect);
   auto pixels = STRATA_TRY(scene.readback().begin(bytes));
@@ -371,7 +373,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                                           request.height, band);
   if (!marked) return tl::unexpected(marked.error());
 
-  if (refines()) {
+  if (is_sampled()) {
     advance(shaded_, band.height);
     return complete(shaded_);
   }

@@ -12,8 +12,8 @@
 namespace strata::render {
 
 // One frame, drawn by one view: the g-buffer in slices if the camera changed, then the changed
-// parts are shaded and read back in bands. A refinement does so for each of its samples, into
-// buffers of its own, and reads back their mean.
+// parts are shaded and read back in bands. A picture with several samples does so for each of them,
+// into buffers of its own, and reads back their mean.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
@@ -33,8 +33,8 @@ class FrameJob {
     for (const auto& asker : task_.askers) asker.done(frame);
   }
   enum class Stage { prepare, layers, gbuffer, area, shade, mean, readback };
-  bool refines() const { return task_.request.samples > 1; }
-  Result<void> start_refinement(GpuScene& scene, ModelHandle model);
+  bool is_sampled() const { return task_.request.samples > 1; }
+  Result<void> start_samples(GpuScene& scene, ModelHandle model);
   bool has_layers(GpuScene& scene) const;  // all are on the GPU
   Result<void> start_sample(GpuScene& scene);
   Result<bool> add_sample(GpuScene& scene);  // true when it was the last
@@ -60,7 +60,7 @@ class FrameJob {
 
   FrameTask task_;
   Camera camera_;  // of the picture, or of the current sample
-  // Of a refinement.
+  // Of several samples.
   std::unique_ptr<View> sample_view_;
   std::optional<Accumulation> mean_;
   int samples_ = 1, sample_ = 0;

@@ -17,18 +17,24 @@ std::shared_ptr<Refinements::Task> Refinements::push(FrameRequest request, Done 
   std::lock_guard lock(mutex_);
   Task::Asker asker{request.view, draws_.try_emplace(request.view, 0).first->second,
                     std::move(done)};
-  std::erase_if(waiting_, [](const auto& task) { return task.expired(); });
-  for (const auto& one : waiting_) {
+  std::erase_if(tasks_, [](const auto& task) { return task.expired(); });
+  for (const auto& one : tasks_) {
     const auto task = one.lock();
-    if (!task || task->started || !same_picture(task->request, request)) continue;
+    if (!task || task->is_over || !same_picture(task->request, request)) continue;
+    if (task->began_at.value_or(changes_) != changes_) continue;
     task->askers.push_back(std::move(asker));
     return nullptr;
   }
   auto task = std::make_shared<Task>();
   task->request = std::move(request);
   task->askers.push_back(std::move(asker));
-  waiting_.push_back(task);
+  tasks_.push_back(task);
   return task;
+}
+
+void Refinements::content_changed() {
+  std::lock_guard lock(mutex_);
+  ++changes_;
 }
 
 void Refinements::overtake(ViewHandle view) {
@@ -59,9 +65,10 @@ bool Refinements::continues(Task& task) {
   bool is_wanted = false;
   {
     std::lock_guard lock(mutex_);
-    task.started = true;
+    if (!task.began_at) task.began_at = changes_;
     overtaken = take_overtaken(task);
     is_wanted = !task.askers.empty();
+    task.is_over = !is_wanted;
   }
   for (const Done& done : overtaken) done(tl::unexpected(superseded_error()));
   return is_wanted;
@@ -71,7 +78,7 @@ void Refinements::answer(Task& task, const Result<SharedFrame>& frame) {
   std::vector<Task::Asker> askers;
   {
     std::lock_guard lock(mutex_);
-    task.started = true;
+    task.is_over = true;
     askers.swap(task.askers);
   }
   for (const auto& asker : askers) asker.done(frame);

@@ -4,6 +4,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -32,11 +33,15 @@ class Refinements {
       Done done;
     };
     std::vector<Asker> askers;
-    bool started = false;  // it may show an older state than a new request would
+    std::optional<std::uint64_t> began_at;  // `changes_` then
+    bool is_over = false;
   };
 
-  // A new task that waits to be drawn; null if the request joins a task that was not started.
+  // A new task that waits to be drawn; null if the request joins a task: one that was not started,
+  // or since whose start no layer changed.
   std::shared_ptr<Task> push(FrameRequest request, Done done);
+  // Layers change: called after the change was posted to the GPU thread.
+  void content_changed();
   // The view requests another picture.
   void overtake(ViewHandle view);
   void forget(ViewHandle view);  // it is removed
@@ -51,7 +56,8 @@ class Refinements {
 
   std::mutex mutex_;
   std::unordered_map<ViewHandle, std::uint64_t> draws_;  // of views that asked for a refinement
-  std::list<std::weak_ptr<Task>> waiting_;
+  std::uint64_t changes_ = 0;                            // of layers
+  std::list<std::weak_ptr<Task>> tasks_;
 };
 
 }  // namespace strata::render

@@ -133,6 +133,8 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& picture,
   request.style.light = picture.shown.light;
   request.style.background = picture.shown.background;
   request.style.features = show_features(marked);
+  request.samples = picture.samples;
+  request.samples_time = picture.samples_time;
   request.style.unit_mm = room_.model().metres() * 1000;
   for (std::size_t i = 0; i < parts.size(); ++i)
     STRATA_TRY(draw_in_bands(request, parts[i], i, see));
@@ -162,7 +164,7 @@ Result<void> OpenRoom::PicturesPart::draw_in_bands(render::FrameRequest request,
     const int end = std::min(top + step, camera.height);
     const int first = is_large ? std::max(0, top - kRowsAround) : 0;
     const int last = is_large ? std::min(camera.height, end + kRowsAround) : camera.height;
-    request.large = is_large;
+    request.large = is_large || request.samples > 1;
     request.camera = is_large ? camera_of_rows(camera, first, last - first) : camera;
     request.width = width;
     request.height = pixels(last) - pixels(first);

@@ -426,9 +426,20 @@ TEST_F(RefinementTasks, equal_pictures_that_wait_are_one_task) {
   EXPECT_FALSE(push(2));
   EXPECT_TRUE(push(3, 200)) << "another size";
   EXPECT_TRUE(refinements_.continues(*task));
-  EXPECT_TRUE(push(4)) << "a task that was started may show an older state";
+  EXPECT_FALSE(push(4)) << "it was started, and nothing changed";
+  refinements_.content_changed();
+  EXPECT_TRUE(push(5)) << "a task that was started shows an older state";
   refinements_.answer(*task, std::make_shared<const Frame>());
-  EXPECT_EQ(answers_, (std::map<ViewHandle, Answer>{{1, kDrawn}, {2, kDrawn}}));
+  EXPECT_EQ(answers_, (std::map<ViewHandle, Answer>{{1, kDrawn}, {2, kDrawn}, {4, kDrawn}}));
+  EXPECT_TRUE(push(6)) << "a task that is over answers nobody";
+}
+
+TEST_F(RefinementTasks, a_task_that_waits_shows_what_changed_before_it_starts) {
+  const auto task = push(1);
+  refinements_.content_changed();
+  EXPECT_FALSE(push(2));
+  EXPECT_TRUE(refinements_.continues(*task));
+  EXPECT_FALSE(push(3));
 }
 
 TEST_F(RefinementTasks, news_of_one_view_do_not_end_the_refinement_of_others) {

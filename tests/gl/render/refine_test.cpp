@@ -43,6 +43,7 @@ class Refine : public testing::Test {
   render::Frame refined(int samples = kSamples) {
     render::FrameRequest request = request_;
     request.samples = samples;
+    request.refinement = true;
     return renderer_.draw(request);
   }
   // The oracle: the mean of pictures with one sample each, from cameras on a regular grid of
@@ -169,6 +170,7 @@ TEST_F(Refine, a_newer_request_of_its_view_ends_it) {
   };
   render::FrameRequest refinement = request_;
   refinement.samples = kSamples;
+  refinement.refinement = true;
   auto refined = draw(refinement);
   auto news = draw(request_);
   release.set_value();
@@ -189,6 +191,53 @@ TEST_F(Refine, wrong_numbers_of_samples_are_refused) {
     ASSERT_FALSE(frame);
     EXPECT_EQ(frame.error().code, ErrorCode::invalid);
   }
+}
+
+TEST_F(Refine, a_picture_to_keep_has_the_same_samples_and_takes_its_turn) {
+  const render::Frame fine = refined();
+  render::FrameRequest request = request_;
+  request.samples = kSamples;
+  const render::Frame kept = renderer_.draw(request);
+  EXPECT_EQ(kept.rects, fine.rects);
+  EXPECT_TRUE(kept.pixels == fine.pixels);
+  renderer_->finish();
+  EXPECT_EQ(renderer_.draw(request_).pixels.size(), kept.pixels.size());
+}
+
+TEST_F(Refine, bands_of_a_picture_to_keep_join_without_a_seam) {
+  render::FrameRequest request = request_;
+  request.samples = kSamples;
+  const render::Frame whole = renderer_.draw(request);
+  constexpr int kFirst = 40, kRows = 70, kAround = 16;
+  request.camera = camera_of_rows(request_.camera, kFirst - kAround, kRows + 2 * kAround);
+  request.height = kRows + 2 * kAround;
+  request.background_rows = glm::vec2(kFirst - kAround, kFirst + kRows + kAround) / float(kHeight);
+  const render::Frame band = renderer_.draw(request);
+  int differ = 0;
+  for (int y = 0; y < kRows; ++y)
+    for (int i = 0; i < 4 * kWidth; ++i) {
+      const auto at = [&](const render::Frame& frame, int row) {
+        return int{frame.pixels[static_cast<std::size_t>(4 * kWidth * row + i)]};
+      };
+      // A sample at an edge may fall to its other side: one of sixteen.
+      const int difference = std::abs(at(whole, kFirst + y) - at(band, kAround + y));
+      differ += difference > 1;
+      ASSERT_LE(difference, 2 * 255 / kSamples) << y << ", " << i / 4;
+    }
+  EXPECT_LT(differ, kRows * kWidth * 4 / 200);
+}
+
+TEST_F(Refine, a_short_time_gives_a_picture_to_keep_fewer_samples_and_a_refinement_none) {
+  render::FrameRequest request = request_;
+  request.samples = render::kMaxSamples;
+  request.samples_time = std::chrono::milliseconds(1);
+  EXPECT_EQ(renderer_.draw(request).pixels.size(), std::size_t{4} * kWidth * kHeight);
+  if (!renderer_->info().software) GTEST_SKIP() << "a GPU has no such limit";
+  request.refinement = true;
+  const auto frame =
+      await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+  ASSERT_FALSE(frame);
+  EXPECT_EQ(frame.error().code, ErrorCode::too_large);
 }
 
 TEST_F(Refine, its_buffers_are_gone_with_it) {
@@ -213,6 +262,7 @@ TEST_F(Refine, nothing_is_evicted_for_it) {
   const auto used = small->gpu_bytes_used();
   request.width = request.height = 2048;
   request.samples = 2;
+  request.refinement = true;
   const auto frame =
       await<render::SharedFrame>([&](auto done) { small->draw(request, std::move(done)); });
   ASSERT_FALSE(frame);

@@ -16,6 +16,7 @@ const kHeight = 480;
 const kSmallWidth = 240; // also for screens with two device pixels per CSS pixel
 const kSmallHeight = 180;
 const kViewSide = 256;
+const kSamples = 16; // of each pixel, for smooth edges
 // one picture at a time, so that a gallery does not slow down other users
 let busy: Promise<void> = Promise.resolve();
 
@@ -122,7 +123,7 @@ export class StrataThumbnail extends LitElement {
     camera.firstView();
     return this.api.blob("POST /models/{model}/frame", {
       path: { model: this.model.id },
-      body: { camera: camera.message(), format: "jpeg" },
+      body: { camera: camera.message(), samples: kSamples, format: "jpeg" },
       signal,
     });
   }

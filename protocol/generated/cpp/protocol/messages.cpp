@@ -3406,6 +3406,7 @@ void read(const nlohmann::json& json, FrameRequest& value) {
   read_optional_member(json, "background", value.background);
   read_optional_member(json, "highlights", value.highlights);
   read_optional_member(json, "at", value.at);
+  read_optional_member(json, "samples", value.samples);
   read_optional_member(json, "format", value.format);
 }
 
@@ -3418,6 +3419,7 @@ nlohmann::json to_json(const FrameRequest& value) {
   write_optional_member(json, "background", value.background);
   write_optional_member(json, "highlights", value.highlights);
   write_optional_member(json, "at", value.at);
+  write_member(json, "samples", value.samples);
   write_member(json, "format", value.format);
   return json;
 }

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <chrono>
+
 #include "net/http/http_types.h"
 #include "room/pictures.h"
 #include "room/room.h"
 
 namespace strata::net {
+
+// A CPU takes this time at most for the samples of a picture, or of each 2 million pixels.
+constexpr std::chrono::milliseconds kPictureSamplesTime{2000};
 
 // Renders a picture to keep: JPEG of good quality, or PNG. Encodes while the GPU renders.
 Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown,

@@ -57,6 +57,8 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   STRATA_TRY(validate(picture_request.shown.light));
   const auto background = STRATA_TRY(background_of(body.background));
   picture_request.shown.background = background;
+  picture_request.samples = static_cast<int>(body.samples);
+  picture_request.samples_time = kPictureSamplesTime;
   auto response = STRATA_TRY(picture_response(**room, picture_request, body.camera,
                                               body.format == protocol::FrameRequestFormat::png));
   add_sequences(response, picture_request.at.value_or(sequence),

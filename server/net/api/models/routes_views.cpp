@@ -27,6 +27,8 @@ namespace {
 using protocol::ViewEventEvent;
 using store::NamedPart;
 
+constexpr int kSamples = 16;  // of each pixel of a view's picture
+
 // Converts the shown settings of the body to their stored form, with ids, since slugs change.
 template <class ViewBody>
 Result<nlohmann::json> content_of(const room::Room& room, const ViewBody& body,
@@ -121,6 +123,8 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
     camera.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
   }
   picture_request.shown = std::move(*shown);
+  picture_request.samples = kSamples;
+  picture_request.samples_time = kPictureSamplesTime;
   const auto sequence = found.room->edits().sequence();
   auto response = picture_response(*found.room, picture_request, camera, format == "png");
   if (!response) return response;
