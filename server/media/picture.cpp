@@ -13,6 +13,7 @@
 
 #include "media/jpeg_facts.h"
 #include "media/picture_formats.h"
+#include "media/picture_writer.h"
 
 namespace strata {
 
@@ -24,20 +25,12 @@ struct DestroyTurbo {
   void operator()(void* handle) const { tjDestroy(handle); }
 };
 
-// Codecs keep tables: one per thread.
-tjhandle codec(tjhandle (*make)()) {
-  tjhandle handle = make();
+// A codec keeps tables: one for each thread.
+tjhandle decompressor() {
+  thread_local std::unique_ptr<void, DestroyTurbo> handle(tjInitDecompress());
   if (!handle)
     throw std::runtime_error(std::string("libjpeg-turbo does not start: ") +
                              tjGetErrorStr2(nullptr));
-  return handle;
-}
-tjhandle compressor() {
-  thread_local std::unique_ptr<void, DestroyTurbo> handle(codec(tjInitCompress));
-  return handle.get();
-}
-tjhandle decompressor() {
-  thread_local std::unique_ptr<void, DestroyTurbo> handle(codec(tjInitDecompress));
   return handle.get();
 }
 
@@ -48,9 +41,6 @@ struct PngReader {
   PngReader(const PngReader&) = delete;
   ~PngReader() { png_image_free(&image); }
 };
-
-// Above this size the output buffer grows: the worst case would be larger than the pixels.
-constexpr std::size_t kLargePicture_bytes = std::size_t{64} << 20;
 
 // For the C library: appends a stream's bytes to a vector.
 ssize_t append_bytes(void* vector, const char* bytes, std::size_t count) {
@@ -264,29 +254,9 @@ Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side) {
 std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height,
                                       JpegSettings settings) {
   check_size(rgba, width, height);
-  const tjhandle handle = compressor();
-  const int sampling = settings.full_color ? TJSAMP_444 : TJSAMP_420;
-  // The errors of the fast transform are visible only at high quality.
-  const int transform = settings.quality < 85 ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT;
-  const auto compress = [&](unsigned char** out, unsigned long* size, int flags) {
-    if (tjCompress2(handle, rgba.data(), width, 0, height, TJPF_RGBX, out, size, sampling,
-                    settings.quality, flags | transform) != 0)
-      throw std::runtime_error(std::string("A picture was not encoded: ") + tjGetErrorStr2(handle));
-  };
-  unsigned long size = 0;
-  if (rgba.size() > kLargePicture_bytes) {
-    unsigned char* grown = nullptr;
-    compress(&grown, &size, 0);
-    const std::unique_ptr<unsigned char, decltype(&tjFree)> held(grown, tjFree);
-    return {grown, grown + size};
-  }
-  std::vector<std::uint8_t> jpeg(tjBufSize(width, height, sampling));
-  unsigned char* out = jpeg.data();
-  size = jpeg.size();
-  // NOREALLOC: the buffer has the worst-case size, so the library never replaces it.
-  compress(&out, &size, TJFLAG_NOREALLOC);
-  jpeg.resize(size);
-  return jpeg;
+  PictureWriter writer(PictureFormat::jpeg, width, height, settings);
+  writer.put(rgba);
+  return writer.finish();
 }
 
 std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int width, int height) {

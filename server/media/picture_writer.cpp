@@ -16,6 +16,10 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
 
+// Of the mean color of a block, an eighth of a level: a coarser step tints a gray background, as
+// pink blocks. It costs 1 to 2 % of the bytes.
+constexpr UINT16 kMaxColorStep = 4;
+
 [[noreturn]] void failed(const char* message) {
   throw std::runtime_error(std::string("A picture was not encoded: ") + message);
 }
@@ -63,6 +67,9 @@ class PictureWriter::Jpeg : public PictureWriter::File {
       encoder_.in_color_space = JCS_EXT_RGBX;
       jpeg_set_defaults(&encoder_);
       jpeg_set_quality(&encoder_, settings.quality, TRUE);
+      UINT16& color_step = encoder_.quant_tbl_ptrs[1]->quantval[0];
+      color_step = std::min(color_step, kMaxColorStep);
+      // The errors of the fast transform are visible only at high quality.
       encoder_.dct_method = settings.quality < 85 ? JDCT_IFAST : JDCT_ISLOW;
       const int sampling = settings.full_color ? 1 : 2;
       encoder_.comp_info[0].h_samp_factor = encoder_.comp_info[0].v_samp_factor = sampling;

@@ -13,6 +13,9 @@ constexpr double kLargeStill_bytes = 20'000;
 constexpr std::array<MovingPicture, LinkPace::kSteps> kReductions{
     // each of about half the bytes
     {{{75, false}, 1}, {{65, false}, 0.7}, {{60, false}, 0.5}, {{50, false}, 0.35}}};
+// Colored hairlines stay sharp. About 1.6 times the bytes of step 0.
+constexpr MovingPicture kFullColor{{80, true}, 1};
+constexpr double kFullColorBytes = 1.6;
 // weights in running means
 constexpr double kNewPair = 0.3, kNewWait = 0.3;
 constexpr double kDrawnApart = 1.25;
@@ -22,10 +25,10 @@ constexpr std::chrono::milliseconds kMinGap{5};
 }  // namespace
 
 void LinkPace::on_sent(std::uint64_t frame, std::size_t bytes, bool moving, Clock::time_point at) {
-  const int step = moving ? step_ : -1;
+  const int its_kind = moving ? kind() : -1;
   const bool alike = std::all_of(on_the_way_.begin(), on_the_way_.end(),
-                                 [&](const Sent& one) { return one.step == step; });
-  on_the_way_.push_back({frame, static_cast<double>(bytes), step, wide_, alike, at});
+                                 [&](const Sent& one) { return one.kind == its_kind; });
+  on_the_way_.push_back({frame, static_cast<double>(bytes), its_kind, wide_, alike, at});
 }
 
 void LinkPace::on_ack(std::uint64_t frame, Clock::time_point at) {
@@ -40,10 +43,16 @@ void LinkPace::on_ack(std::uint64_t frame, Clock::time_point at) {
   last_sent_ = last->at;
   last_ack_ = at;
   const Passed passed{last->bytes, at - last->at};
-  if (last->step < 0 && last->bytes >= kLargeStill_bytes) still_took_ = passed.took;
+  if (last->kind < 0 && last->bytes >= kLargeStill_bytes) {
+    still_took_ = passed.took;
+    // Not again after it did not hold.
+    if (step_ == 0 && color_trial_ == kFirstTrial && passed.took <= kFastStill) change_color(true);
+  }
   note_delay(passed, at);
-  // Frames of another step or window, or after such frames, are no measure of the present ones.
-  if (last->step == step_ && last->alike && last->wide == wide_) judge(passed.took - delay(), at);
+  // Frames of another kind or window, or after such frames, are no measure of the present ones.
+  if (last->kind != kind() || !last->alike || last->wide != wide_) return;
+  judge(passed.took - delay(), at);
+  if (last->kind == kind()) judge_color(last->bytes);
 }
 
 void LinkPace::note_rate(const Sent& sent, Clock::time_point acked) {
@@ -102,7 +111,24 @@ void LinkPace::judge(Seconds wait, Clock::time_point at) {
   change_step(step_ - 1);
 }
 
+void LinkPace::judge_color(double bytes) {
+  const Seconds took(bytes * s_per_byte_);
+  if (full_color_ && (took > 2 * kFullColorTime || (judged_ >= kJudged && mean_wait_ > kShortWait)))
+    return change_color(false);
+  if (!full_color_ && step_ == 0 && short_waits_ >= color_trial_ &&
+      kFullColorBytes * took <= kFullColorTime)
+    change_color(true);
+}
+
+void LinkPace::change_color(bool full) {
+  if (full_color_ == full) return;
+  full_color_ = full;
+  if (!full) color_trial_ = std::min(2 * color_trial_, kLastTrial);
+  judged_ = short_waits_ = 0;
+}
+
 void LinkPace::reduce(Seconds wait) {
+  if (full_color_ && wait <= 4 * kMaxWait) return change_color(false);
   if (trying_) trial_ = std::min(2 * trial_, kLastTrial);
   trying_ = false;
   const Reduced reduced{step_, mean_wait_};
@@ -112,10 +138,13 @@ void LinkPace::reduce(Seconds wait) {
 
 void LinkPace::change_step(int step) {
   step_ = step;
+  change_color(false);
   judged_ = short_waits_ = 0;
   reduced_.reset();
 }
 
-MovingPicture LinkPace::moving() const { return kReductions[static_cast<std::size_t>(step_)]; }
+MovingPicture LinkPace::moving() const {
+  return full_color_ ? kFullColor : kReductions[static_cast<std::size_t>(step_)];
+}
 
 }  // namespace strata::stream

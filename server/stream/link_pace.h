@@ -10,7 +10,7 @@
 
 namespace strata::stream {
 
-// The reduction of pictures of a moving camera, so that they arrive in time over one client's link.
+// How pictures of a moving camera are sent, so that they arrive in time over one client's link.
 // Pictures of a still camera are always of full quality.
 struct MovingPicture {
   JpegSettings jpeg;
@@ -26,7 +26,9 @@ struct MovingPicture {
 // shortens the waits little, because then something else is slow. A series of short waits improves
 // pictures again, step by step; a better step that did not hold is tried again after longer and
 // longer periods. If the delay is long and waits are short, the link is idle between two frames:
-// then three may be on their way, until they wait for each other. Without clocks or threads.
+// then three may be on their way, until they wait for each other. Pictures have full color while
+// the link needs little time for them: as soon as a picture of a still camera arrived that fast, or
+// after a series of short waits. Without clocks or threads.
 class LinkPace {
  public:
   using Clock = std::chrono::steady_clock;
@@ -34,6 +36,8 @@ class LinkPace {
   // a delay is the shortest of the last one to two of these periods
   static constexpr std::chrono::seconds kDelayKept{15};
   static constexpr std::chrono::milliseconds kRoomy{400};
+  // the longest time of a still picture, and of the bytes of a moving one, for full color
+  static constexpr std::chrono::milliseconds kFastStill{50}, kFullColorTime{12};
   static constexpr int kSteps = 4;
   // frames with a short wait, until a better step is tried
   static constexpr int kFirstTrial = 12, kLastTrial = 384;
@@ -46,6 +50,7 @@ class LinkPace {
 
   MovingPicture moving() const;
   int step() const { return step_; }  // 0: not reduced
+  bool has_full_color() const { return full_color_; }
   // Whether a whole picture of full quality arrives without delay for the frames after it.
   bool has_room() const { return step_ == 0 && (!still_took_ || *still_took_ <= kRoomy); }
   int window() const { return wide_ ? 3 : 2; }  // frames that may be on their way
@@ -54,9 +59,9 @@ class LinkPace {
   struct Sent {
     std::uint64_t frame;
     double bytes;
-    int step;  // -1: not of a moving camera
+    int kind;  // -1: not of a moving camera
     bool wide;
-    bool alike;  // same step as all frames that were on their way before it
+    bool alike;  // same kind as all frames that were on their way before it
     Clock::time_point at;
   };
   using Seconds = std::chrono::duration<double>;
@@ -69,6 +74,10 @@ class LinkPace {
   void note_rate(const Sent& sent, Clock::time_point acked);
   void note_delay(const Passed& frame, Clock::time_point at);
   void judge(Seconds wait, Clock::time_point at);
+  void judge_color(double bytes);
+  void change_color(bool full);
+  // of the present pictures of a moving camera
+  int kind() const { return full_color_ ? kSteps : step_; }
   void reduce(Seconds wait);
   void change_step(int step);
 
@@ -89,6 +98,8 @@ class LinkPace {
   Clock::time_point no_reduction_until_{};
   // the time of the last large picture of full quality, until it was acknowledged
   std::optional<Seconds> still_took_;
+  bool full_color_ = false;  // only at step 0
+  int color_trial_ = kFirstTrial;
   bool wide_ = false;  // the window
   int short_waits_ = 0;
   int trial_ = kFirstTrial;

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "media/picture.h"
 #include "media/picture_writer.h"
@@ -30,6 +34,48 @@ TEST(Picture, higher_quality_costs_more_bytes) {
   const auto rgba = gradient(256, 256);
   EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(),
             encode_jpeg(rgba, 256, 256, {95, true}).size());
+}
+
+// Of one color, or with a line of one pixel every 20 rows.
+std::vector<std::uint8_t> flat(std::array<std::uint8_t, 3> color,
+                               std::optional<std::array<std::uint8_t, 3>> line = {}) {
+  constexpr int kSide = 80;
+  std::vector<std::uint8_t> rgba;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const auto& c = line && y % 20 == 9 ? *line : color;
+      rgba.insert(rgba.end(), {c[0], c[1], c[2], 255});
+    }
+  return rgba;
+}
+
+TEST(Picture, a_jpeg_of_low_quality_does_not_tint_a_gray_background) {
+  for (int level = 0; level <= 28; ++level) {
+    const auto at = [&](int top) { return static_cast<std::uint8_t>(top - level); };
+    const auto rgba = flat({at(242), at(240), at(236)});
+    const auto back = decode_picture(encode_jpeg(rgba, 80, 80, {50, false}));
+    ASSERT_TRUE(back);
+    const auto tint = [](const std::vector<std::uint8_t>& pixels, int channel) {
+      return int{pixels[static_cast<std::size_t>(channel)]} - int{pixels[1]};
+    };
+    for (const int channel : {0, 2})
+      EXPECT_NEAR(tint(back->rgba, channel), tint(rgba, channel), 2) << level;
+  }
+}
+
+TEST(Picture, a_jpeg_with_full_color_keeps_the_color_of_a_hairline) {
+  const std::array<std::uint8_t, 3> clay{190, 100, 30}, crack{40, 190, 80};
+  const auto rgba = flat(clay, crack);
+  const auto error = [&](bool full_color) {
+    const auto back = decode_picture(encode_jpeg(rgba, 80, 80, {80, full_color}));
+    const std::size_t at = std::size_t{4} * (49 * 80 + 40);  // on a line
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      sum += std::abs(int(back->rgba[at + c]) - int(rgba[at + c]));
+    return sum;
+  };
+  std::printf("error of a hairline's color: 4:2:0 %.0f, 4:4:4 %.0f\n", error(false), error(true));
+  EXPECT_LT(error(true), error(false) / 2);
 }
 
 TEST(PictureWriter, writes_what_the_whole_picture_would_be_however_its_rows_come) {

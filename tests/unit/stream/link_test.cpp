@@ -51,9 +51,10 @@ class Simulation {
   void send() {
     static constexpr double kBytes = 60e3;
     const MovingPicture picture = pace.moving();
-    const double bytes =
-        moving ? kBytes * picture.scale * picture.scale * (0.3 + 0.7 * picture.jpeg.quality / 75.0)
-               : 3 * kBytes;
+    const double bytes = moving ? kBytes * picture.scale * picture.scale *
+                                      (0.3 + 0.7 * picture.jpeg.quality / 75.0) *
+                                      (picture.jpeg.full_color ? 1.5 : 1)
+                                : 3 * kBytes;
     pace.on_sent(++sent_, static_cast<std::size_t>(bytes), moving, now_);
     sent_at_[sent_] = now_;
     link_free_ =
@@ -74,8 +75,46 @@ TEST(LinkPace, a_fast_link_has_pictures_as_they_are) {
   Simulation link;
   link.run(60s);
   EXPECT_EQ(link.pace.step(), 0);
-  EXPECT_EQ(link.pace.moving(), (MovingPicture{{75, false}, 1}));
+  EXPECT_EQ(link.pace.moving(), (MovingPicture{{80, true}, 1}));
   EXPECT_EQ(link.pace.window(), 2);
+}
+
+TEST(LinkPace, a_picture_at_rest_that_came_fast_gives_the_first_moving_ones_full_color) {
+  Simulation link;
+  link.moving = false;
+  link.run(100ms);
+  EXPECT_TRUE(link.pace.moving().jpeg.full_color);
+}
+
+TEST(LinkPace, full_color_comes_with_100_Mbit_and_not_with_50) {
+  for (const auto& [bytes_per_s, full] : {std::pair{100e6 / 8, true}, {50e6 / 8, false}}) {
+    SCOPED_TRACE(bytes_per_s);
+    Simulation link;
+    link.delay = 5ms;
+    link.drawing = 1ms;  // so that frames wait for each other and show the link's rate
+    link.bytes_per_s = bytes_per_s;
+    link.run(10s);
+    EXPECT_EQ(link.pace.moving().jpeg.full_color, full);
+    EXPECT_EQ(link.pace.step(), 0);
+  }
+}
+
+TEST(LinkPace, full_color_ends_when_the_link_becomes_slow_and_is_tried_ever_more_rarely) {
+  Simulation link;
+  link.run(10s);
+  ASSERT_TRUE(link.pace.has_full_color());
+  link.bytes_per_s = 0.5e6;
+  link.run(2s);
+  EXPECT_FALSE(link.pace.has_full_color());
+  link.run(60s);
+  int changes = 0;
+  bool last = link.pace.has_full_color();
+  for (int i = 0; i < 600; ++i) {
+    link.run(100ms);
+    changes += last != link.pace.has_full_color();
+    last = link.pace.has_full_color();
+  }
+  EXPECT_LE(changes, 10) << "in a minute";
 }
 
 TEST(LinkPace, a_long_delay_alone_reduces_nothing_but_lets_more_be_on_their_way) {
