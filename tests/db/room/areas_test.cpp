@@ -2,8 +2,11 @@
 // database and renderer.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include "domain/layers/mask_texels.h"
 #include "room/edit.h"
@@ -142,6 +145,59 @@ TEST_F(RoomAreas, a_fill_where_a_condition_holds_follows_the_other_layers) {
       checked += is;
     });
   EXPECT_EQ(checked, valid_texels(features)) << "nothing else is painted, gutter included";
+}
+
+TEST_F(RoomAreas, outlines_are_combined_as_the_sets_of_what_each_of_them_paints) {
+  using room::Combination;
+  const std::vector<std::vector<glm::dvec2>> paths{{{240, 180}, {400, 190}, {380, 320}, {250, 300}},
+                                                   {{300, 200}, {440, 220}, {330, 340}},
+                                                   {{200, 250}, {420, 240}, {350, 290}}};
+  // The second outline is drawn in the window of another camera.
+  Camera other = view();
+  other.projection[0][0] *= 0.8;
+  const std::vector<Camera> cameras{view(), other, view()};
+  // What each of them paints alone: the oracle combines these.
+  std::vector<TileMap> alone;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    room::PolygonEdit edit = polygon(paths[i], 7);
+    edit.outline.camera = cameras[i];
+    ASSERT_TRUE(send(request(features_, edit)));
+    alone.push_back(tiles("marks"));
+    ASSERT_TRUE(send(request(features_, room::UndoEdit{})));
+  }
+  const auto painted = [](const TileMap& tiles, TileAddress address, int texel) {
+    const auto found = tiles.find(address);
+    return found != tiles.end() && found->second->valid.test(texel);
+  };
+  constexpr std::array kAll{Combination::add, Combination::subtract, Combination::intersect};
+  for (const Combination first : kAll)
+    for (const Combination second : kAll) {
+      room::PolygonEdit edit = polygon(paths[0], 7);
+      edit.outline.steps = {{first, cameras[1], paths[1]}, {second, cameras[2], paths[2]}};
+      const auto answer = send(request(features_, edit));
+      ASSERT_TRUE(answer) << answer.error().detail;
+      const TileMap combined = tiles("marks");
+      std::set<TileAddress> addresses;
+      for (const TileMap* each : {&alone[0], &alone[1], &alone[2], &combined})
+        for (const auto& [address, tile] : *each) addresses.insert(address);
+      std::uint64_t wrong = 0, right = 0;
+      for (const TileAddress address : addresses)
+        for (int texel = 0; texel < kTexelsPerTile; ++texel) {
+          bool expected = painted(alone[0], address, texel);
+          for (const auto& [how, by] : {std::pair(first, 1), std::pair(second, 2)}) {
+            const bool in = painted(alone[static_cast<std::size_t>(by)], address, texel);
+            expected = how == Combination::add        ? expected || in
+                       : how == Combination::subtract ? expected && !in
+                                                      : expected && in;
+          }
+          const bool is = painted(combined, address, texel);
+          wrong += is != expected;
+          right += is && expected;
+        }
+      EXPECT_EQ(wrong, 0u) << static_cast<int>(first) << static_cast<int>(second);
+      EXPECT_GT(right, 0u) << static_cast<int>(first) << static_cast<int>(second);
+      ASSERT_TRUE(send(request(features_, room::UndoEdit{})));
+    }
 }
 
 TEST_F(RoomAreas, a_fill_over_a_layer_that_is_not_there_is_refused_and_paints_nothing) {

@@ -2,9 +2,11 @@
 // inside an outline.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/polygon_area.h"
 #include "expression/expression_parser.h"
 #include "query/statistics/cross_table.h"
 #include "query/statistics/key_areas.h"
@@ -140,6 +142,58 @@ TEST_F(RoomQueries, inside_an_outline_lies_what_a_polygon_paints) {
   EXPECT_EQ(area->layers.at("marks").texels, area->texels);
   selection.where = *query::parse_condition("marks = 7", "where");
   EXPECT_EQ(room()->queries().select(selection, {})->texels, 0u);
+}
+
+TEST_F(RoomQueries, the_picture_of_a_selection_shows_where_the_camera_sees_it) {
+  const std::vector<glm::dvec2> path = {{250, 200}, {400, 190}, {330, 300}};
+  room::Selection selection;
+  selection.within = room::Outline{view(), path, false};
+  room::StatisticsOptions options;
+  const int columns = static_cast<int>(view().width) / 4,
+            rows = static_cast<int>(view().height) / 4;
+  options.seen = room::SeenGrid{view(), columns, rows};
+  const auto area = room()->queries().select(selection, {}, options);
+  ASSERT_TRUE(area) << area.error().detail;
+  ASSERT_EQ(area->seen.size(), static_cast<std::size_t>(columns * rows));
+  // The surface fills this part of the window, so that the picture is the outline itself. Cells
+  // within two pixels of its edge may be on either side.
+  const PolygonArea outline({path});
+  int inside = 0, wrong = 0;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const glm::dvec2 at{column * 4 + 2, row * 4 + 2};
+      bool all = true, none = true;
+      for (const glm::dvec2 offset : {glm::dvec2{-2, -2}, {2, -2}, {-2, 2}, {2, 2}, {0, 0}})
+        (outline.contains(at + offset) ? none : all) = false;
+      if (!all && !none) continue;
+      const bool is = area->seen[static_cast<std::size_t>(row * columns + column)] != 0;
+      inside += all;
+      wrong += is != all;
+    }
+  EXPECT_GT(inside, 100);
+  EXPECT_LE(wrong, inside / 50);
+  // Nothing is selected, nothing is seen.
+  selection.where = *query::parse_condition("valid(marks)", "where");
+  const auto nothing = room()->queries().select(selection, {}, options);
+  ASSERT_TRUE(nothing);
+  EXPECT_TRUE(std::ranges::all_of(nothing->seen, [](auto cell) { return cell == 0; }));
+}
+
+TEST_F(RoomQueries, names_of_layers_that_a_person_does_not_see_are_not_suggested) {
+  Layer secret = features_;
+  secret.visibility = Visibility::curators;
+  ASSERT_TRUE(room()->layers().update(secret));
+  room::Selection selection;
+  selection.where = *query::parse_condition("mark > 1", "where");
+  const auto suggested = [&](Role role) {
+    selection.seen_by = role;
+    const auto refused = room()->queries().select(selection, {});
+    EXPECT_FALSE(refused);
+    EXPECT_EQ(refused.error().reason, mistake::kUnknownLayer);
+    return refused.error().suggestions;
+  };
+  EXPECT_EQ(suggested(Role::owner), std::vector<std::string>{"marks"});
+  EXPECT_EQ(suggested(Role::viewer), std::vector<std::string>{});
 }
 
 TEST_F(RoomQueries, records_decide_what_their_keys_cover) {

@@ -1,5 +1,5 @@
-// Whole areas: polygon, lasso, connected fill, fill with a condition. Tests the page while they are
-// drawn, the painted areas, and their undo.
+// Whole areas: the selection of polygon and lasso, connected fill, fill with a condition. Tests the
+// page while they are drawn, the painted areas, and their undo.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
@@ -16,6 +16,8 @@ const edits = async () => (await server.json("GET", `${base}/layers/test/edits?l
 const statistics = (layer) => server.json("GET", `${base}/layers/${layer}/statistics`);
 const button = (name) => page.getByRole("button", { name, exact: true });
 const radio = (name) => page.getByRole("radio", { name, exact: true });
+const selection = () => page.getByRole("group", { name: words.selection.title });
+const selected = () => selection().getByText(/m²/).first().waitFor();
 const magenta = () => browser.count(rgb(kMagenta));
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -91,7 +93,7 @@ test.beforeAll(async () => {
   await button(words.layers.select("Test")).click();
 });
 
-test("a polygon is closed with Enter, and its inside is painted", async () => {
+test("a polygon is closed with Enter, which selects its inside; Enter again paints it", async () => {
   corners = [
     [0.44, 0.5],
     [0.56, 0.52],
@@ -107,12 +109,18 @@ test("a polygon is closed with Enter, and its inside is painted", async () => {
   await page.keyboard.press("Home");
   assert.equal(await edits(), 0, "painted before it was closed");
   await page.keyboard.press("Enter");
+  assert.equal(cameras, held, "the camera moved while the outline was drawn");
+  await selected();
+  await page.locator("strata-stage .lit").waitFor();
+  await shot("selection");
+  assert.equal(await edits(), 0, "painted before it was confirmed");
+  await page.keyboard.press("Enter");
   await page
     .getByText(/m² changed\./)
     .first()
     .waitFor();
+  await selection().waitFor({ state: "hidden" });
   await painted(await area_px(corners), "the polygon");
-  assert.equal(cameras, held, "the camera moved while the outline was drawn");
   await taken_back("the polygon");
 });
 
@@ -120,6 +128,7 @@ test("a click on the first corner closes it; Backspace takes a corner back, Esca
   await click(...corners, [0.1, 0.1]);
   await page.keyboard.press("Backspace");
   await click(corners[0]);
+  await selection().getByRole("button", { name: words.selection.fill, exact: true }).click();
   await painted(await area_px(corners), "the polygon again");
   await taken_back("the polygon");
   const known = await edits();
@@ -130,6 +139,42 @@ test("a click on the first corner closes it; Backspace takes a corner back, Esca
   assert.equal(await edits(), known, "an outline that was given up painted");
 });
 
+test("an outline is subtracted with Alt, a corner is moved, and Escape discards all", async () => {
+  const known = await edits();
+  const hole = [
+    [0.48, 0.54],
+    [0.52, 0.54],
+    [0.5, 0.6],
+  ];
+  await click(...corners);
+  await page.keyboard.press("Enter");
+  await selected();
+  await page.keyboard.down("Alt");
+  await click(...hole);
+  await page.keyboard.up("Alt");
+  await page.keyboard.press("Enter");
+  await selected();
+  const moved = [0.58, 0.5];
+  await browser.drag([corners[1], moved]);
+  await selected();
+  await shot("subtracted");
+  assert.equal(await edits(), known, "a selection painted by itself");
+  await page.keyboard.press("Enter");
+  const [first, , ...rest] = corners;
+  await painted(
+    (await area_px([first, moved, ...rest])) - (await area_px(hole)),
+    "the polygon with a hole and a moved corner",
+  );
+  await taken_back("the selection");
+  await click(...corners);
+  await page.keyboard.press("Enter");
+  await selected();
+  await page.keyboard.press("Escape");
+  await selection().waitFor({ state: "hidden" });
+  await browser.saved();
+  assert.equal(await page.locator("strata-stage .lit").count(), 0);
+});
+
 test("a lasso paints what the drag went round", async () => {
   await page.keyboard.press("l");
   const round = Array.from({ length: 25 }, (_, i) => [
@@ -137,6 +182,8 @@ test("a lasso paints what the drag went round", async () => {
     0.58 + 0.09 * Math.sin(i / 4),
   ]);
   await browser.drag(round);
+  await selected();
+  await page.keyboard.press("Enter");
   await painted(await area_px(round.slice(0, 25)), "the lasso");
   await shot("lasso");
 });
@@ -175,6 +222,18 @@ test("a condition over other layers; a wrong one says where it is wrong", async 
     .getByText(/at character 9/)
     .waitFor();
   await shot("where");
+  await condition.fill("valid(crakcs)");
+  await button(words.expressions.use("cracks")).click();
+  assert.equal(await condition.inputValue(), "valid(cracks)");
+  await page.getByText(/^True on .+ of the surface\.$/).waitFor();
+  await page.locator("strata-stage .lit").waitFor();
+  await shot("where_lit");
+  await condition.fill("");
+  await button(words.expressions.insert).click();
+  await page.getByRole("combobox", { name: words.expressions.search }).fill("hairline");
+  await page.keyboard.press("Enter");
+  assert.match(await condition.inputValue(), /^cracks = \d+$/);
+  await button(words.expressions.insert).click();
   await condition.fill("not ");
   await condition.press("End");
   await condition.pressSequentially("cra");

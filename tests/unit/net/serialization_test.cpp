@@ -178,6 +178,35 @@ TEST(Wire, a_polygon_becomes_an_edit) {
   EXPECT_EQ(request->record["op"], "polygon");
 }
 
+TEST(Wire, further_outlines_of_a_polygon_keep_their_cameras_and_their_order) {
+  protocol::EditPolygon polygon;
+  polygon.value = 200;
+  polygon.camera = camera();
+  polygon.path = {{1, 2}, {3, 4}, {5, 0}};
+  protocol::OutlineStep step;
+  step.camera = camera();
+  step.path = {{7, 8}, {9, 4}, {5, 0}};
+  step.through = true;
+  polygon.steps.emplace();
+  using protocol::Combination;
+  for (const auto combine : {Combination::subtract, Combination::intersect, Combination::add}) {
+    step.combine = combine;
+    polygon.steps->push_back(step);
+  }
+  const auto request = request_of(polygon);
+  ASSERT_TRUE(request);
+  const auto& steps = std::get<room::PolygonEdit>(request->edit).outline.steps;
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_EQ(steps[0].combination, room::Combination::subtract);
+  EXPECT_EQ(steps[1].combination, room::Combination::intersect);
+  EXPECT_EQ(steps[2].combination, room::Combination::add);
+  EXPECT_EQ(steps[0].path, step.path);
+  EXPECT_TRUE(steps[0].through);
+  EXPECT_EQ(request->record["steps"].size(), 3u);
+  polygon.steps->front().path.resize(kMaxOutlinePoints, {1, 1});
+  EXPECT_EQ(request_of(polygon).error().field, "steps");
+}
+
 TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
   protocol::StrokeBegin begin;
   begin.id = random_uuid();

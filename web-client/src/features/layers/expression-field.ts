@@ -88,7 +88,7 @@ export class StrataExpressionField extends LitElement {
         font: var(--text-body) var(--mono);
         resize: vertical;
       }
-      ul {
+      .editor ul {
         position: absolute;
         z-index: 3;
         inset: 100% 0 auto 0;
@@ -100,7 +100,7 @@ export class StrataExpressionField extends LitElement {
         background: var(--paper);
         box-shadow: var(--shadow);
       }
-      li {
+      .editor li {
         display: flex;
         justify-content: space-between;
         gap: var(--space-4);
@@ -109,13 +109,13 @@ export class StrataExpressionField extends LitElement {
         font-size: var(--text-small);
         cursor: pointer;
       }
-      li[aria-selected="true"] {
+      .editor li[aria-selected="true"] {
         background: var(--accent-soft);
       }
-      li b {
+      .editor li b {
         font: var(--text-small) var(--mono);
       }
-      li span {
+      .editor li span {
         color: var(--ink-soft);
         white-space: nowrap;
         overflow: hidden;
