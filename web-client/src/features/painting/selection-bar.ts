@@ -30,7 +30,7 @@ export class StrataSelectionBar extends LitElement {
     css`
       :host {
         position: absolute;
-        inset: auto 0 3.25rem 0;
+        inset: 0.75rem 0 auto 0;
         display: flex;
         justify-content: center;
         padding: 0 var(--space-3);
