@@ -6,9 +6,7 @@
 // later. HEADLIGHT, RAKING_LIGHT or UNLIT replace the museum light; LOOKS is the number of pictures
 // over the colors of the vertices.
 layout(location = 0) in vec2 surface_uv;
-#ifdef LIT_VERTICES
-layout(location = 1) in float surface_light;
-#else
+#ifndef LIT_VERTICES
 layout(location = 1) in vec4 surface_normal;
 #endif
 layout(location = 2) in vec4 surface_color;
@@ -23,7 +21,7 @@ layout(location = 1) out vec4 lit;
 
 float light_here() {
 #if defined(LIT_VERTICES)
-  return surface_light;
+  return surface_color.a;
 #elif defined(HEADLIGHT)
   return 0.1 + 0.9 * clamp(abs(surface_normal.w) / length(surface_normal.xyz), 0.0, 1.0);
 #elif defined(UNLIT)

@@ -15,23 +15,22 @@ invariant gl_Position;
 out float gl_ClipDistance[kSectionPlanes];
 #endif
 layout(location = 0) out vec2 surface_uv;
-#ifdef LIT_VERTICES
-layout(location = 1) out float surface_light;
-#else
+#ifndef LIT_VERTICES
 layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye
 #endif
-layout(location = 2) out vec4 surface_color;  // a: the share of the sky that reaches the surface
+// a: the share of the sky that reaches the surface; LIT_VERTICES: the light
+layout(location = 2) out vec4 surface_color;
 
 void main() {
   gl_Position = mesh.clip_from_model * vec4(position, 1.0);
   surface_uv = uv;
   float to_eye = dot(normal.xyz, normalize(mesh.eye.xyz - position * mesh.eye.w));
+  surface_color = color;
 #ifdef LIT_VERTICES
-  surface_light = museum_light(is_seen_from_behind(to_eye) ? -normal.xyz : normal.xyz, color.a, mesh);
+  surface_color.a = museum_light(is_seen_from_behind(to_eye) ? -normal.xyz : normal.xyz, color.a, mesh);
 #else
   surface_normal = vec4(normal.xyz, to_eye);
 #endif
-  surface_color = color;
 #ifdef SECTION
   for (uint i = 0u; i < kSectionPlanes; ++i) gl_ClipDistance[i] = dot(mesh.section[i].xyz, position) + mesh.section[i].w;
 #endif

@@ -295,12 +295,13 @@ export class Appearance {
 }
 
 /** The settings that have an effect in this light. */
-function lightShown({ mode, direction, exposure, fill, layer_opacity }: Required<Light>): Light {
+function lightShown(light: Required<Light>): Light {
+  const { mode, direction, exposure, fill, layer_opacity: opacity } = light;
   return {
     mode,
     direction,
     ...(exposure === 0 ? {} : { exposure }),
-    ...(mode === "raking" ? { fill, layer_opacity } : {}),
+    ...(mode === "raking" ? { fill, layer_opacity: opacity } : {}),
   };
 }
 

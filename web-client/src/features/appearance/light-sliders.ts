@@ -44,7 +44,7 @@ export class StrataLightSliders extends LitElement {
 
   override render(): TemplateResult {
     const { appearance } = this.session;
-    const { mode, exposure, fill, layer_opacity } = appearance.light;
+    const { mode, exposure, fill, layer_opacity: opacity } = appearance.light;
     const words = texts.view;
     const percent = (share: number): string => `${Math.round(share * 100)} %`;
     return html`${this.slider({
@@ -69,8 +69,8 @@ export class StrataLightSliders extends LitElement {
             name: words.raking_layers,
             hint: words.raking_layers_hint,
             range: [0, 1, 0.05],
-            value: layer_opacity,
-            said: percent(layer_opacity),
+            value: opacity,
+            said: percent(opacity),
             choose: (value) => appearance.setLight({ layer_opacity: value }),
           })}`
         : nothing

@@ -78,9 +78,9 @@ export class StrataSectionArea extends LitElement {
 /** Of all planes together; null: one of the cuts is open. */
 function saidArea(cuts: SectionCut[]): string | null {
   let sum = 0;
-  for (const { area_m2 } of cuts) {
-    if (area_m2 === undefined) return null;
-    sum += area_m2;
+  for (const { area_m2: area } of cuts) {
+    if (area === undefined) return null;
+    sum += area;
   }
   return formatArea(sum);
 }

@@ -203,7 +203,10 @@ describe("how a person sees the model", () => {
   });
 
   it("shows a view of an earlier release as it was", () => {
-    const back = appearance.showView({ camera: {}, light: { mode: "raking", direction: [1, 0, 1] } });
+    const back = appearance.showView({
+      camera: {},
+      light: { mode: "raking", direction: [1, 0, 1] },
+    });
     expect(sent.at(-1)![1]).toMatchObject({ fill: 0, layer_opacity: 1 });
     expect(appearance.toKeep().light).toEqual(sent.at(-1)![1]);
     back();
