@@ -19,6 +19,7 @@ const howTo = {
     "comment",
     "review-edits",
     "follow-activity",
+    "see-the-past",
     "use-the-trash",
   ],
   "Show results": ["save-views", "print-figures", "make-tours", "run-a-kiosk"],

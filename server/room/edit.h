@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -72,8 +73,9 @@ struct ReviewEdit {  // of edits that wait for review, or were reviewed before
   store::Reviewees which;
   std::string reason;  // for the authors
 };
-struct RestoreEdit {  // the whole layer as it was after a sequence
+struct RestoreEdit {  // the layer as it was after a sequence
   std::int64_t sequence = 0;
+  std::optional<Outline> outline{};  // only the texels inside it
 };
 
 struct EditRequest {

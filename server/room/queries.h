@@ -13,6 +13,7 @@
 #include "query/statistics/perimeter.h"
 #include "query/statistics/quantities.h"
 #include "query/statistics/statistics.h"
+#include "room/place.h"
 #include "room/selection.h"
 
 namespace strata::mesh {
@@ -52,6 +53,11 @@ struct SelectedArea {
   std::map<std::string, query::Statistics> layers;  // by slug: their values in the area
   // for StatisticsOptions::seen, row by row from the top left: 1 where the camera sees the area
   std::vector<std::uint8_t> seen{};
+};
+
+struct LayerDifference {  // of two states of a layer
+  std::uint64_t texels = 0;
+  double area_m2 = 0, share = 0;  // of the whole surface
 };
 
 struct PlacesInSteps {             // for each place, the nearest surface point is used
@@ -103,6 +109,10 @@ class Queries {
                                                       const Selection& selection = {}) = 0;
   virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(
       const std::string& layer) = 0;  // of a database layer
+  // Returns how much differs between two states of a layer: what a restore of the one would change
+  // in the other. `outline`: only inside it.
+  virtual Result<LayerDifference> difference(const std::string& layer, At one, At other,
+                                             const std::optional<Outline>& outline) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) = 0;
 };
 

@@ -138,6 +138,11 @@ class FilteredQueries final : public Queries {
     STRATA_TRY(layers_.check({layer}));
     return queries_.key_areas(layer);
   }
+  Result<LayerDifference> difference(const std::string& layer, At one, At other,
+                                     const std::optional<Outline>& outline) override {
+    STRATA_TRY(layers_.check({layer}));
+    return queries_.difference(layer, one, other, outline);
+  }
   Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) override {
     STRATA_TRY(layers_.check({layer}));
     return queries_.tiles(layer, at);

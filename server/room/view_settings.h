@@ -12,6 +12,7 @@
 #include "domain/scene/background.h"
 #include "domain/scene/light.h"
 #include "expression/expression.h"
+#include "room/at.h"
 
 namespace strata::room {
 
@@ -45,6 +46,7 @@ struct ViewSettings {
       images;  // bottom to top; nothing: those visible by default
   Light light;
   Background background{};
+  At at{};  // of the layers, a durable edit; nothing: always the newest state
 
   // Returns the settings of a layer, or empty ones.
   const LayerView& of(LayerId layer_id) const {

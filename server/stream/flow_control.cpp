@@ -1,6 +1,7 @@
 #include "stream/flow_control.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render/thread/screen_rect.h"
 
@@ -56,6 +57,10 @@ void FlowControl::on_style() {
   everything_waits_ = true;
 }
 
+bool FlowControl::on_past(std::optional<std::int64_t> sequence) {
+  return std::exchange(past_, sequence) != sequence;
+}
+
 void FlowControl::on_ack(std::uint64_t frame) {
   acked_ = std::max(acked_, std::min(frame, last_frame_));
 }
@@ -71,7 +76,8 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   // it.
   if (!changes && (!rests_ || refined_ || moving_ || acked_ < last_frame_)) return std::nullopt;
 
-  Draw draw{++tickets_, camera_seq_, sequence_, *camera_, std::nullopt, Quality::still, 1};
+  Draw draw{++tickets_,   camera_seq_,    past_.value_or(sequence_), *camera_,
+            std::nullopt, Quality::still, 1};
   if (!changes) draw.samples = samples_at_rest_;
   if (everything_waits_ || refine || !changes) {
     draw.quality = moving_ ? Quality::moving : Quality::still;

@@ -59,6 +59,9 @@ class FlowControl {
   void on_change(const Box& box, std::int64_t sequence);
   void on_change_everywhere(std::int64_t sequence);
   void on_style();
+  // From now on, pictures show the scene after this earlier edit; nothing: always the newest. False:
+  // as before.
+  bool on_past(std::optional<std::int64_t> sequence);
   // frames up to this one are on the client's screen; unknown numbers are clamped
   void on_ack(std::uint64_t frame);
   void set_window(int window) { window_ = window < 1 ? 1 : window; }
@@ -100,6 +103,7 @@ class FlowControl {
   bool refine_waits_ = false;  // the screen shows a picture of lower quality
   std::vector<Box> boxes_;     // changes that are in no draw yet
   std::int64_t sequence_;
+  std::optional<std::int64_t> past_;  // instead of `sequence_`
   std::optional<Draw> out_;  // the draw in progress
   const int samples_at_rest_;
   bool rests_ = false;    // nothing changed for a while

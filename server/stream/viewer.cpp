@@ -283,10 +283,12 @@ void Viewer::acts() {
   impl_->last_act = Clock::now();
 }
 
-void Viewer::set_style(render::ViewStyle style) {
+void Viewer::set_style(render::ViewStyle style, std::optional<std::int64_t> past) {
   {
     std::lock_guard lock(impl_->mutex);
-    if (style == impl_->style) return;  // surface images or layers of other views changed
+    const bool moves = impl_->flow.on_past(past);
+    // Surface images or layers of other views changed.
+    if (style == impl_->style && !moves) return;
     impl_->style = std::move(style);
     impl_->rest_after(kRestAfterCamera);
     impl_->flow.on_style();
@@ -325,7 +327,8 @@ void Viewer::ack(std::uint64_t frame) {
   step();
 }
 
-void Viewer::reset_model(render::ModelHandle model, render::ViewStyle style) {
+void Viewer::reset_model(render::ModelHandle model, render::ViewStyle style,
+                         std::optional<std::int64_t> past) {
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
@@ -336,6 +339,7 @@ void Viewer::reset_model(render::ModelHandle model, render::ViewStyle style) {
     impl_->view = 0;
     impl_->style = std::move(style);
     impl_->retry_in = kFirstRetry;
+    impl_->flow.on_past(past);
     impl_->flow.on_reset();
   }
   add_view();

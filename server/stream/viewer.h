@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "domain/scene/camera.h"
@@ -51,13 +52,15 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);
   void acts();  // its user edits: for a while, this view is drawn before those of onlookers, as
                 // after a camera
-  void set_style(render::ViewStyle style);
+  // `past`: the edit after which the picture shows the model; nothing: always the newest state.
+  void set_style(render::ViewStyle style, std::optional<std::int64_t> past = {});
   // Model-space box that an edit changed; frames drawn after this will show `sequence`.
   void changed(const render::FrameRequest::Box& box, std::int64_t sequence);
   void changed_everywhere(std::int64_t sequence);
   void ack(std::uint64_t frame);
   // After a lost context: the model has a new handle; everything is drawn again.
-  void reset_model(render::ModelHandle model, render::ViewStyle style);
+  void reset_model(render::ModelHandle model, render::ViewStyle style,
+                   std::optional<std::int64_t> past = {});
   void close();  // neither `send` nor `refused` is called after it returns
 
   struct Stats {

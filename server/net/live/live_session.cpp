@@ -203,13 +203,26 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
   const auto background = background_of(message.background);
   if (!background) return refuse(background.error(), std::string());
   settings->background = *background;
+  if (message.at) {
+    if (principal_.kiosk)
+      return refuse({ErrorCode::forbidden, "Not allowed for kiosks",
+                     "A kiosk can only show the newest state of a model.", "at"},
+                    std::string());
+    if (const auto newest = room_->edits().durable_sequence(); *message.at > newest)
+      return refuse({ErrorCode::invalid, "Sequence not reached",
+                     "The newest durable edit of this model is " + std::to_string(newest) + ".",
+                     "at"},
+                    std::string());
+    settings->at = *message.at;
+  }
   if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(*settings));
       !done)
-    refuse(done.error(), std::string());
+    return refuse(done.error(), std::string());
+  if (message.view_id == 0) shows_past_ = message.at.has_value();
 }
 
 LiveSession::Work LiveSession::on(const protocol::StrokeBegin& message) {
-  if (!may_edit(message.id)) return {};
+  if (!may_paint(message.id)) return {};
   // the look-up of a tool or record may block
   if (names_tool(message) || has_records(message.layer))
     return [self = shared_from_this(), message] { self->begin(message); };
@@ -230,7 +243,7 @@ void LiveSession::begin(const protocol::StrokeBegin& message) {
 }
 
 LiveSession::Work LiveSession::on(const protocol::StrokeExtend& message) {
-  if (!may_edit(message.id)) return {};
+  if (!may_paint(message.id)) return {};
   // Needed only after a restart of the server: the previous batch is in the journal, and reading
   // the journal may block.
   if (shared_->strokes->lacks_start(owner_, message.stroke, message.n))
@@ -248,7 +261,7 @@ void LiveSession::on(const protocol::StrokeEnd& message) {
 }
 
 LiveSession::Work LiveSession::on(const protocol::EditRequest& message) {
-  if (!may_edit(message.id)) return {};
+  if (!may_paint(message.id)) return {};
   if (names_tool(message.edit) || has_records(message.layer))
     return [self = shared_from_this(), message] { self->edit(message); };
   edit(message);
@@ -276,7 +289,7 @@ bool LiveSession::has_records(const protocol::LayerRef& ref) const {
 
 template <class Message>
 void LiveSession::step_through_history(const Message& message) {
-  if (!may_edit(message.id)) return;
+  if (!may_paint(message.id)) return;
   auto layer = layer_of(message.layer);
   if (!layer) return refuse(layer.error(), message.id);
   room::EditRequest request{message.id, author(), layer->id};
@@ -638,6 +651,17 @@ bool LiveSession::may_edit(const std::string& ref) {
           "Your role is viewer, so you cannot paint. Ask an administrator for the role annotator.",
           {}},
          ref);
+  return false;
+}
+
+bool LiveSession::may_paint(const Uuid& id) {
+  if (!may_edit(id)) return false;
+  if (!shows_past_) return true;
+  refuse({ErrorCode::conflict,
+          "Past state shown",
+          "You are looking at an earlier state, so you cannot paint. Go back to now first.",
+          {}},
+         id);
   return false;
 }
 

@@ -133,6 +133,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   app::RecordEditLocks::Tell tell_project() const;
   bool may_edit(const std::string& ref);
   bool may_edit(const Uuid& id) { return may_edit(to_string(id)); }
+  bool may_paint(const Uuid& id);
   bool has_view(int view_id, const std::string& ref);
   Result<Layer> layer_of(const protocol::LayerRef& ref) const;
   bool has_records(const protocol::LayerRef& ref) const;
@@ -156,6 +157,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   TokenBucket bucket_;
   int refusals_ = 0;
   std::map<int, Camera> cameras_;
+  bool shows_past_ = false;  // view 0
 
   mutable std::mutex mutex_;
   std::shared_ptr<room::Participant> member_;

@@ -32,41 +32,73 @@ OpenParticipant::View* OpenParticipant::view(std::uint32_t view_id, bool make) {
                                        send_, [listener = listener_, view_id](const Error& why) {
                                          if (listener) listener->view_refused(view_id, why);
                                        });
-  made.viewer->set_style(style(view_id, made));
+  restyle(view_id, made);
   return &made;
 }
 
-render::ViewStyle OpenParticipant::style(std::uint32_t view_id, View& view) const {
-  render::ViewStyle style;
+OpenParticipant::Appearance OpenParticipant::appearance(std::uint32_t view_id, View& view) const {
+  Appearance appearance;
+  render::ViewStyle& style = appearance.style;
   style.images = room_->surface_image_cache().styles(view.images);
   style.light = view.light;
   style.background = view.background;
   style.unit_mm = room_->model().metres() * 1000;
   std::vector<LayerFeatures> marked;
-  std::vector<LayerState> states = room_->layer_states();
-  sort_as_shown(states, [&](LayerId id) {
+  const LayerView none;
+  const auto mine = [&](LayerId id) -> const LayerView& {
     const auto own = view.overrides.find(id);
-    return own == view.overrides.end() ? nullptr : &own->second;
+    return own == view.overrides.end() ? none : own->second;
+  };
+  std::vector<LayerState> states = room_->layer_states();
+  std::erase_if(states, [&](const LayerState& state) {
+    return !sees(role(), state.layer.visibility) ||
+           !mine(state.layer.id).visible.value_or(state.layer.visible);
   });
+  sort_as_shown(states, [&](LayerId id) { return &mine(id); });
+  const auto past = moment(view_id, view, states);
+  if (past) appearance.at = past->sequence;
   for (const auto& state : states) {
-    if (!sees(role(), state.layer.visibility)) continue;
-    auto own = view.overrides.find(state.layer.id);
-    const LayerView none;
-    const LayerView& mine = own == view.overrides.end() ? none : own->second;
-    if (!mine.visible.value_or(state.layer.visible)) continue;
-    const render::LayerStyle shown{state.handles.content, palette(view_id, view, state),
-                                   static_cast<float>(mine.opacity.value_or(state.layer.opacity))};
-    add_styles(shown, state.waiting(), style.layers);
+    render::LayerStyle shown{
+        state.handles.content, palette(view_id, view, state),
+        static_cast<float>(mine(state.layer.id).opacity.value_or(state.layer.opacity))};
+    if (past) {
+      const auto then = past->layers.find(state.layer.id);
+      if (then == past->layers.end()) continue;  // its state is being read
+      shown.layer = then->second->handle;
+    }
+    add_styles(shown, past ? std::nullopt : state.waiting(), style.layers);
     if (!state.layer.table) continue;
-    if (auto features = room_->record_features().find(*state.layer.table, sight_of(role())))
-      marked.push_back({std::move(features), shown.palette, shown.opacity});
+    RecordFeatures::SurfaceFeatures features;
+    if (!past) {
+      features = room_->record_features().find(*state.layer.table, sight_of(role()));
+    } else if (const auto then = past->features.find(*state.layer.table);
+               then != past->features.end()) {
+      features = then->second;
+    }
+    if (features) marked.push_back({std::move(features), shown.palette, shown.opacity});
   }
   if (marked != view.marked) {
     view.features = room_->record_features().shown(marked);
     view.marked = std::move(marked);
   }
   style.features = view.features;
-  return style;
+  return appearance;
+}
+
+std::shared_ptr<const PastMoment> OpenParticipant::moment(
+    std::uint32_t view_id, View& view, const std::vector<LayerState>& shown) const {
+  if (!view.at) return nullptr;
+  PastLayers::Request request{*view.at, {}, sight_of(role())};
+  for (const LayerState& state : shown) request.layers.push_back(state.layer);
+  const auto found = room_->past_layers().find(view.past, request);
+  if (found.problem && view.reported.insert(found.problem).second && listener_)
+    listener_->view_refused(view_id, *found.problem);
+  return found.moment;
+}
+
+void OpenParticipant::restyle(std::uint32_t view_id, View& view) const {
+  auto [style, at] = appearance(view_id, view);
+  view.viewer->set_style(std::move(style), at);
 }
 
 std::shared_ptr<const Palette> OpenParticipant::palette(std::uint32_t view_id, View& view,
@@ -129,7 +161,15 @@ Result<void> OpenParticipant::show(std::uint32_t view_id, ViewSettings settings)
     }
     v->overrides[own.layer_id] = std::move(own);
   }
-  v->viewer->set_style(style(view_id, *v));
+  const bool returns = v->at && !settings.at;
+  v->at = settings.at;
+  if (!v->at)
+    v->past = nullptr;
+  else if (!v->past)
+    v->past = room_->past_layers().new_place();
+  restyle(view_id, *v);
+  // Edits did not reach the view while it showed the past.
+  if (returns) v->viewer->changed_everywhere(room_->edits().sequence());
   return {};
 }
 
@@ -174,6 +214,7 @@ void OpenParticipant::content_changed(LayerId layer_id,
   if (state && !sees(role(), state->layer.visibility)) return;
   std::lock_guard lock(mutex_);
   for (auto& [id, view] : views_) {
+    if (view.at) continue;
     auto own = view.overrides.find(layer_id);
     const bool shown = own != view.overrides.end() && own->second.visible
                            ? *own->second.visible
@@ -185,12 +226,15 @@ void OpenParticipant::content_changed(LayerId layer_id,
 
 void OpenParticipant::styles_changed() {
   std::lock_guard lock(mutex_);
-  for (auto& [id, view] : views_) view.viewer->set_style(style(id, view));
+  for (auto& [id, view] : views_) restyle(id, view);
 }
 
 void OpenParticipant::model_changed(render::ModelHandle model) {
   std::lock_guard lock(mutex_);
-  for (auto& [id, view] : views_) view.viewer->reset_model(model, style(id, view));
+  for (auto& [id, view] : views_) {
+    auto [style, at] = appearance(id, view);
+    view.viewer->reset_model(model, std::move(style), at);
+  }
 }
 
 }  // namespace strata::room

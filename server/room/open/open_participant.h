@@ -8,6 +8,7 @@
 
 #include "core/ids.h"
 #include "core/uuid.h"
+#include "room/caches/past_layers.h"
 #include "room/caches/record_features.h"
 #include "room/listener.h"
 #include "room/participants.h"
@@ -58,9 +59,20 @@ class OpenParticipant final : public Participant {
     std::optional<std::vector<SurfaceImageView>> images;
     Light light;
     Background background;
+    At at;
+    std::shared_ptr<PastLayers::Place> past;  // not null while `at` is set
   };
   View* view(std::uint32_t view_id, bool make);
-  render::ViewStyle style(std::uint32_t view_id, View& view) const;
+  void restyle(std::uint32_t view_id, View& view) const;
+  // A picture of the model, and the edit after which it shows the model; nothing: the newest.
+  struct Appearance {
+    render::ViewStyle style;
+    At at;
+  };
+  Appearance appearance(std::uint32_t view_id, View& view) const;
+  // The moment that the view shows; null: the newest state.
+  std::shared_ptr<const PastMoment> moment(std::uint32_t view_id, View& view,
+                                           const std::vector<LayerState>& shown) const;
   std::shared_ptr<const Palette> palette(std::uint32_t view_id, View& view,
                                          const LayerState& state) const;
 

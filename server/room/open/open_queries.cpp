@@ -18,6 +18,7 @@
 #include "room/open/open_queries.h"
 #include "room/pipeline/expression_binding.h"
 #include "room/pipeline/region.h"
+#include "room/pipeline/tile_changes.h"
 #include "store/journal/journal_reads.h"
 
 namespace strata::room {
@@ -58,6 +59,35 @@ Result<TileMirror::Snapshot> OpenRoom::QueriesPart::tiles(const std::string& lay
   room_.touch();
   auto found = STRATA_TRY(room_.state(layer));
   return room_.tiles_at(found, at);
+}
+
+Result<LayerDifference> OpenRoom::QueriesPart::difference(const std::string& layer, At one,
+                                                          At other,
+                                                          const std::optional<Outline>& outline) {
+  room_.touch();
+  const auto found = STRATA_TRY(room_.state(layer));
+  const auto from = STRATA_TRY(room_.tiles_at(found, one));
+  const auto to = STRATA_TRY(room_.tiles_at(found, other));
+  const auto map = STRATA_TRY(room_.surface_map(found.layer.resolution));
+  check_question();
+  auto changes = replace_content(from.tiles, to.tiles, found.layer.type, *map);
+  if (outline) {
+    const auto masks = STRATA_TRY(texels_in(*outline, *map, *room_.surface_lookup_,
+                                            room_.services_.renderer, room_.model_handle()));
+    changes = only_within(std::move(changes), masks);
+  }
+  LayerDifference difference;
+  double area = 0;
+  for (const TileChange& change : changes) {
+    check_question();
+    const ChangeCount count = count_changes(change, *map);
+    difference.texels += count.texels;
+    area += count.area;
+  }
+  const double metres = room_.model().metres();
+  difference.area_m2 = area * metres * metres;
+  difference.share = map->area_total > 0 ? std::min(1.0, area / map->area_total) : 0;
+  return difference;
 }
 
 Result<query::SurfacePoint> OpenRoom::QueriesPart::position(const glm::dvec3& world,

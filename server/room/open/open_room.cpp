@@ -83,7 +83,16 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   room->record_colors_ = std::make_shared<RecordColors>(services.store, services.workers, restyle);
   room->record_features_ =
       std::make_shared<RecordFeatures>(services.store, services.workers, room->id(), restyle);
+  room->past_layers_ = std::make_shared<PastLayers>(
+      services.store, services.renderer, services.workers, services.memory, room->record_features_,
+      room->id(),
+      [weak = std::weak_ptr<OpenRoom>(room)](const Layer& layer) {
+        const auto open = weak.lock();
+        return open ? open->durable_tiles(layer) : std::nullopt;
+      },
+      restyle);
   room->surface_image_cache_->set_model(gpu->model);
+  room->past_layers_->set_model(gpu->model);
   for (const SurfaceImage& image : images) room->surface_image_cache_->put(image);
   room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ = std::make_shared<EditPipeline>(
@@ -139,6 +148,14 @@ Result<void> OpenRoom::check_durable(At at) const {
   if (!at || *at <= durable_) return {};
   return fail(ErrorCode::invalid, "Sequence not reached",
               "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+}
+
+std::optional<TileMirror::Snapshot> OpenRoom::durable_tiles(const Layer& layer) const {
+  const auto state = layer_state(layer.id);
+  if (!state || state->mirror->type() != layer.type) return std::nullopt;
+  auto newest = state->mirror->snapshot();
+  if (newest.sequence > durable_) return std::nullopt;  // the journal may still refuse its last edits
+  return newest;
 }
 
 Result<TileMirror::Snapshot> OpenRoom::tiles_at(const LayerState& state, At at) const {
@@ -242,7 +259,7 @@ void OpenRoom::touch() {
 }
 
 bool OpenRoom::drop_map() {
-  return surface_lookup_->drop_graphs() ||
+  return past_layers_->drop_unused() || surface_lookup_->drop_graphs() ||
          run_on(strand_, [&] { return pipeline_->is_still() && maps_->drop_oldest(); });
 }
 
@@ -273,6 +290,7 @@ void OpenRoom::close(const Error& why) {
   surface_image_cache_->stop();
   record_colors_->stop();
   record_features_->stop();
+  past_layers_->stop();
   surface_lookup_->stop();
   run_on(strand_, [&] {
     recovery_.closed = true;

@@ -19,6 +19,7 @@
 #include "domain/layers/tile_mirror.h"
 #include "domain/scene/model.h"
 #include "room/at.h"
+#include "room/caches/past_layers.h"
 #include "room/caches/record_colors.h"
 #include "room/caches/record_features.h"
 #include "room/caches/surface_image_cache.h"
@@ -88,6 +89,7 @@ class OpenRoom final : public Room,
   SurfaceImageCache& surface_image_cache() const { return *surface_image_cache_; }
   RecordColors& record_colors() const { return *record_colors_; }
   RecordFeatures& record_features() const { return *record_features_; }
+  PastLayers& past_layers() const { return *past_layers_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
   std::optional<LayerState> layer_state(LayerId id) const;
 
@@ -98,7 +100,8 @@ class OpenRoom final : public Room,
   std::size_t participant_count() const;  // number of connections
   std::size_t take_leave_count();         // number of connections that left since the last call
   const SurfaceMaps& maps() const { return *maps_; }
-  // drops the map that was unused for the longest time, while nothing is being painted. Blocks
+  // drops past states that no view shows, or the map that was unused for the longest time, while
+  // nothing is being painted. Blocks
   bool drop_map();
   // Releases maps of very fine layers that were unused for a while.
   bool drop_large_unused_maps(std::chrono::steady_clock::time_point now);
@@ -133,6 +136,7 @@ class OpenRoom final : public Room,
   Result<LayerState> state(const std::string& ref) const;
   // Refused (invalid, `at`): a sequence that is not durable yet.
   Result<void> check_durable(At at) const;
+  std::optional<TileMirror::Snapshot> durable_tiles(const Layer& layer) const;
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs,
                                                     At at) const;
@@ -148,6 +152,7 @@ class OpenRoom final : public Room,
   std::shared_ptr<SurfaceImageCache> surface_image_cache_;
   std::shared_ptr<RecordColors> record_colors_;
   std::shared_ptr<RecordFeatures> record_features_;
+  std::shared_ptr<PastLayers> past_layers_;
   const std::shared_ptr<SurfaceLookup> surface_lookup_;
   std::shared_ptr<EditPipeline> pipeline_;
 

@@ -125,6 +125,7 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
   }
   maps_->set_model(contents->model);
   surface_image_cache_->set_model(contents->model);
+  past_layers_->set_model(contents->model);
   pipeline_->gpu_filled();
   participants_part_->model_changed(contents->model);
   recover();

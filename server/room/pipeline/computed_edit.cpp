@@ -140,7 +140,14 @@ Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer
           },
           [&](const RestoreEdit& restore) -> Result<ComputedEdit> {
             auto past = STRATA_TRY(store.journal().load_tiles(layer, restore.sequence));
-            return only_changes(replace_content(tiles, past.tiles, layer.type, context.map));
+            auto changes = replace_content(tiles, past.tiles, layer.type, context.map);
+            if (restore.outline) {
+              const auto masks = STRATA_TRY(texels_in(*restore.outline, context.map,
+                                                      context.surface, context.renderer,
+                                                      context.model));
+              changes = only_within(std::move(changes), masks);
+            }
+            return only_changes(std::move(changes));
           },
           [&](const UndoEdit&) { return compute_undo(request, layer, tiles, store, false); },
           [&](const RedoEdit&) { return compute_undo(request, layer, tiles, store, true); },

@@ -111,6 +111,22 @@ std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& tar
   return changes;
 }
 
+std::vector<TileChange> only_within(std::vector<TileChange> changes,
+                                    const std::map<TileAddress, TileMask>& masks) {
+  std::vector<TileChange> inside;
+  for (TileChange& change : changes) {
+    const auto mask = masks.find(change.address);
+    if (mask == masks.end()) continue;
+    for (int w = 0; w < kMaskWords; ++w) change.written.words[w] &= mask->second.words[w];
+    if (!change.written.any()) continue;
+    auto after = std::make_shared<TileData>(*change.before);
+    copy_texels(*change.after, change.written, *after);
+    change.after = std::move(after);
+    inside.push_back(std::move(change));
+  }
+  return inside;
+}
+
 std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
                                    const mesh::SurfaceMap& map) {
   std::vector<TileChange> changes;

@@ -59,6 +59,10 @@ std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
 std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& target, ValueType type,
                                         const mesh::SurfaceMap& map);
 
+// Leaves out what the changes write outside the masks.
+std::vector<TileChange> only_within(std::vector<TileChange> changes,
+                                    const std::map<TileAddress, TileMask>& masks);
+
 // Paints the valid texels of `written` over the content; skips texels that do not belong to the
 // surface.
 std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,

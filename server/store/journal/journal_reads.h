@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "store/journal/journal.h"
+#include "store/journal/timeline.h"
 
 namespace strata::store {
 
@@ -45,6 +47,12 @@ class Journal {
   // Returns all tiles of a layer after `at_sequence` (nothing: the newest).
   Result<TileMirror::Snapshot> load_tiles(const Layer& layer,
                                           std::optional<std::int64_t> at_sequence = {});
+  // The same for the state after `sequence`, an edit of the layer or 0. Reads only tiles that edits
+  // between it and `near` wrote; the others are those of `near`, a state that is in the journal.
+  Result<TileMirror::Snapshot> load_tiles_near(const Layer& layer, std::int64_t sequence,
+                                               const TileMirror::Snapshot& near);
+  // Returns each layer's last edit up to a sequence of the model; layers without one are left out.
+  Result<std::map<LayerId, std::int64_t>> layer_sequences(ModelId model_id, std::int64_t sequence);
   // Returns revisions of a tile older than `before`, newest first, at most `limit`, with the
   // present state of their edits.
   Result<std::vector<PastRevision>> tile_history(const Layer& layer, TileAddress tile,
@@ -71,6 +79,11 @@ class Journal {
   // one of them selects all.
   Result<std::vector<UnderReview>> under_review(LayerId layer_id, Decision decision,
                                                 const Reviewees& which);
+  // timeline.cpp: counts the edits of a model over time.
+  Result<Timeline> timeline(ModelId model_id, const TimelineQuery& query);
+  // Returns the strokes and other edits up to `from` (backward) or after it, the nearest ones.
+  Result<TimelineSteps> timeline_steps(ModelId model_id, const std::vector<LayerId>& layers,
+                                       std::int64_t from, bool backward, int limit);
   Result<std::int64_t> last_sequence(ModelId model_id);
   // Returns the sequence of the last edit until a time (the text of core/text/timestamp.h); 0
   // before the first edit.

@@ -6,6 +6,7 @@
 
 #include "domain/layers/revision.h"
 #include "store/journal/journal_reads.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -110,17 +111,34 @@ TileAddress read_address(const PgResult& rows, int i) {
 // comes from the nested loops, because a sort would hold every row in memory. Places are compared
 // as rows, which only the primary key supports: without statistics of a fresh table, the planner
 // would read the whole index by sequence for each tile.
-constexpr const char* kLoadTiles =
-    "WITH RECURSIVE tiles AS ("
-    "(SELECT tile_y, tile_x FROM tile_revisions WHERE layer_id = $1 ORDER BY tile_y, tile_x LIMIT 1) UNION ALL "
-    "SELECT n.tile_y, n.tile_x FROM tiles t CROSS JOIN LATERAL (SELECT tile_y, tile_x FROM tile_revisions "
-    "WHERE layer_id = $1 AND (tile_y, tile_x) > (t.tile_y, t.tile_x) ORDER BY tile_y, tile_x LIMIT 1) n) "
+// Follows `tiles`: the rows of each, from its last key tile up to $2. LEFT JOIN: a tile without one
+// has a row of nulls.
+constexpr auto kRowsOfTiles = sql(
     "SELECT t.tile_y, t.tile_x, r.sequence, r.sequence = k.sequence, CASE WHEN r.sequence = k.sequence THEN r.key_tile ELSE r.difference END "
     "FROM tiles t LEFT JOIN LATERAL (SELECT sequence FROM tile_revisions WHERE layer_id = $1 AND tile_y = t.tile_y "
     "AND tile_x = t.tile_x AND sequence <= $2 AND key_tile IS NOT NULL ORDER BY sequence DESC LIMIT 1) k ON true "
-    "CROSS JOIN LATERAL (SELECT sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 "
+    "LEFT JOIN LATERAL (SELECT sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 "
     "AND (tile_y, tile_x, sequence) >= (t.tile_y, t.tile_x, coalesce(k.sequence, 0)) AND (tile_y, tile_x, sequence) <= (t.tile_y, t.tile_x, $2) "
-    "ORDER BY tile_y, tile_x, sequence) r";
+    "ORDER BY tile_y, tile_x, sequence) r ON true");
+
+constexpr auto kLoadTiles = sql(
+    "WITH RECURSIVE tiles AS ("
+    "(SELECT tile_y, tile_x FROM tile_revisions WHERE layer_id = $1 ORDER BY tile_y, tile_x LIMIT 1) UNION ALL "
+    "SELECT n.tile_y, n.tile_x FROM tiles t CROSS JOIN LATERAL (SELECT tile_y, tile_x FROM tile_revisions "
+    "WHERE layer_id = $1 AND (tile_y, tile_x) > (t.tile_y, t.tile_x) ORDER BY tile_y, tile_x LIMIT 1) n) ",
+    kRowsOfTiles);
+
+// Only the tiles that edits after $3 and up to $4 wrote.
+constexpr auto kLoadTilesNear = sql(
+    "WITH tiles AS MATERIALIZED (SELECT DISTINCT tile_y, tile_x FROM tile_revisions "
+    "WHERE layer_id = $1 AND sequence > $3 AND sequence <= $4 ORDER BY tile_y, tile_x) ",
+    kRowsOfTiles);
+
+Result<void> add_row(TileLoader& loader, const PgResult& row) {
+  if (row.null(0, 2)) return {};  // the tile was empty until then
+  return loader.add(read_address(row, 0), row.integer(0, 2), !row.null(0, 3) && row.boolean(0, 3),
+                    row.bytes(0, 4));
+}
 
 }  // namespace
 
@@ -137,12 +155,46 @@ Result<TileMirror::Snapshot> Journal::load_tiles(const Layer& layer,
     const std::int64_t sequence = last.integer(0, 0);
     TileLoader loader(layer.type);
     STRATA_TRY(connection.each_row(
-        kLoadTiles, Params().id(layer.id).integer(sequence), [&](const PgResult& row) {
-          return loader.add(read_address(row, 0), row.integer(0, 2),
-                            !row.null(0, 3) && row.boolean(0, 3), row.bytes(0, 4));
-        }));
+        kLoadTiles.c_str(), Params().id(layer.id).integer(sequence),
+        [&](const PgResult& row) { return add_row(loader, row); }));
     auto tiles = STRATA_TRY(loader.finish());
     return TileMirror::Snapshot{std::move(tiles), sequence};
+  });
+}
+
+Result<TileMirror::Snapshot> Journal::load_tiles_near(const Layer& layer, std::int64_t sequence,
+                                                      const TileMirror::Snapshot& near) {
+  TileMirror::Snapshot snapshot{near.tiles, sequence};
+  if (near.sequence == sequence) return snapshot;
+  return pool_.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
+    TileLoader loader(layer.type);
+    STRATA_TRY(connection.each_row(kLoadTilesNear.c_str(),
+                                   Params()
+                                       .id(layer.id)
+                                       .integer(sequence)
+                                       .integer(std::min(sequence, near.sequence))
+                                       .integer(std::max(sequence, near.sequence)),
+                                   [&](const PgResult& row) {
+                                     snapshot.tiles.erase(read_address(row, 0));
+                                     return add_row(loader, row);
+                                   }));
+    auto tiles = STRATA_TRY(loader.finish());
+    snapshot.tiles.merge(tiles);
+    return snapshot;
+  });
+}
+
+Result<std::map<LayerId, std::int64_t>> Journal::layer_sequences(ModelId model_id,
+                                                                 std::int64_t sequence) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::map<LayerId, std::int64_t>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT l.id, e.sequence FROM layers l CROSS JOIN LATERAL (SELECT sequence FROM edits "
+        "WHERE layer_id = l.id AND sequence <= $2 ORDER BY sequence DESC LIMIT 1) e "
+        "WHERE l.model_id = $1",
+        Params().id(model_id).integer(sequence)));
+    std::map<LayerId, std::int64_t> last;
+    for (int i = 0; i < rows.rows(); ++i) last.emplace(LayerId(rows.integer(i, 0)), rows.integer(i, 1));
+    return last;
   });
 }
 

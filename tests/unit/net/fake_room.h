@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "query/sampling/profile.h"
 #include "query/sampling/texel_samples.h"
 #include "query/statistics/cross_table.h"
@@ -28,7 +30,10 @@ class FakeParticipant final : public room::Participant {
   void camera(std::uint32_t view_id, std::uint64_t seq, const Camera&, bool) override {
     cameras.emplace_back(view_id, seq);
   }
-  Result<void> show(std::uint32_t, room::ViewSettings) override { return {}; }
+  Result<void> show(std::uint32_t view_id, room::ViewSettings settings) override {
+    shown[view_id] = std::move(settings);
+    return {};
+  }
   void ack(std::uint32_t, std::uint64_t) override {}
   void edits() override {}
   void pointer(std::optional<room::Pointing> at) override { pointers.push_back(at); }
@@ -39,6 +44,7 @@ class FakeParticipant final : public room::Participant {
     return {};
   }
   static constexpr Uuid kGone{{1}};
+  std::map<std::uint32_t, room::ViewSettings> shown;
   std::vector<std::pair<std::uint32_t, std::uint64_t>> cameras;
   std::vector<std::optional<room::Pointing>> pointers;
   std::vector<std::pair<bool, std::optional<Uuid>>> together;
@@ -152,6 +158,10 @@ class FakeQueries final : public room::Queries {
   }
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
     return std::map<std::int64_t, query::KeyArea>();
+  }
+  Result<room::LayerDifference> difference(const std::string&, room::At, room::At,
+                                           const std::optional<room::Outline>&) override {
+    return room::LayerDifference{};
   }
   Result<TileMirror::Snapshot> tiles(const std::string&, room::At) override {
     return TileMirror::Snapshot{};

@@ -466,6 +466,26 @@ TEST_F(Live, a_viewer_may_look_but_not_paint) {
   EXPECT_TRUE(room->edits_.held.empty());
 }
 
+TEST_F(Live, who_looks_at_the_past_may_not_paint) {
+  connect();
+  hello();
+  say({{"op", "layers"}, {"layers", nlohmann::json::array()}, {"at", 0}});
+  EXPECT_EQ(room->participants_.newest->shown.at(0).at, 0);
+  say(begin(stroke));
+  say({{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
+  const auto problems = socket->of("problem");
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_EQ(problems[0]["status"], 409);
+  EXPECT_TRUE(room->edits_.held.empty());
+  // Another view may show the past next to the newest state.
+  say({{"op", "layers"}, {"layers", nlohmann::json::array()}});
+  say({{"op", "layers"}, {"view_id", 1}, {"layers", nlohmann::json::array()}, {"at", 0}});
+  say({{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
+  EXPECT_EQ(socket->of("problem").size(), 2u);
+  say({{"op", "layers"}, {"layers", nlohmann::json::array()}, {"at", 1000000}});
+  EXPECT_EQ(socket->of("problem").at(2)["field"], "at");
+}
+
 TEST_F(Live, too_many_messages_are_refused_and_abuse_ends_the_connection) {
   shared->limits.messages_per_second = 0.001;
   shared->limits.burst = 2;

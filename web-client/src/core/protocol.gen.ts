@@ -707,6 +707,8 @@ export interface LayersUpdate {
   light?: Light;
   /** Absent: light gray. */
   background?: Background;
+  /** Sequence of a durable edit: the view shows the layers as they were after it, until the next message without `at`. While view 0 shows such a state, the server refuses strokes and other edits of this connection (409). Absent: always the newest state. */
+  at?: number;
 }
 
 /** Start of a stroke. Sets the layer, the value, the camera and the brush. Needs a value, unless it erases, and one radius. */
@@ -2557,10 +2559,119 @@ export interface EditList {
 /** Empty object. Undo and redo take no members. A request without a body is the same. */
 export type Empty = Record<string, never>;
 
-/** Restore of a whole layer. */
+/** Visible surface inside an outline. */
+export interface SeenOutline {
+  camera: Camera;
+  path: Outline;
+  /** Also include hidden surfaces. Default: false. */
+  through?: boolean;
+}
+
+/** Restore of a layer. */
 export interface Restore {
   /** The layer gets its state after this edit. 0: empty. */
   sequence: number;
+  /** Only the surface inside it. Absent: the whole layer. */
+  within?: SeenOutline;
+}
+
+/** Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339). */
+export type At = number | string;
+
+/** Two states of a layer. */
+export interface DifferenceRequest {
+  from: At;
+  /** Absent: the newest state. */
+  to?: At;
+  /** Count only inside it. */
+  within?: SeenOutline;
+}
+
+/** Difference of two states of a layer. */
+export interface Difference {
+  /** Sequence of the one state. */
+  from: number;
+  /** Sequence of the other. */
+  to: number;
+  /** Texels of the surface whose value differs. */
+  texels: number;
+  area_m2: number;
+  /** Share of the whole surface. */
+  share: number;
+}
+
+/** Edits of a person in an interval. */
+export interface TimelinePerson {
+  user: string;
+  /** Full name of `user`. Absent: the person gave none. */
+  full_name?: string;
+  /** Color of `user`. */
+  color?: PersonColor;
+  edits: number;
+}
+
+/** Interval of a timeline with edits. */
+export interface TimelineInterval {
+  /** From 0. All intervals are equally long. */
+  number: number;
+  edits: number;
+  /** Sequence of its first edit. */
+  first: number;
+  /** Sequence of its last edit. */
+  last: number;
+  /** Time of its first edit. */
+  begun: string;
+  /** Time of its last edit. */
+  ended: string;
+  /** The people with the most edits. */
+  people: TimelinePerson[];
+  /** Number of further people. */
+  others: number;
+  /** Ids of the layers with the most edits. */
+  layers: number[];
+}
+
+/** Edits of a model over time. Without edits, `from` and `to` are absent. */
+export interface Timeline {
+  /** Sequence of the newest durable edit of the model. */
+  newest: number;
+  /** Edits in all intervals. */
+  edits: number;
+  /** Begin of the first interval. */
+  from?: string;
+  /** End of the last interval. */
+  to?: string;
+  /** Ascending, without those that have no edit. */
+  intervals: TimelineInterval[];
+}
+
+/** A stroke or another edit. */
+export interface TimelineStep {
+  /** Sequence of its first batch. */
+  first: number;
+  /** Sequence of its last batch; use it as `at`. */
+  last: number;
+  stroke: string;
+  layer: number;
+  user: string;
+  /** Full name of `user`. Absent: the person gave none. */
+  full_name?: string;
+  /** Color of `user`. */
+  color?: PersonColor;
+  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
+  /** Time of its last batch. */
+  time: string;
+  /** Texels that its batches changed, counted once for each batch. */
+  texels_changed: number;
+  area_m2: number;
+}
+
+/** Strokes and other edits of a model. */
+export interface TimelineSteps {
+  /** Ascending by `last`. */
+  steps: TimelineStep[];
+  /** There are further edits in this direction. */
+  more: boolean;
 }
 
 /** Point on the surface, with values. Next to the model, only `hit` is present. */
@@ -2573,9 +2684,6 @@ export interface SurfacePoint {
   distance?: number;
   values?: SurfaceValues;
 }
-
-/** Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339). */
-export type At = number | string;
 
 /** Values at many points. */
 export interface PositionsRequest {

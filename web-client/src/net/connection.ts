@@ -11,7 +11,7 @@ import { kFirstRetryMs, kLastRetryMs, Resender } from "./resender";
 import { kOpenSocket, type SocketLike } from "./socket";
 import { SilenceWatch } from "./silence-watch";
 import { beginOf, StrokeHandle, type StrokeOptions } from "./stroke";
-import { ViewSettings } from "./view-settings";
+import { kBesideView, ViewSettings } from "./view-settings";
 import { ownProblems } from "../core/problems";
 import {
   parse_server_message,
@@ -127,6 +127,8 @@ export class Connection {
       isBusy: () => (this._socket?.bufferedAmount ?? 0) > kBusySocketBytes,
       send: (message) => {
         this.send(message);
+        if (this._settings.comparesWithPast && message.op === "camera")
+          this.send({ ...message, view_id: kBesideView });
         this.expectAnswer(); // a frame will follow
       },
       nextFrame: _options.nextFrame ?? ((callback) => void requestAnimationFrame(callback)),
@@ -220,8 +222,25 @@ export class Connection {
     if (this._settings.setBackground(background)) this.sendSettings();
   }
 
+  /**
+   * Shows the state after this edit, instead of the newest one; `beside`: in the second view, next
+   * to the newest state. Null: the newest state alone.
+   */
+  setPast(at: number | null, beside: boolean): void {
+    const compared = this._settings.comparesWithPast;
+    this._settings.setPast(at, beside);
+    this.sendSettings();
+    if (this._state !== "open") return;
+    if (this._settings.comparesWithPast && !compared) this._camera.sendNow();
+    // The second view keeps no earlier state. Its later pictures get no credit.
+    if (compared && !this._settings.comparesWithPast)
+      this.send({ op: "layers", view_id: kBesideView, layers: [] });
+  }
+
   private sendSettings(): void {
-    if (this._state === "open") this.send(this._settings.message());
+    if (this._state !== "open") return;
+    this.send(this._settings.message());
+    if (this._settings.comparesWithPast) this.send(this._settings.messageBeside());
   }
 
   ack(viewId: number, frame: number): void {

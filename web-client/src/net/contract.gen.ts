@@ -643,6 +643,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/layers/{layer}/difference": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Get how much differs between two states of a layer */
+        post: operations["layer_difference"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/layers/{layer}/edits": {
         parameters: {
             query?: never;
@@ -1259,6 +1279,44 @@ export interface paths {
         };
         /** Get an uploaded file of a model */
         get: operations["get_source_file"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/timeline": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        /** Get the edits of a model over time */
+        get: operations["get_timeline"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/timeline/steps": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        /** List the edits of a model around a sequence */
+        get: operations["list_timeline_steps"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2282,6 +2340,10 @@ export interface components {
         DepthBias: wire.DepthBias;
         /** Descriptions by language */
         Descriptions: wire.Descriptions;
+        /** Difference of two states of a layer */
+        Difference: wire.Difference;
+        /** Two states of a layer */
+        DifferenceRequest: wire.DifferenceRequest;
         /** Edit */
         Edit: wire.Edit;
         /** Fill */
@@ -2562,7 +2624,7 @@ export interface components {
          * @enum {integer}
          */
         Resolution: wire.Resolution;
-        /** Restore of a whole layer */
+        /** Restore of a layer */
         Restore: wire.Restore;
         /** A decision about edits of a layer */
         Review: wire.Review;
@@ -2614,6 +2676,8 @@ export interface components {
         SectionMeasures: wire.SectionMeasures;
         /** Request to measure a section */
         SectionRequest: wire.SectionRequest;
+        /** Visible surface inside an outline */
+        SeenOutline: wire.SeenOutline;
         /** Contents of layers in a selection */
         SelectedLayers: wire.SelectedLayers;
         /** Paint the selection */
@@ -2695,6 +2759,16 @@ export interface components {
         TermTree: wire.TermTree;
         /** Surface of a texel */
         TexelSize: wire.TexelSize;
+        /** Edits of a model over time */
+        Timeline: wire.Timeline;
+        /** Interval of a timeline with edits */
+        TimelineInterval: wire.TimelineInterval;
+        /** Edits of a person in an interval */
+        TimelinePerson: wire.TimelinePerson;
+        /** A stroke or another edit */
+        TimelineStep: wire.TimelineStep;
+        /** Strokes and other edits of a model */
+        TimelineSteps: wire.TimelineSteps;
         /** Brush shape of the site */
         Tool: wire.Tool;
         /** Brush shapes of the site, sorted by name */
@@ -4327,6 +4401,32 @@ export interface operations {
             };
         };
     };
+    layer_difference: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DifferenceRequest"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Difference"];
+                };
+            };
+        };
+    };
     list_edits: {
         parameters: {
             query?: {
@@ -5450,6 +5550,60 @@ export interface operations {
                 };
                 content: {
                     "application/octet-stream": string;
+                };
+            };
+        };
+    };
+    get_timeline: {
+        parameters: {
+            query?: {
+                from?: string;
+                intervals?: number;
+                to?: string;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Timeline"];
+                };
+            };
+        };
+    };
+    list_timeline_steps: {
+        parameters: {
+            query?: {
+                after?: number;
+                before?: number;
+                limit?: number;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TimelineSteps"];
                 };
             };
         };

@@ -10,11 +10,16 @@ import type {
   Welcome,
 } from "../core/protocol.gen";
 
+/** The view that shows the past next to now. */
+export const kBesideView = 1;
+
 export class ViewSettings {
   overrides: LayerOverride[] = [];
   private _looks: LookShown[] | null = null; // null: the default surface images
   private _light: Light | null = null; // null: the server's default
   private _background: Background | null = null; // null: the server's default
+  private _at: number | null = null; // the state after this edit; null: the newest
+  private _beside = false; // that state is in the second view, and the first shows the newest
 
   /** Returns whether there is a change to send. */
   setAppearance(looks: LookShown[] | null, light: Light): boolean {
@@ -30,8 +35,18 @@ export class ViewSettings {
     return changes;
   }
 
+  /** The state to show; `beside`: in the second view. */
+  setPast(at: number | null, beside: boolean): void {
+    [this._at, this._beside] = [at, at !== null && beside];
+  }
+  /** Whether the second view shows an earlier state. */
+  get comparesWithPast(): boolean {
+    return this._beside;
+  }
+
   forgetShown(): void {
     this.overrides = [];
+    this.setPast(null, false);
     this._looks = this._light = null;
   }
 
@@ -51,7 +66,8 @@ export class ViewSettings {
       this.overrides.length > 0 ||
       this._looks !== null ||
       !isUsual(this._light) ||
-      this._background !== null
+      this._background !== null ||
+      this._at !== null
     );
   }
 
@@ -62,7 +78,14 @@ export class ViewSettings {
       ...(this._looks ? { looks: this._looks } : {}),
       ...(this._light && !isUsual(this._light) ? { light: this._light } : {}),
       ...(this._background ? { background: this._background } : {}),
+      ...(this._at !== null && !this._beside ? { at: this._at } : {}),
     };
+  }
+
+  /** The same for the second view, which shows the earlier state. */
+  messageBeside(): ClientMessage {
+    const message = { ...this.message(), view_id: kBesideView };
+    return this._at === null ? message : ({ ...message, at: this._at } as ClientMessage);
   }
 }
 

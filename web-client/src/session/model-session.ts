@@ -21,7 +21,10 @@ import type { LitArea } from "./lit-area";
 import type { LayerList } from "../features/layers/layer-list";
 import type { MarkDrawing } from "../features/records/mark-drawing";
 import type { Measuring } from "../features/measuring/measuring";
+import type { FrameMessage } from "../net/frame-header";
 import type { Painting } from "../features/painting/painting";
+import type { Past } from "../features/past/past";
+import type { Visits } from "../features/past/visits";
 import type { PeopleCursors } from "../features/presence/people-cursors";
 import type { PointerWatch } from "./pointer-watch";
 import type { RecordEditors } from "./record-editors";
@@ -50,6 +53,7 @@ export type SessionPart =
       | "appearance"
       | "pointer"
       | "painting"
+      | "past"
       | "shapes"
       | "tables"
       | "editors"
@@ -83,6 +87,8 @@ export interface ModelSession {
   readonly appearance: Appearance;
   readonly pointer: PointerWatch;
   readonly painting: Painting;
+  readonly past: Past;
+  readonly visits: Visits;
   readonly shapes: ToolShapes;
   readonly tables: Tables;
   readonly editors: RecordEditors;
@@ -126,6 +132,8 @@ export interface ModelSession {
   redo(): void;
   /** Background of the model; null: the server's default. */
   setBackground(background: Background | null): void;
+  /** A frame of the second view, which shows the past next to now, is on the screen. */
+  thenDrawn(part: FrameMessage): void;
   /** Selects a layer that this person has created. */
   addCreated(layer: Layer): void;
   /** Shows layers that a job made for this person, and selects the first one. */

@@ -47,7 +47,12 @@ export function handleKey(
   const { width, height } = session.view.camera;
   switch (key) {
     case "Escape":
-      if (!session.together.followed) return session.comments.close();
+      if (!session.together.followed) {
+        if (session.comments.close()) return true;
+        if (!session.past.isActive) return false;
+        session.past.goNow();
+        return true;
+      }
       session.together.stopFollowing();
       return true;
     case "+":
@@ -84,6 +89,10 @@ export function handleKey(
     case "n":
     case "N":
       session.views.step(event.shiftKey ? -1 : 1);
+      return true;
+    case "j":
+    case "J":
+      session.past.toggle();
       return true;
     case "t":
     case "T":

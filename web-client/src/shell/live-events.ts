@@ -12,6 +12,7 @@ export type EventsOfParts = Omit<
 export function eventsOfParts(session: ModelSession): EventsOfParts {
   return {
     applied: (message) => {
+      session.visits.saw(message.sequence);
       session.painting.onApplied(message);
       session.pointer.askAgain();
     },
@@ -19,12 +20,15 @@ export function eventsOfParts(session: ModelSession): EventsOfParts {
       session.reviews.saved();
       session.tables.refreshAreas(); // including the areas that this person's own strokes changed
       session.activity.outdated();
+      session.past.outdated();
     },
     layer: (event) => {
       session.layers.onEvent(event);
       session.reviews.onEvent(event);
       session.activity.outdated();
+      session.past.outdated();
       if (event.event === "edited") {
+        session.visits.saw(event.sequence ?? 0);
         session.pointer.askAgain();
         session.measuring.onLayerEdited(event.layer_id);
         session.tables.onLayerEdited(event.layer_id);

@@ -9,6 +9,7 @@ import { CommentTool } from "../features/comments/comment-tool";
 import { FaceTool } from "../features/figures/face-tool";
 import { LineTool } from "../features/records/line-tool";
 import { MeasureTool } from "../features/measuring/measure-tool";
+import { PartTool } from "../features/past/part-tool";
 import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool } from "../tools/outline";
 import { PickTool } from "../features/painting/pick-tool";
@@ -63,6 +64,13 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
     outlineChanged: () => changes.outline(),
     selection: session.painting.area,
   };
+  const partHost = {
+    ...outlineHost,
+    // The camera stays fixed, as for each outline.
+    beginOutline: () => (session.painting.stroking = true),
+    finishOutline: (path: Point[]) => session.past.setPart(path),
+    giveUp: () => session.past.setPart(null),
+  };
   const lineHost = {
     scale: outlineHost.scale,
     outlineEnded: outlineHost.outlineEnded,
@@ -86,6 +94,7 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
     point: new PointTool((sample) => session.marks.setPoint(sample)),
     measure: new MeasureTool(measureHost),
     face: new FaceTool(faceHost),
+    part: new PartTool(partHost),
     comment: new CommentTool({ ...navigator, tap: comment }, () => ({
       x: session.view.camera.width / 2,
       y: session.view.camera.height / 2,

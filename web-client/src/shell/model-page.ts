@@ -29,6 +29,9 @@ import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
 import { modelStyles } from "./model-styles";
 import "../features/measuring/measure-panel";
+import "../features/past/past-bar";
+import "../features/past/past-overlay";
+import "../features/past/past-since";
 import type { OpenDialog } from "./open-dialog";
 import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
@@ -152,6 +155,7 @@ export class StrataModelPage extends LitElement {
     if (session) this.bringOptions(session.tools.active);
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
     if (session?.tables.view) this.liftNotices(narrow ? "52dvh" : `${this._tableSplitter.size}px`);
+    else if (session?.past.isOpen) this.liftNotices("var(--past-height, 0px)");
     // its sheet covers the tools
     else
       this.liftNotices(
@@ -169,7 +173,7 @@ export class StrataModelPage extends LitElement {
   private async open(session: OpenModelSession): Promise<void> {
     session.subscribe(
       () => this.onSession(session),
-      ["saving", "tools", "layers", "tables", "comments", "reviews"],
+      ["saving", "tools", "layers", "tables", "comments", "reviews", "past"],
     );
     session.subscribe(
       () => this.onPlace(session),
@@ -295,6 +299,7 @@ export class StrataModelPage extends LitElement {
         </section>
         <main>
           <strata-stage .session=${session}></strata-stage>
+          <strata-past-overlay .session=${session}></strata-past-overlay>
           <strata-together-bar .session=${session}></strata-together-bar>
           <strata-comment-pins .session=${session}></strata-comment-pins>
           ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
@@ -311,6 +316,8 @@ export class StrataModelPage extends LitElement {
             <strata-value-readout .session=${session}></strata-value-readout>
           </div>
           <strata-hover-card .session=${session}></strata-hover-card>
+          ${session.visits.news && !session.past.isOpen ? html`<strata-past-since .session=${session}></strata-past-since>` : nothing}
+          ${session.past.isOpen ? html`<strata-past-bar .session=${session}></strata-past-bar>` : nothing}
         </main>
         ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this._panelShown ? this.panel(session) : nothing}
       </div>

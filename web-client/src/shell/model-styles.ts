@@ -67,9 +67,10 @@ export const modelStyles = css`
     min-width: 0;
     min-height: 0;
   }
-  strata-stage {
+  strata-stage,
+  strata-past-overlay {
     position: absolute;
-    inset: 0;
+    inset: 0 0 var(--past-height, 0) 0; /* above the history */
   }
   strata-comment-card {
     position: absolute;
@@ -149,7 +150,7 @@ export const modelStyles = css`
     pointer-events: none;
     position: absolute;
     right: 0.875rem;
-    bottom: 0.875rem;
+    bottom: calc(0.875rem + var(--past-height, 0px));
     max-width: min(21.25rem, calc(100% - 13.75rem));
   }
   .splitter {
@@ -254,7 +255,7 @@ export const modelStyles = css`
     }
     .readings {
       right: 0.625rem;
-      bottom: 0.625rem;
+      bottom: calc(0.625rem + var(--past-height, 0px));
       max-width: calc(100% - 1.25rem);
     }
   }

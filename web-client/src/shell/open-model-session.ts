@@ -4,7 +4,7 @@
 // images, light and section, `pointer` the values under the pointer, `painting` the brush and the
 // edits, `together` the participants and the followed view, `cursors` their pointers, `views` the
 // named views, `tours` the tours of views, `measuring` the measurement, `figures` the figures to
-// scale, `face` the face to pick. Elements subscribe and render the parts' state; they change it
+// scale, `face` the face to pick, `past` the earlier states. Elements subscribe and render the parts' state; they change it
 // only through methods. The file is long because it alone connects the parts.
 
 import type { Api } from "../net/api";
@@ -41,6 +41,8 @@ import { MarkDrawing } from "../features/records/mark-drawing";
 import { Measuring } from "../features/measuring/measuring";
 import { notices } from "../ui/notices";
 import { Painting } from "../features/painting/painting";
+import { Past } from "../features/past/past";
+import { Visits } from "../features/past/visits";
 import { PeopleCursors } from "../features/presence/people-cursors";
 import { PointerWatch } from "../session/pointer-watch";
 import { RecordEditors } from "../session/record-editors";
@@ -55,6 +57,7 @@ import { ToolShapes } from "../features/painting/tool-shapes";
 import { Tours } from "../features/tours/tours";
 import { ViewControl, wantsLessMotion } from "../session/view-control";
 import { Views } from "../features/views/views";
+import { kBesideView } from "../net/view-settings";
 import type { ModelSession, SessionPart } from "../session/model-session";
 import { Signals } from "../session/signals";
 import { eventsOfParts } from "./live-events";
@@ -76,6 +79,8 @@ export class OpenModelSession implements ModelSession {
   readonly appearance: Appearance;
   readonly pointer: PointerWatch;
   readonly painting: Painting;
+  readonly past: Past;
+  readonly visits: Visits;
   readonly shapes: ToolShapes;
   readonly tables: Tables;
   readonly editors: RecordEditors;
@@ -104,6 +109,7 @@ export class OpenModelSession implements ModelSession {
   private _wasOpen = false;
   private _closed = false; // the page was closed
   private _toldLeft = false;
+  private _thenWithoutAck: number | null = null; // a frame of the second view
 
   constructor(
     readonly api: Api,
@@ -163,7 +169,8 @@ export class OpenModelSession implements ModelSession {
     });
     this.pointer = new PointerWatch({
       camera: () => this.view.camera,
-      ready: () => this.connectionState === "open",
+      // Values are those of the newest state.
+      ready: () => this.connectionState === "open" && !this.past.isActive,
       ask: (id, { x, y }) => this._connection.pick(id, x, y),
       showOthers: (pointer) => this.together.show(this.shownAt(pointer)),
       taken: (message) => {
@@ -189,6 +196,25 @@ export class OpenModelSession implements ModelSession {
       isLocked: (layer) => this.isLocked(layer),
       changed: changes("painting"),
     });
+    this.past = new Past(api, modelId, {
+      show: (at, beside) => {
+        this._connection.setPast(at, beside);
+        if (!beside || this._thenWithoutAck === null) return;
+        this._connection.ack(kBesideView, this._thenWithoutAck);
+        this._thenWithoutAck = null;
+      },
+      whenFree: (action) => this.painting.whenFree(action),
+      unsaved: () => this.saving.waiting,
+      camera: () => this.view.camera.message(),
+      stopPainting: () => {
+        if (kChangingTools.includes(this.tools.active)) this.tools.choose("orbit");
+        this.pointer.reset();
+      },
+      beginPart: () => this.tools.borrow("part"),
+      endPart: () => this.tools.giveBack(),
+      changed: changes("past"),
+    });
+    this.visits = new Visits(api, modelId, changes("past"));
     this.shapes = new ToolShapes(api, {
       chosen: () => this.painting.brush.shape,
       choose: (shape) => this.painting.setBrush((brush) => (brush.shape = shape)),
@@ -331,7 +357,8 @@ export class OpenModelSession implements ModelSession {
       {
         state: (state) => this.onState(state),
         welcome: (message) => this.onWelcome(message),
-        frame: (part) => this.onFrame(part),
+        frame: (part) =>
+          part.header.view_id === kBesideView ? this.past.onFrame(part) : this.onFrame(part),
         saving: (state) => this.onSaving(state),
         ...events,
         presence: (message) => {
@@ -375,6 +402,8 @@ export class OpenModelSession implements ModelSession {
     this.hovered.end();
     this.activity.close();
     this.reviews.close();
+    this.past.stop();
+    this.visits.close();
     this.tables.close();
     this._signals.clear();
     this.onFrame = this.onResetFrames = () => {};
@@ -436,15 +465,19 @@ export class OpenModelSession implements ModelSession {
     this.tools.choose(name);
   }
 
-  /** Shows a notice to viewers, after the model was opened. */
+  /** Shows a notice to viewers, after the model was opened, and to everybody in the past. */
   private refusesChanges(): boolean {
+    if (this.past.isActive) {
+      notices.show("info", texts.past.paint_refused);
+      return true;
+    }
     if (!this.canPaint && this._wasOpen) notices.show("problem", texts.brush.viewer_only);
     return !this.canPaint;
   }
 
   /** Sends the next drawings to this column of the record. */
   drawMarks(layer: Layer, key: number, column: Column): void {
-    if (layer.table === undefined) return;
+    if (layer.table === undefined || this.refusesChanges()) return;
     this.layers.select(layer);
     this.painting.setBrush((brush) => brush.setValue(layer, key));
     this.marks.chooseColumn(layer.table, column);
@@ -471,6 +504,16 @@ export class OpenModelSession implements ModelSession {
   frameDrawn(part: FrameMessage): void {
     this._connection.ack(part.header.view_id, part.header.frame);
     this.view.countFrame();
+    if (!this.past.compares) this.past.frameDrawn(part);
+  }
+  thenDrawn(part: FrameMessage): void {
+    if (!this.past.compares) {
+      // The server draws no more of this view until it is shown again.
+      this._thenWithoutAck = part.header.frame;
+      return;
+    }
+    this._connection.ack(part.header.view_id, part.header.frame);
+    this.past.frameDrawn(part);
   }
 
   /** Selects a layer that this person has created. */
@@ -520,6 +563,7 @@ export class OpenModelSession implements ModelSession {
   private onState(state: ConnectionState): void {
     this.connectionState = state;
     if (state !== "open") {
+      this._thenWithoutAck = null; // frames of that connection
       this.editors.left();
       this.together.disconnected();
       this.cursors.reset();
@@ -605,6 +649,8 @@ export class OpenModelSession implements ModelSession {
     this.activity.outdated();
     this.reviews.welcome();
     this.views.welcome(message.user);
+    this.past.welcome();
+    void this.visits.welcome(message.user, message.model.sequence);
   }
 
   /** The brush radius is sent as its size on the surface. */

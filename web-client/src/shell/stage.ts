@@ -236,7 +236,8 @@ export class StrataStage extends LitElement {
       tool === "point" ||
       tool === "comment" ||
       tool === "measure" ||
-      tool === "face";
+      tool === "face" ||
+      tool === "part";
     return html`<div
         class="surface ${locked ? "locked" : paints ? "paint" : aims ? "aim" : tool}"
         tabindex="0"

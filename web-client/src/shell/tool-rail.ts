@@ -192,6 +192,15 @@ export class StrataToolRail extends LitElement {
       >
         ${icon("fit")}
       </button>
+      <button
+        class="icon quiet"
+        aria-label=${texts.past.title}
+        aria-pressed=${session.past.isOpen}
+        title="${texts.past.title} (J)"
+        @click=${() => session.past.toggle()}
+      >
+        ${icon("history")}
+      </button>
       <strata-menu label=${words.view} glyph="cube" side="right">
         ${kViews.map(
           (view, index) =>

@@ -16,10 +16,11 @@ export type ToolName =
   | "point"
   | "comment"
   | "measure"
-  | "face";
+  | "face"
+  | "part";
 
 /** The tools of the tool rail, in its order, with their keys. */
-export const kToolKeys: Readonly<Record<Exclude<ToolName, "face">, string>> = {
+export const kToolKeys: Readonly<Record<Exclude<ToolName, "face" | "part">, string>> = {
   orbit: "V",
   pan: "H",
   brush: "B",

@@ -1275,6 +1275,7 @@ void read(const nlohmann::json& json, LayersUpdate& value) {
   read_optional_member(json, "looks", value.looks);
   read_optional_member(json, "light", value.light);
   read_optional_member(json, "background", value.background);
+  read_optional_member(json, "at", value.at);
 }
 
 nlohmann::json to_json(const LayersUpdate& value) {
@@ -1285,6 +1286,7 @@ nlohmann::json to_json(const LayersUpdate& value) {
   write_optional_member(json, "looks", value.looks);
   write_optional_member(json, "light", value.light);
   write_optional_member(json, "background", value.background);
+  write_optional_member(json, "at", value.at);
   return json;
 }
 
@@ -2974,14 +2976,59 @@ nlohmann::json to_json([[maybe_unused]] const Empty& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, SeenOutline& value) {
+  read_member(json, "camera", value.camera);
+  read_member(json, "path", value.path);
+  read_optional_member(json, "through", value.through);
+}
+
+nlohmann::json to_json(const SeenOutline& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "camera", value.camera);
+  write_member(json, "path", value.path);
+  write_member(json, "through", value.through);
+  return json;
+}
+
+Result<void> check(const SeenOutline& value, const std::string& field) {
+  if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
+  return {};
+}
+
 void read(const nlohmann::json& json, Restore& value) {
   read_member(json, "sequence", value.sequence);
+  read_optional_member(json, "within", value.within);
 }
 
 nlohmann::json to_json(const Restore& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "sequence", value.sequence);
+  write_optional_member(json, "within", value.within);
   return json;
+}
+
+Result<void> check(const Restore& value, const std::string& field) {
+  if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, DifferenceRequest& value) {
+  read_member(json, "from", value.from);
+  read_optional_member(json, "to", value.to);
+  read_optional_member(json, "within", value.within);
+}
+
+nlohmann::json to_json(const DifferenceRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "from", value.from);
+  write_optional_member(json, "to", value.to);
+  write_optional_member(json, "within", value.within);
+  return json;
+}
+
+Result<void> check(const DifferenceRequest& value, const std::string& field) {
+  if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
+  return {};
 }
 
 void read(const nlohmann::json& json, SurfacePoint& value) {

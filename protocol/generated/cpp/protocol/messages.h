@@ -286,6 +286,14 @@ enum class Schema {
   EditList,
   Empty,
   Restore,
+  SeenOutline,
+  DifferenceRequest,
+  Difference,
+  TimelinePerson,
+  TimelineInterval,
+  Timeline,
+  TimelineStep,
+  TimelineSteps,
   SurfacePoint,
   PositionsRequest,
   PositionsResponse,
@@ -323,7 +331,7 @@ enum class Schema {
   Readiness,
   ServerVersion,
 };
-constexpr int kSchemaCount = 297;
+constexpr int kSchemaCount = 305;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -824,6 +832,10 @@ struct LayersUpdate {
   std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   std::optional<Background> background;  // Absent: light gray.
+  // Sequence of a durable edit: the view shows the layers as they were after it, until the next
+  // message without `at`. While view 0 shows such a state, the server refuses strokes and other
+  // edits of this connection (409). Absent: always the newest state.
+  std::optional<std::int64_t> at;
   bool operator==(const LayersUpdate&) const = default;
 };
 void read(const nlohmann::json& json, LayersUpdate& value);
@@ -2319,15 +2331,46 @@ nlohmann::json to_json(const Empty& value);
 template <>
 inline constexpr Schema kSchemaOf<Empty> = Schema::Empty;
 
-// Restore of a whole layer.
+// Visible surface inside an outline.
+struct SeenOutline {
+  strata::Camera camera;
+  Outline path;
+  bool through = false;  // Also include hidden surfaces.
+  bool operator==(const SeenOutline&) const = default;
+};
+void read(const nlohmann::json& json, SeenOutline& value);
+nlohmann::json to_json(const SeenOutline& value);
+Result<void> check(const SeenOutline& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<SeenOutline> = Schema::SeenOutline;
+
+// Restore of a layer.
 struct Restore {
   std::int64_t sequence = 0;  // The layer gets its state after this edit. 0: empty.
+  std::optional<SeenOutline> within;  // Only the surface inside it. Absent: the whole layer.
   bool operator==(const Restore&) const = default;
 };
 void read(const nlohmann::json& json, Restore& value);
 nlohmann::json to_json(const Restore& value);
+Result<void> check(const Restore& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Restore> = Schema::Restore;
+
+// Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339).
+using At = std::variant<std::int64_t, std::string>;
+
+// Two states of a layer.
+struct DifferenceRequest {
+  At from;
+  std::optional<At> to;  // Absent: the newest state.
+  std::optional<SeenOutline> within;  // Count only inside it.
+  bool operator==(const DifferenceRequest&) const = default;
+};
+void read(const nlohmann::json& json, DifferenceRequest& value);
+nlohmann::json to_json(const DifferenceRequest& value);
+Result<void> check(const DifferenceRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<DifferenceRequest> = Schema::DifferenceRequest;
 
 // Point on the surface, with values. Next to the model, only `hit` is present.
 struct SurfacePoint {
@@ -2344,9 +2387,6 @@ void read(const nlohmann::json& json, SurfacePoint& value);
 nlohmann::json to_json(const SurfacePoint& value);
 template <>
 inline constexpr Schema kSchemaOf<SurfacePoint> = Schema::SurfacePoint;
-
-// Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339).
-using At = std::variant<std::int64_t, std::string>;
 
 // Values at many points.
 struct PositionsRequest {

@@ -178,7 +178,14 @@ void add_edit_routes(Router& router, const RouteContext& context) {
                                  "sequence");
                    auto edit = bare_edit(request, target, "restore");
                    edit.record["sequence"] = body.sequence;
-                   edit.edit = room::RestoreEdit{body.sequence};
+                   room::RestoreEdit restore{body.sequence, {}};
+                   if (body.within) {
+                     STRATA_TRY(validate(body.within->camera));
+                     edit.record["within"] = protocol::to_json(*body.within);
+                     restore.outline = room::Outline{body.within->camera, body.within->path,
+                                                     body.within->through};
+                   }
+                   edit.edit = std::move(restore);
                    return edit;
                  }));
 }

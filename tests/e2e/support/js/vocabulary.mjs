@@ -469,6 +469,15 @@ export const particulars = {
     }),
   },
   record_extent: units_layer,
+  get_timeline: {
+    queries: one(
+      {},
+      { intervals: "7" },
+      { from: "2020-01-01T00:00:00Z", to: "2090-01-01T00:00:00Z" },
+    ),
+  },
+  list_timeline_steps: { queries: one({}, { before: "4" }, { after: "2", limit: "3" }) },
+  layer_difference: json({ by_name: { from: one(0, 1, 3), to: one(0, 2) } }),
   list_layer_records: units_layer,
   create_layer_records: { ...units_layer, ...new_records },
   cross_table: json({

@@ -14,7 +14,7 @@ import { panelLineStyles } from "../../ui/panel-styles";
 import { personMark, personMarkStyles } from "../../ui/person-mark";
 import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
-import { toldClock, toldDay } from "../../domain/times";
+import { toldClock, toldDay, toldTime } from "../../domain/times";
 
 const words = texts.activity;
 
@@ -53,6 +53,11 @@ export class StrataActivityPanel extends FoldingPanel {
         width: 1.625rem;
         height: 1.625rem;
         color: var(--ink-soft);
+      }
+      .with-then {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr) auto;
+        align-items: start;
       }
       .what {
         overflow-wrap: anywhere;
@@ -117,9 +122,21 @@ export class StrataActivityPanel extends FoldingPanel {
       <span class="what"><b>${line.user === undefined ? words.server : called({ ...line, user: line.user })}</b> ${this.done(line)}</span>
       <span class="hint">${toldClock(line.time)}</span>
       <span class="more-of-it hint">${this.details(line)}</span>`;
-    return activity.leadsSomewhere(line)
+    const shown = activity.leadsSomewhere(line)
       ? html`<button class="quiet line" data-activity=${line.id} @click=${() => void activity.goTo(line)}>${content}</button>`
       : html`<div class="line" data-activity=${line.id}>${content}</div>`;
+    if (line.kind !== "edit" || activity.isElsewhere(line)) return shown;
+    return html`<div class="with-then">
+      ${shown}
+      <button
+        class="icon quiet"
+        aria-label=${words.show_then(toldTime(line.time))}
+        title=${words.show_then(toldTime(line.time))}
+        @click=${() => void this.session.past.open(line.time)}
+      >
+        ${icon("history")}
+      </button>
+    </div>`;
   }
 
   private done({ kind, op, name, person, group }: Activity): TemplateResult {

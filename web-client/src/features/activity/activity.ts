@@ -142,7 +142,7 @@ export class Activities {
     await this.flyTo(layer, line.record);
   }
 
-  private isElsewhere({ model }: Activity): boolean {
+  isElsewhere({ model }: Activity): boolean {
     return model !== undefined && model !== this._host.model()?.id;
   }
 

@@ -82,7 +82,7 @@ export class StrataPaintChip extends LitElement {
         ? `${formatNumber(brush.width[brush.unit])} ${brush.unit === "px" ? words.width_px : words.width_mm}`
         : "";
     return html`<button class="quiet" title=${words.change} @click=${() => this.dispatchEvent(new CustomEvent("options"))}>
-      ${session.lockedTarget ? icon("lock") : color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : icon(tool === "face" ? "brush" : tool)}
+      ${session.lockedTarget ? icon("lock") : color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : icon(tool === "face" || tool === "part" ? "brush" : tool)}
       <b class="ellipsis">${what}</b>
       <span class="on ellipsis">${labelOf(layer)}</span>
       ${width ? html`<span class="width">${width}</span>` : nothing} ${icon("up")}

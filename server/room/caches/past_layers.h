@@ -1,0 +1,114 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/memory_ledger.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/people/visibility.h"
+#include "render/renderer.h"
+#include "room/caches/record_features.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// A layer as it was after one of its edits: a copy on the GPU that nobody paints. The destructor
+// removes it from there.
+struct PastLayer {
+  PastLayer(render::Renderer& on, TileMirror::Snapshot content)
+      : renderer(on), snapshot(std::move(content)) {}
+  ~PastLayer();
+  PastLayer(const PastLayer&) = delete;
+  PastLayer& operator=(const PastLayer&) = delete;
+
+  render::Renderer& renderer;
+  const TileMirror::Snapshot snapshot;
+  render::LayerHandle handle = 0;
+  MemoryLedger::Share memory;  // of the tiles that the newest state does not share
+};
+
+// Layers and features of a model after an edit.
+struct PastMoment {
+  std::int64_t sequence = 0;
+  render::ModelHandle model = 0;
+  std::map<LayerId, std::shared_ptr<const PastLayer>> layers;
+  std::map<TableId, RecordFeatures::SurfaceFeatures> features;
+};
+
+// Past states of an open model, for views that show the model as it was. A worker reads them from
+// the journal. Only tiles that differ from a known state are read, and all others are shared with
+// it, so that a step through the history costs what changed in it. Unused states stay within
+// kKeptBytes, which the ledger counts. Thread-safe.
+class PastLayers : public std::enable_shared_from_this<PastLayers> {
+ public:
+  static constexpr std::size_t kKeptLayers = 24;
+  static constexpr std::uint64_t kKeptBytes = 128u << 20;
+
+  // Returns the newest state of a layer, if all of it is in the journal and of the layer's type.
+  using Newest = std::function<std::optional<TileMirror::Snapshot>(const Layer&)>;
+  // `ready` is called, on any thread, whenever a requested moment is there or has failed.
+  PastLayers(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
+             MemoryLedger& memory, std::shared_ptr<RecordFeatures> features, ModelId model_id,
+             Newest newest, std::function<void()> ready);
+  ~PastLayers();
+
+  struct Request {
+    std::int64_t at = 0;
+    std::vector<Layer> layers;                  // to show
+    Visibility sight = Visibility::everyone;  // the most restricted visibility of columns
+  };
+  struct Found {
+    std::shared_ptr<const PastMoment> moment;  // null: none yet
+    std::shared_ptr<const Error> problem;      // why the requested moment cannot be shown
+  };
+  // The requests of one view.
+  class Place;
+  std::shared_ptr<Place> new_place();
+  // Returns the last moment that is ready, which may be that of an earlier request. A worker makes
+  // the newest request of each place; requests in between are left out.
+  Found find(const std::shared_ptr<Place>& place, const Request& request);
+
+  // Forgets the copies on the GPU, which were deleted with the old model.
+  void set_model(render::ModelHandle model);
+  bool drop_unused();  // false: nothing was dropped
+  void stop();         // reads nothing more, and does not call `ready`
+
+ private:
+  // The last one is the layer's last edit.
+  using Key = std::tuple<LayerId, ValueType, std::int64_t>;
+  struct Kept {
+    Key key;
+    std::shared_ptr<const PastLayer> layer;
+  };
+  void run(const std::shared_ptr<Place>& place);
+  Result<std::shared_ptr<const PastMoment>> make(const Request& request,
+                                                 render::ModelHandle model);
+  Result<std::shared_ptr<const PastLayer>> layer_at(const Layer& layer, std::int64_t sequence,
+                                                    render::ModelHandle model);
+  void keep(Kept kept);  // with the mutex held
+
+  store::Store& store_;
+  render::Renderer& renderer_;
+  boost::asio::thread_pool& workers_;
+  MemoryLedger& memory_;
+  const std::shared_ptr<RecordFeatures> features_;
+  const ModelId model_id_;
+  const Newest newest_;
+  const std::function<void()> ready_;
+  std::mutex mutex_;
+  std::list<Kept> kept_;  // last used first
+  render::ModelHandle model_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace strata::room

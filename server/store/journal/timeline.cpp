@@ -1,0 +1,156 @@
+#include "store/journal/timeline.h"
+
+#include <algorithm>
+#include <map>
+
+#include "store/journal/journal_reads.h"
+#include "store/pg/pg_row.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+constexpr int kRowsOfStep = 8;  // journal rows that are read for each requested step
+
+PgArray ids_of(const std::vector<LayerId>& layers) {
+  PgArray ids(oid::kInt8);
+  for (const LayerId id : layers) ids.add(id);
+  return ids;
+}
+
+// One row for each interval, author and layer: the intervals are joined in memory, so that the
+// answer is bounded by the number of intervals.
+constexpr const char* kCells =
+    "WITH seen AS MATERIALIZED (SELECT time, sequence, layer_id, user_name FROM edits WHERE model_id = $1 AND layer_id = any($2) "
+    "AND time >= coalesce($3::timestamptz, '-infinity') AND time <= coalesce($4::timestamptz, 'infinity')), "
+    "bounds AS (SELECT coalesce($3::timestamptz, min(time)) AS low, coalesce($4::timestamptz, max(time)) AS high FROM seen) "
+    "SELECT b.low, b.high, least(CASE WHEN b.high > b.low THEN floor(date_part('epoch', s.time - b.low) / "
+    "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, count(*), min(s.sequence), "
+    "max(s.sequence), min(s.time), max(s.time) FROM seen s CROSS JOIN bounds b GROUP BY 1, 2, 3, 4, 5 ORDER BY 3";
+
+template <class Counted>
+auto by_count(const Counted& counted) {
+  std::vector<std::pair<typename Counted::key_type, std::int64_t>> sorted(counted.begin(),
+                                                                          counted.end());
+  std::ranges::stable_sort(sorted,
+                           [](const auto& a, const auto& b) { return a.second > b.second; });
+  return sorted;
+}
+
+// The interval that is being joined.
+struct Joined {
+  Timeline::Interval interval;
+  std::map<std::string, std::int64_t> people;
+  std::map<LayerId, std::int64_t> layers;
+
+  void end(Timeline& timeline) {
+    if (interval.edits == 0) return;
+    for (const auto& [user, edits] : by_count(people)) {
+      if (interval.people.size() < Timeline::kMaxNamed)
+        interval.people.push_back({user, edits});
+      else
+        ++interval.others;
+    }
+    for (const auto& [layer, edits] : by_count(layers))
+      if (interval.layers.size() < Timeline::kMaxNamed) interval.layers.push_back(layer);
+    timeline.edits += interval.edits;
+    timeline.intervals.push_back(std::move(interval));
+  }
+};
+
+}  // namespace
+
+Result<Timeline> Journal::timeline(ModelId model_id, const TimelineQuery& query) {
+  return pool_.read([&](PgConnection& connection) -> Result<Timeline> {
+    Timeline timeline;
+    Joined joined;
+    STRATA_TRY(connection.each_row(
+        kCells,
+        Params()
+            .id(model_id)
+            .array(ids_of(query.layers))
+            .optional_text(query.from)
+            .optional_text(query.to)
+            .integer(query.intervals),
+        [&](const PgResult& row) -> Result<void> {
+          PgRow columns(row, 0);
+          timeline.from = columns.time();
+          timeline.to = columns.time();
+          const auto number = static_cast<int>(columns.integer());
+          if (number != joined.interval.number || joined.interval.edits == 0) {
+            joined.end(timeline);
+            joined = {};
+            joined.interval.number = number;
+          }
+          const std::string user = columns.text();
+          const LayerId layer(columns.integer());
+          const std::int64_t edits = columns.integer();
+          const std::int64_t first = columns.integer(), last = columns.integer();
+          const auto begun = columns.time(), ended = columns.time();
+          Timeline::Interval& interval = joined.interval;
+          const bool is_new = interval.edits == 0;
+          interval.first = is_new ? first : std::min(interval.first, first);
+          interval.last = std::max(interval.last, last);
+          interval.begun = is_new ? begun : std::min(interval.begun, begun);
+          interval.ended = is_new ? ended : std::max(interval.ended, ended);
+          interval.edits += edits;
+          joined.people[user] += edits;
+          joined.layers[layer] += edits;
+          return {};
+        }));
+    joined.end(timeline);
+    return timeline;
+  });
+}
+
+Result<TimelineSteps> Journal::timeline_steps(ModelId model_id, const std::vector<LayerId>& layers,
+                                              std::int64_t from, bool backward, int limit) {
+  return pool_.read([&](PgConnection& connection) -> Result<TimelineSteps> {
+    const int most = limit * kRowsOfStep;
+    auto rows = STRATA_TRY(connection.query(
+        backward
+            ? "SELECT sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
+              "(answer ->> 'area_m2')::double precision FROM edits WHERE model_id = $1 AND layer_id = any($2) AND sequence <= $3 "
+              "ORDER BY sequence DESC LIMIT $4"
+            : "SELECT sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
+              "(answer ->> 'area_m2')::double precision FROM edits WHERE model_id = $1 AND layer_id = any($2) AND sequence > $3 "
+              "ORDER BY sequence LIMIT $4",
+        Params().id(model_id).array(ids_of(layers)).integer(from).integer(most + 1)));
+    TimelineSteps found;
+    found.more = rows.rows() > most;
+    std::map<Uuid, std::size_t> of_stroke;
+    for (int i = 0; i < std::min(rows.rows(), most); ++i) {
+      PgRow columns(rows, i);
+      TimelineStep row;
+      row.first = row.last = columns.integer();
+      row.stroke = columns.uuid();
+      row.layer = LayerId(columns.integer());
+      row.user = columns.text();
+      row.op = columns.text();
+      row.time = columns.time();
+      row.texels = static_cast<std::uint64_t>(columns.optional_integer().value_or(0));
+      row.area_m2 = columns.optional_real().value_or(0);
+      const auto [known, is_new] = of_stroke.try_emplace(row.stroke, found.steps.size());
+      if (is_new) {
+        if (static_cast<int>(found.steps.size()) == limit) {
+          found.more = true;
+          break;
+        }
+        found.steps.push_back(std::move(row));
+        continue;
+      }
+      TimelineStep& step = found.steps[known->second];
+      if (row.last > step.last) {
+        step.last = row.last;
+        step.time = row.time;
+      }
+      step.first = std::min(step.first, row.first);
+      step.texels += row.texels;
+      step.area_m2 += row.area_m2;
+    }
+    std::ranges::sort(found.steps, {}, &TimelineStep::last);
+    return found;
+  });
+}
+
+}  // namespace strata::store
