@@ -244,7 +244,14 @@ def test_a_picture_is_what_the_view_keeps(server, ask, camera, palette):
         return server.ok(
             "POST",
             M + "/frame",
-            {"camera": camera, "light": light, "looks": [], "format": "png", **more},
+            {
+                "camera": camera,
+                "light": light,
+                "looks": [],
+                "samples": 16,  # as a view's picture
+                "format": "png",
+                **more,
+            },
         ).body
 
     def picture(who="vera", query="?format=png"):

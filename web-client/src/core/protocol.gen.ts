@@ -2916,7 +2916,7 @@ export interface FrameRequest {
   background?: Background;
   highlights?: LayerHighlight[];
   at?: At;
-  /** Samples for each pixel. With 16, silhouettes, class borders and fine lines have smooth edges. A server without a GPU takes fewer if they would take more than 2 seconds (of pictures with more than 2 million pixels: for each 2 million). Default: 1. */
+  /** Samples for each pixel. With 16, silhouettes, class borders and fine lines have smooth edges. A server without a GPU takes fewer if they would take more than 5 seconds (of pictures with more than 2 million pixels: for each 2 million). Default: 1. */
   samples?: number;
   /** Default: "jpeg". */
   format?: "jpeg" | "png";

@@ -2720,7 +2720,7 @@ struct FrameRequest {
   std::optional<std::vector<LayerHighlight>> highlights;
   std::optional<At> at;
   // Samples for each pixel. With 16, silhouettes, class borders and fine lines have smooth edges. A
-  // server without a GPU takes fewer if they would take more than 2 seconds (of pictures with more
+  // server without a GPU takes fewer if they would take more than 5 seconds (of pictures with more
   // than 2 million pixels: for each 2 million).
   int samples = 1;
   FrameRequestFormat format = FrameRequestFormat::jpeg;

@@ -9,7 +9,7 @@
 namespace strata::net {
 
 // A CPU takes this time at most for the samples of a picture, or of each 2 million pixels.
-constexpr std::chrono::milliseconds kPictureSamplesTime{2000};
+constexpr std::chrono::milliseconds kPictureSamplesTime{5000};
 
 // Renders a picture to keep: JPEG of good quality, or PNG. Encodes while the GPU renders.
 Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown,
