@@ -22,7 +22,7 @@ const howTo = {
     "see-the-past",
     "use-the-trash",
   ],
-  "Show results": ["save-views", "print-figures", "make-tours", "run-a-kiosk"],
+  "Show results": ["save-views", "print-figures", "make-tours", "run-a-kiosk", "show-the-demo"],
   Scripts: ["write-scripts", "query-with-sql"],
   Administration: [
     "install",

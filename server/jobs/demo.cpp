@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/text/slug.h"
+#include "jobs/demo.h"
 #include "jobs/demo_rules.h"
 #include "jobs/import_job.h"
 #include "jobs/model_geometry.h"
@@ -21,7 +22,7 @@ namespace strata::jobs {
 namespace {
 
 constexpr int kResolution = 2048;
-constexpr const char* kProject = "demo";
+constexpr const char* kProject = kDemoProject;
 constexpr const char* kModel = "Demo pot";
 constexpr const char* kAuthor = "Strata";
 
@@ -154,7 +155,8 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
 }
 
 Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer,
-                         const char* rule, store::JournalEntry entry) {
+                         const char* rule, std::chrono::system_clock::time_point time,
+                         store::JournalEntry entry) {
   const auto last = STRATA_TRY(store.journal().last_sequence(model.id));
   entry.model_id = model.id;
   entry.layer_id = layer.id;
@@ -164,7 +166,7 @@ Result<void> write_entry(store::Store& store, const Model& model, const Layer& l
   entry.op = "fill";
   entry.record = {{"op", "fill"}, {"mode", "rule"}, {"rule", rule}};
   entry.answer["sequence"] = entry.sequence;
-  entry.time = std::chrono::system_clock::now();
+  entry.time = time;
   std::promise<Result<void>> saved;
   store::JournalWriter writer(store, {});
   if (!writer.submit(std::move(entry),
@@ -177,7 +179,8 @@ Result<void> write_entry(store::Store& store, const Model& model, const Layer& l
 
 }  // namespace
 
-Result<Model> make_demo(store::Store& store, Progress& progress, double detail) {
+Result<Model> make_demo_at(store::Store& store, Progress& progress, double detail,
+                           std::chrono::system_clock::time_point time) {
   const auto pot = STRATA_TRY(find_or_create_pot(store, detail, progress));
   const auto pieces = STRATA_TRY(find_or_create_layer(store, pot, sherds_layer()));
   const auto cracks = STRATA_TRY(find_or_create_layer(store, pot, cracks_layer()));
@@ -198,7 +201,8 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
       auto entry = fill_by_rule(map, pieces, pot.metres(),
                                 [&](const glm::vec3& p) { return rules.at(p).sherd; });
       if (progress.cancelled()) return cancelled_problem();
-      if (auto saved = write_entry(store, pot, pieces, "sherds of the demo pot", std::move(entry));
+      if (auto saved =
+              write_entry(store, pot, pieces, "sherds of the demo pot", time, std::move(entry));
           !saved)
         return tl::unexpected(saved.error());
     }
@@ -208,7 +212,8 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
         return std::uint8_t(rules.at(p).crack);
       });
       if (progress.cancelled()) return cancelled_problem();
-      if (auto saved = write_entry(store, pot, cracks, "cracks of the demo pot", std::move(entry));
+      if (auto saved =
+              write_entry(store, pot, cracks, "cracks of the demo pot", time, std::move(entry));
           !saved)
         return tl::unexpected(saved.error());
     }
@@ -216,6 +221,10 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
   progress.begin_stage(0, 1);
   progress.report(1, "Done");
   return store.models().find(to_string(pot.id));
+}
+
+Result<Model> make_demo(store::Store& store, Progress& progress, double detail) {
+  return make_demo_at(store, progress, detail, std::chrono::system_clock::now());
 }
 
 }  // namespace strata::jobs

@@ -7,6 +7,7 @@
 #include "net/api/models/personal_view.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/api/site/routes_demo.h"
 #include "net/auth/kiosk_authorization.h"
 #include "net/auth/project_authorization.h"
 #include "net/auth/session_recheck.h"
@@ -142,6 +143,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_table_routes(router_, context_);
   add_term_routes(router_, context_);
   add_template_routes(router_, context_);
+  add_demo_routes(router_, context_);
   add_record_routes(router_, context_);
   add_attachment_routes(router_, context_);
   add_attachment_match_routes(router_, context_);

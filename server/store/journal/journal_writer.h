@@ -38,6 +38,14 @@ class JournalWriter {
   bool accepting() const;
   void drain();  // waits until all earlier entries are answered and new ones are accepted
 
+  // Gives what was made in a project since `since` an earlier time: comments, records, files,
+  // views, tours, kiosk links, and the activity about them. Edits have the times of their entries.
+  // For the demo, whose story is made up. Returns the database's present time, for the next
+  // `since`. Blocks.
+  static Result<std::chrono::system_clock::time_point> date_back(
+      Store& store, ProjectId project, std::chrono::system_clock::time_point since,
+      std::chrono::system_clock::time_point time);
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -99,7 +99,7 @@ class StrataServer:
             subprocess.run(["cp", "-a", os.path.join(prepared, kind, "."), self.data], check=True)
         elif self.demo:
             done = subprocess.run(
-                [self.binary, "demo", "--data", self.data],
+                [self.binary, "demo", "--pot-only", "--data", self.data],
                 capture_output=True,
                 text=True,
                 check=False,

@@ -327,6 +327,16 @@ export const texts = {
       "Nur ein leeres Projekt kann gelöscht werden, damit kein Scan versehentlich verloren geht. Stellen Sie die Modelle im Papierkorb wieder her, oder löschen Sie sie dort endgültig.",
   },
 
+  demo: {
+    open: "Demo zurücksetzen…",
+    title: "Demo zurücksetzen",
+    lead: "Der Demo-Topf wird neu angelegt, wie er am Anfang war. Alles, was darauf gemalt, gezeichnet oder geschrieben wurde, wird gelöscht und kann nicht wiederhergestellt werden. Andere Modelle und Tabellen des Projekts bleiben.",
+    reset: "Zurücksetzen",
+    making: "Demo wird angelegt…",
+    failed: "Die Demo wurde nicht angelegt. Versuchen Sie es noch einmal.",
+    done: "Die Demo ist wieder wie am Anfang.",
+  },
+
   bin: {
     open: "Papierkorb …",
     title_of: (project) => `Papierkorb von „${project}“`,

@@ -303,6 +303,16 @@ export const texts = {
       "Only an empty project can be deleted, so that no scan is lost by accident. Restore the models in its Trash, or delete them there permanently.",
   },
 
+  demo: {
+    open: "Reset the demo…",
+    title: "Reset the demo",
+    lead: "The demo pot is created again as it was at first. Everything that people painted, drew or wrote on it is erased, and cannot be restored. Other models and tables of the project stay.",
+    reset: "Reset",
+    making: "Creating the demo…",
+    failed: "The demo was not created. Try again.",
+    done: "The demo is as it was at first.",
+  },
+
   bin: {
     open: "Trash…",
     title_of: (project: string) => `Trash of “${project}”`,

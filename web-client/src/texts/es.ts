@@ -327,6 +327,16 @@ export const texts = {
       "Solo se puede eliminar un proyecto vacío, para que ningún escaneo se pierda por accidente. Restaure los modelos de su papelera o elimínelos allí definitivamente.",
   },
 
+  demo: {
+    open: "Restablecer la demostración…",
+    title: "Restablecer la demostración",
+    lead: "La vasija de demostración se crea de nuevo como al principio. Todo lo que se pintó, dibujó o escribió en ella se borra y no se puede recuperar. Los demás modelos y tablas del proyecto se conservan.",
+    reset: "Restablecer",
+    making: "Creando la demostración…",
+    failed: "No se creó la demostración. Inténtelo de nuevo.",
+    done: "La demostración está como al principio.",
+  },
+
   bin: {
     open: "Papelera…",
     title_of: (project) => `Papelera de «${project}»`,

@@ -307,6 +307,11 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       end: close_dialog,
     },
     {
+      name: "reset the demo",
+      start: from_menu(w.home.options("Demo"), w.demo.open),
+      end: close_dialog,
+    },
+    {
       name: "empty project",
       start: async () => {
         await page.getByRole("link", { name: kOtherProject }).click();

@@ -61,7 +61,7 @@ export class StrataServer {
       // With owners and modes: PostgreSQL requires both.
       execFileSync("cp", ["-a", `${prepared}/${this.demo ? "demo" : "empty"}/.`, this.data]);
     } else if (this.demo) {
-      execFileSync(this.binary, ["demo", "--data", this.data], {
+      execFileSync(this.binary, ["demo", "--pot-only", "--data", this.data], {
         stdio: ["ignore", "ignore", "pipe"],
       });
     }

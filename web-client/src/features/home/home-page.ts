@@ -14,6 +14,7 @@ import { askToTrash, tellTrashed } from "../../ui/trash";
 import { openTrash } from "../../ui/trash-dialog";
 import "../../ui/status-page";
 import { askToDeleteProject } from "./delete-project-dialog";
+import { askToResetDemo, kDemoProject } from "./reset-demo-dialog";
 import { icon, logo } from "../../ui/icons";
 import type { ImportEntry, Imports } from "./imports";
 import { hasKeyboard } from "../../ui/keyboard";
@@ -303,6 +304,11 @@ export class StrataHomePage extends LitElement {
       }
       <button class="quiet" role="menuitem" @click=${() => void this.lookIntoTrash(project)}>${icon("trash")}${texts.bin.open}</button>
       ${
+        project.slug === kDemoProject && this.canAdminister
+          ? html`<button class="quiet" role="menuitem" @click=${() => void this.resetDemo()}>${icon("undo")}${texts.demo.open}</button>`
+          : nothing
+      }
+      ${
         project.slug === kDefaultProject || !this.canAdminister
           ? nothing
           : html`<hr />
@@ -422,6 +428,11 @@ export class StrataHomePage extends LitElement {
     if (!(await askToDeleteProject(this.api, listed))) return this.load();
     notices.show("success", texts.home.deleted(listed.project.name));
     this.projectsChanged("/");
+  }
+
+  private async resetDemo(): Promise<void> {
+    if (await askToResetDemo(this.api)) notices.show("success", texts.demo.done);
+    await this.load();
   }
 
   private async lookIntoTrash(project: Project): Promise<void> {
