@@ -70,7 +70,7 @@ export class StrataDialog extends LitElement {
         border-radius: var(--radius-large);
         background: var(--surface);
         color: var(--ink);
-        box-shadow: var(--shadow-high);
+        box-shadow: var(--shadow);
         outline: none; /* focused when no content is focusable */
       }
       dialog[open] {
