@@ -88,7 +88,7 @@ TEST_F(Demo, a_visitor_finds_a_history_a_review_records_comments_and_a_tour) {
 
   const auto comments = store_->comments().of_model(story.model.id, Role::owner, {});
   ASSERT_TRUE(comments);
-  ASSERT_EQ(comments->comments.size(), 2u);
+  ASSERT_EQ(comments->comments.size(), 4u) << "two threads with a reply each";
   EXPECT_NE(comments->comments[0].text.find("@lena.demo"), std::string::npos);
   EXPECT_GT(now - comments->comments[0].time, 24h * 10) << "its time is that of the story";
   EXPECT_TRUE(comments->comments[1].resolved);
