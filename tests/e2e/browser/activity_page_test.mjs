@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -58,7 +59,7 @@ test.beforeAll(async () => {
 test("the panel tells what was done, the newest first", async () => {
   await ada.page.goto(`${server.url}/models/${id}`);
   await ada.drawn();
-  await panel(ada).getByRole("button", { name: words.activity.title }).click();
+  await open_tab(ada.page, words, words.activity.title);
   await panel(ada).getByRole("heading", { name: "today" }).waitFor();
   await line(ada, "changed the model").waitFor();
   await line(ada, "Handle").waitFor();
@@ -111,10 +112,7 @@ test("earlier lines are shown when asked for, and those of the whole project", a
 test("it can be read and used on a phone", async () => {
   await phone.page.goto(`${server.url}/models/${id}`);
   await phone.drawn();
-  const shown = panel(phone).getByRole("button", { name: words.activity.title });
-  if (!(await shown.isVisible()))
-    await phone.page.getByRole("button", { name: words.model.show_panel }).click();
-  await shown.tap();
+  await open_tab(phone.page, words, words.activity.title);
   await line(phone, "Note 59").scrollIntoViewIfNeeded();
   await shot(phone, "activity_phone");
 });

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -276,9 +277,7 @@ test("a thread is resolved by anybody who writes; its pin is shown only when ask
     .waitFor();
   await ada.page.keyboard.press("Escape");
   await gone(pin(ada, first.id));
-  await panel(ada)
-    .getByRole("button", { name: /^Comments/ })
-    .click();
+  await open_tab(ada.page, words, words.comments.title);
   await panel(ada).getByText(words.comments.none_found).waitFor();
   await panel(ada).getByRole("radio", { name: words.comments.states.resolved }).click();
   await pin(ada, first.id).waitFor();
@@ -295,9 +294,7 @@ test("the list finds threads by words, state and person, and goes to them", asyn
     const { position } = await server.json("GET", `${kBase}/position?coords=${coords}`);
     await server.json("POST", `${kBase}/comments`, { text, position });
   }
-  await panel(bea)
-    .getByRole("button", { name: /^Comments/ })
-    .click();
+  await open_tab(bea.page, words, words.comments.title);
   const rows = panel(bea).locator("li button");
   await wait_for(async () => (await rows.count()) === 3, "three open threads");
   await panel(bea)

@@ -6,6 +6,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -145,7 +146,7 @@ test.beforeAll(async () => {
 test("the dialog shows the sheet: white paper with the model on it, of all that the person sees", async () => {
   await open_model(ada);
   const panel = ada.page.locator("strata-view-panel");
-  await panel.getByRole("button", { name: words.view.title, exact: true }).click();
+  await open_tab(ada.page, words, words.view.title);
   await panel.getByRole("radio", { name: words.view.lights.raking, exact: true }).click();
   await panel.getByRole("radio", { name: words.view.sections.x, exact: true }).click();
   await ada.page.getByRole("button", { name: `Hide ${hidden_name}` }).click();
@@ -453,11 +454,7 @@ test("what a browser kept and is no choice does no harm", async () => {
 
 test("on a phone, by who may only look", async () => {
   await open_model(phone);
-  await phone.page.getByRole("button", { name: words.model.show_panel }).tap();
-  await phone.page
-    .locator("strata-view-panel")
-    .getByRole("button", { name: words.view.title, exact: true })
-    .tap();
+  await open_tab(phone.page, words, words.view.title);
   await phone.page
     .locator("strata-view-panel")
     .getByRole("button", { name: words.figures.open })

@@ -7,6 +7,7 @@ import { join } from "node:path";
 import { violations } from "../support/js/accessible.mjs";
 import { Browser, kOfRedoc } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -102,6 +103,7 @@ test.beforeAll(async () => {
     await desk.drawn();
 
     console.log(`${language}: the chosen layer's name is read whole, and no card leaves the panel`);
+    await open_tab(page, w, w.layers.title);
     await button(w.layers.select(labels)).click();
     const panel = (await boxes(page.locator("strata-model-page aside")))[0];
     for (const card of await boxes(page.locator("strata-layer-panel li.layer")))
@@ -128,8 +130,7 @@ test.beforeAll(async () => {
 
     console.log(`${language}: the words of the light switch keep apart`);
     const view = page.locator("strata-view-panel");
-    if ((await view.getByRole("radiogroup").count()) === 0)
-      await view.getByRole("button", { name: w.view.title, expanded: false }).click();
+    await open_tab(page, w, w.view.title);
     const lights = view.getByRole("radiogroup", { name: w.view.light }).getByRole("radio");
     await lights.first().scrollIntoViewIfNeeded();
     const gaps = await lights.evaluateAll((all) =>
@@ -150,6 +151,7 @@ test.beforeAll(async () => {
     console.log(
       `${language}: a chosen record leaves the filter its room, and the rows their places`,
     );
+    await open_tab(page, w, w.layers.title);
     await button(w.layers.select(labels)).click();
     await page.keyboard.press("Escape");
     await page.locator("strata-stage .surface").focus();

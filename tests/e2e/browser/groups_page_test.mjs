@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -198,7 +199,7 @@ test("the project's activity tells it", async () => {
   await owner.page.goto(`${server.url}/models/${slug}`);
   await owner.drawn();
   const activity = owner.page.locator("strata-activity-panel");
-  await activity.getByRole("button", { name: words.activity.title, expanded: false }).click();
+  await open_tab(owner.page, words, words.activity.title);
   await activity.getByRole("radio", { name: words.activity.of_project }).click();
   await activity.getByText(words.activity.done["group removed"]).waitFor();
   await activity.getByText(words.activity.done["in_group added"]).first().waitFor();

@@ -10,6 +10,7 @@ import { fileURLToPath } from "node:url";
 import { findings } from "../support/js/accessible.mjs";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -290,10 +291,7 @@ test("outlines of a layer are saved for a map", async () => {
 test("an orthophoto becomes a look", async () => {
   for (const { id } of (await server.json("GET", `${base}/layers`)).layers)
     await server.json("PATCH", `${base}/layers/${id}`, { visible: false });
-  await page
-    .locator("strata-view-panel")
-    .getByRole("button", { name: words.view.title, exact: true })
-    .click();
+  await open_tab(page, words, words.view.title);
   await button(words.view.look_more).click();
   await page.getByRole("menuitem", { name: words.orthophoto.open }).click();
   await give("photo.png", "photo.pgw");

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -175,10 +176,7 @@ test("one colour and one name", async () => {
     .getByRole("button", { name: words.comments.send, exact: true })
     .click();
   await cleo.page.locator("strata-comment-card article").getByText("Cleo Roe").waitFor();
-  await cleo.page
-    .locator("strata-activity-panel")
-    .getByRole("button", { name: words.activity.title })
-    .click();
+  await open_tab(cleo.page, words, words.activity.title);
   await cleo.page.locator("strata-activity-panel").getByText("Cleo Roe").first().waitFor();
   const marks = {
     account: cleo.page.locator("strata-account-menu .face"),

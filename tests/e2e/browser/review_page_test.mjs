@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -74,7 +75,7 @@ test("the curator asks for review by the layer's menu; an annotator is told so",
   await cleo.page.getByRole("button", { name: words.layers.options("Finds") }).click();
   await cleo.page.getByRole("menuitem", { name: words.review.begin }).click();
   await ada.page.locator("strata-layer-panel").getByText(words.review.asked_of_you).waitFor();
-  await panel(cleo).getByRole("button", { name: words.review.title }).click();
+  await open_tab(cleo.page, words, words.activity.title);
   await panel(cleo).getByText(words.review.none).waitFor();
 });
 
@@ -91,7 +92,7 @@ test("what she paints is hatched for both, and the curator's list has it", async
     "both strokes in the curator's list",
   );
   await cleo.page.locator("strata-layer-panel").getByText(words.review.waiting(2)).waitFor();
-  await panel(ada).getByRole("button", { name: words.review.title }).click();
+  await open_tab(ada.page, words, words.activity.title);
   await wait_for(async () => (await listed(ada).count()) === 2, "both strokes in her own list");
   assert.equal(
     await panel(ada)
@@ -167,8 +168,7 @@ test("what was accepted the annotator cannot take back", async () => {
 
 test("on a phone", async () => {
   await stroke_by_ada([0.48, 0.4], [0.54, 0.42]);
-  await phone.page.getByRole("button", { name: words.model.show_panel }).click();
-  await panel(phone).getByRole("button", { name: words.review.title }).click();
+  await open_tab(phone.page, words, words.activity.title);
   await wait_for(async () => (await listed(phone).count()) === 1, "her stroke on her phone");
   await panel(phone).scrollIntoViewIfNeeded();
   await shoot(phone, "phone");

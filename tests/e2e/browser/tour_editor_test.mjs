@@ -6,6 +6,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -73,8 +74,7 @@ async function open_model(who) {
 async function open_panel(who) {
   await who.page.goto(server.url);
   await open_model(who);
-  if (who === phone) await who.page.getByRole("button", { name: words.model.show_panel }).click();
-  await who.page.locator("strata-view-panel").getByRole("button", exact(words.tours.view)).click();
+  await open_tab(who.page, words, words.view.title);
   await who.page.locator("strata-view-list").waitFor();
 }
 async function keep_view(who, name, keys) {

@@ -5,6 +5,7 @@ import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { encode_png } from "../support/js/png.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
@@ -47,11 +48,34 @@ test.beforeAll(async () => {
   await browser.drawn();
 });
 
-test("the panel is closed at first and opens by its heading", async () => {
-  const heading = panel.getByRole("button", { name: words.view.title });
-  assert.equal(await heading.getAttribute("aria-expanded"), "false");
-  await heading.click();
+test("the panel begins with the layers; tabs change by mouse, arrows and keys, and are kept", async () => {
+  const tab = (name) => page.getByRole("tab", { name });
+  const chosen = () => page.getByRole("tab", { selected: true }).getAttribute("data-tab");
+  assert.equal(await chosen(), "layers");
+  await tab(words.view.title).click();
   await radio(words.view.lights.museum).waitFor();
+  await tab(words.view.title).focus();
+  for (const [key, name] of [
+    ["ArrowRight", "comments"],
+    ["ArrowRight", "activity"],
+    ["ArrowRight", "layers"],
+    ["End", "activity"],
+    ["Home", "layers"],
+    ["ArrowLeft", "activity"],
+    ["r", "records"],
+    ["j", "comments"],
+    ["y", "layers"],
+    ["w", "view"],
+  ]) {
+    await page.keyboard.press(key);
+    assert.equal(await chosen(), name, `after ${key}`);
+  }
+  await page.keyboard.press("q");
+  await page.getByRole("tablist").waitFor({ state: "detached" });
+  await page.keyboard.press("q");
+  await page.reload();
+  await browser.drawn();
+  assert.equal(await chosen(), "view");
 });
 
 test("a picture that is added is shown, and blends by its slider", async () => {
@@ -158,9 +182,8 @@ test("on a phone the panel is in the sheet", async () => {
     await phone.sign_in(server, server.token);
     await phone.page.goto(`${server.url}/models/1`);
     await phone.drawn();
-    await phone.page.getByRole("button", { name: words.model.show_panel }).click();
     const view = phone.page.locator("strata-view-panel");
-    await view.getByRole("button", { name: words.view.title }).click();
+    await open_tab(phone.page, words, words.view.title);
     await view.getByRole("radio", { name: words.view.lights.raking, exact: true }).click();
     await view.getByRole("slider", { name: words.view.light_direction }).scrollIntoViewIfNeeded();
     writeFileSync(join(kOutput, "view-phone.png"), await phone.settled());

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -65,7 +66,7 @@ async function open_model(who, hash = "") {
   await who.drawn();
 }
 async function open_panel(who) {
-  await panel(who).getByRole("button", { name: words.view.title, exact: true }).click();
+  await open_tab(who.page, words, words.view.title);
   await list(who).waitFor();
 }
 let id;

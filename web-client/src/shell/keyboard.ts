@@ -4,10 +4,14 @@
 import type { StandardView } from "../math/camera";
 import { kToolKeys, type ToolName } from "../tools/tool";
 import type { OpenModelSession } from "./open-model-session";
+import { kTabKeys, type PanelTab } from "./panel-tabs";
 
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
 const kToolOfKey = new Map(
   Object.entries(kToolKeys).map(([tool, key]) => [key.toLowerCase(), tool as ToolName]),
+);
+const kTabOfKey = new Map(
+  Object.entries(kTabKeys).map(([tab, key]) => [key.toLowerCase(), tab as PanelTab]),
 );
 const kArrows: Record<string, [number, number]> = {
   ArrowLeft: [1, 0],
@@ -17,11 +21,18 @@ const kArrows: Record<string, [number, number]> = {
 };
 const kArrowStep = 0.04;
 
+/** What keys do with the page. */
+export interface KeyHost {
+  show(dialog: "help" | "figure"): void;
+  /** Shows a tab of the side panel; null: shows or hides the panel. */
+  panel(tab: PanelTab | null): void;
+}
+
 /** Runs the action of the key; returns false if it has none. */
 export function handleKey(
   event: KeyboardEvent,
   session: OpenModelSession,
-  show: (dialog: "help" | "figure") => void,
+  { show, panel }: KeyHost,
 ): boolean {
   const { key } = event;
   if (event.ctrlKey || event.metaKey) {
@@ -35,6 +46,11 @@ export function handleKey(
   const tool = kToolOfKey.get(key.toLowerCase());
   if (tool) {
     session.chooseTool(tool);
+    return true;
+  }
+  const tab = kTabOfKey.get(key.toLowerCase());
+  if (tab) {
+    panel(tab);
     return true;
   }
   const arrow = kArrows[key];
@@ -90,9 +106,13 @@ export function handleKey(
     case "N":
       session.views.step(event.shiftKey ? -1 : 1);
       return true;
-    case "j":
-    case "J":
+    case "z":
+    case "Z":
       session.past.toggle();
+      return true;
+    case "q":
+    case "Q":
+      panel(null);
       return true;
     case "t":
     case "T":

@@ -25,7 +25,7 @@ export function eventsOfParts(session: ModelSession): EventsOfParts {
     layer: (event) => {
       session.layers.onEvent(event);
       session.reviews.onEvent(event);
-      session.activity.outdated();
+      session.activity.outdated(event.user);
       session.past.outdated();
       if (event.event === "edited") {
         session.visits.saw(event.sequence ?? 0);
@@ -43,15 +43,15 @@ export function eventsOfParts(session: ModelSession): EventsOfParts {
     tool: (event) => session.shapes.onEvent(event),
     record: (event) => {
       session.tables.onRecord(event);
-      session.activity.outdated();
+      session.activity.outdated(event.user);
     },
     table: (event) => {
       session.tables.onTable(event);
-      session.activity.outdated();
+      session.activity.outdated(event.user);
     },
     comment: (event) => {
       session.comments.onEvent(event);
-      session.activity.outdated();
+      session.activity.outdated(event.user);
     },
     view: (event) => session.views.onEvent(event),
     editors: (message) => session.editors.onMessage(message),

@@ -3,6 +3,7 @@
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { cache } from "lit/directives/cache.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
@@ -37,6 +38,7 @@ import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
 import { hasPart, loadPartLater, partOf } from "./page-parts";
 import "../features/records/record-card";
+import "../features/records/records-panel";
 import "../features/presence/people-menu";
 import { isOneOfSeveral, seesToKiosks } from "../features/home/project-list";
 import {
@@ -68,12 +70,17 @@ import { wantsLessMotion } from "../session/view-control";
 import { dropColumn } from "../features/tables/drop-column";
 import type { ViewRequest } from "../session/requests";
 import { Splitter } from "./splitter";
+import { PanelTabs, type PanelTab } from "./panel-tabs";
+import { tabId, tabListStyles } from "../ui/panel/tab-list";
 import { lostBanner, savingStatus } from "./connection-status";
 import "../features/appearance/view-panel";
 
 const kNarrow = 820; // window width up to which the panel lies over the model
 const kMaxPanelWidth = 620;
 const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
+
+const paints = (tool: ToolName): boolean => kPaintingTools.includes(tool);
+const hasOptions = (tool: ToolName): boolean => paints(tool) || tool === "measure";
 
 @customElement("strata-model-page")
 export class StrataModelPage extends LitElement {
@@ -89,7 +96,7 @@ export class StrataModelPage extends LitElement {
   @state() private _panelShown = window.innerWidth > kNarrow;
   @query("strata-stage") private _stage!: StrataStage | null;
   @query("strata-tour") private _tour!: StrataOnboarding | null;
-  @query(".options") private _options!: HTMLElement | null;
+  @query(".scroll") private _panelContent!: HTMLElement | null;
   // in pixels at the default text size; scales with it
   private readonly _panelSplitter = new Splitter(this, {
     label: texts.model.resize_panel,
@@ -109,15 +116,17 @@ export class StrataModelPage extends LitElement {
     isAcross: true,
     sizeAt: ({ clientY }) => window.innerHeight - clientY,
   });
+  private readonly _tabs = new PanelTabs(this);
   private _session: OpenModelSession | null = null;
   private _askedScale = false;
   private _measures = false;
   private _tool: ToolName | null = null; // the tool whose options are in view
   private _role: Role | null = null; // in the last welcome
+  private _card: number | "new" | null = null; // the comment that is open
   private _wantedComment: number | null = null; // from the address
   private _wantedView: string | null = null;
 
-  static override styles = [sharedStyles, modelStyles];
+  static override styles = [sharedStyles, tabListStyles, modelStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -152,7 +161,10 @@ export class StrataModelPage extends LitElement {
   override updated(): void {
     this._tour?.requestUpdate(); // its target may have moved
     const session = this._session;
-    if (session) this.bringOptions(session.tools.active);
+    if (session) {
+      this.bringOptions(session.tools.active);
+      this.bringComment(session.comments.card);
+    }
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
     if (session?.tables.view) this.liftNotices(narrow ? "52dvh" : `${this._tableSplitter.size}px`);
     else if (session?.past.isOpen) this.liftNotices("var(--past-height, 0px)");
@@ -173,7 +185,7 @@ export class StrataModelPage extends LitElement {
   private async open(session: OpenModelSession): Promise<void> {
     session.subscribe(
       () => this.onSession(session),
-      ["saving", "tools", "layers", "tables", "comments", "reviews", "past"],
+      ["saving", "tools", "layers", "tables", "comments", "reviews", "activity", "appearance", "past"],
     );
     session.subscribe(
       () => this.onPlace(session),
@@ -220,15 +232,26 @@ export class StrataModelPage extends LitElement {
     this._measures = measures;
   }
 
-  /** Scrolls the panel to the options of a newly chosen tool. */
+  /** Shows the options of a newly chosen tool: they are at the top of the layers. */
   private bringOptions(tool: ToolName): void {
-    const { _options: options } = this;
     if (tool === this._tool) return;
     this._tool = tool;
-    options?.parentElement?.scrollTo({
-      top: options.offsetTop,
+    if (!hasOptions(tool)) return;
+    this._tabs.choose("layers");
+    this._panelContent?.scrollTo({
+      top: 0,
       behavior: wantsLessMotion() ? "instant" : "smooth",
     });
+  }
+
+  /**
+   * Shows the list of the comment that was opened on the picture or by a link. A person who reads
+   * the activity stays there.
+   */
+  private bringComment(card: number | "new" | null): void {
+    if (card === this._card) return;
+    this._card = card;
+    if (typeof card === "number" && this._tabs.chosen !== "activity") this._tabs.choose("comments");
   }
 
   /** Opens the panel, which may lie over the model, at the options of the active tool. */
@@ -260,10 +283,12 @@ export class StrataModelPage extends LitElement {
     const [comment, kept] = [this._wantedComment, this._wantedView];
     if (comment !== null && comments.loaded) {
       this._wantedComment = null;
+      this._tabs.choose("comments");
       comments.goTo(comment);
     }
     if (kept !== null && (views.loaded || views.failed)) {
       this._wantedView = null;
+      this._tabs.choose("view");
       if (views.loaded) views.follow(kept);
       else notices.show("problem", texts.kept_views.failed);
     }
@@ -389,33 +414,49 @@ export class StrataModelPage extends LitElement {
   }
 
   private panel(session: OpenModelSession): TemplateResult {
-    const paints = kPaintingTools.includes(session.tools.active);
-    const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
-      this._dialog = event.detail;
-    };
+    const { chosen } = this._tabs;
     return html`<aside aria-label=${texts.model.panel}>
-      ${this._panelSplitter.render()}
-      <div class="scroll">
-        ${session.tools.active === "measure" ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
-        ${paints ? html`<section class="options"><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
-        <section>
-          <strata-layer-panel
+      ${this._panelSplitter.render()} ${this._tabs.render(session, "panel")}
+      <div class="scroll" id="panel" role="tabpanel" aria-labelledby=${tabId(chosen)}>${cache(this.tab(session, chosen))}</div>
+    </aside>`;
+  }
+
+  private tab(session: OpenModelSession, tab: PanelTab): TemplateResult {
+    switch (tab) {
+      case "layers":
+        return this.layers(session);
+      case "records":
+        return html`<section>
+          <strata-records-panel
             .session=${session}
-            @request=${request}
-          ></strata-layer-panel>
-        </section>
-        ${session.canPaint && session.reviews.isUsed ? html`<section><strata-review-panel .session=${session}></strata-review-panel></section>` : nothing}
-        <section><strata-comment-panel .session=${session}></strata-comment-panel></section>
-        <section><strata-activity-panel .session=${session}></strata-activity-panel></section>
-        <section>
+            @request=${(event: CustomEvent<TablePanelRequest>) => (this._dialog = event.detail)}
+          ></strata-records-panel>
+        </section>`;
+      case "view":
+        return html`<section>
           <strata-view-panel
             .session=${session}
             @orthophoto=${() => (this._dialog = { dialog: "orthophoto" })}
             @request=${(event: CustomEvent<ViewRequest | TourRequest>) => this.onViewRequest(event.detail)}
           ></strata-view-panel>
-        </section>
-      </div>
-    </aside>`;
+        </section>`;
+      case "comments":
+        return html`<section><strata-comment-panel .session=${session}></strata-comment-panel></section>`;
+      case "activity":
+        return html`${session.canPaint && session.reviews.isUsed ? html`<section><strata-review-panel .session=${session}></strata-review-panel></section>` : nothing}
+          <section><strata-activity-panel .session=${session}></strata-activity-panel></section>`;
+    }
+  }
+
+  /** With the options of the active tool, which mostly changes a layer. */
+  private layers(session: OpenModelSession): TemplateResult {
+    const { active } = session.tools;
+    const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
+      this._dialog = event.detail;
+    };
+    return html`${active === "measure" ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
+      ${paints(active) ? html`<section class="options"><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
+      <section><strata-layer-panel .session=${session} @request=${request}></strata-layer-panel></section>`;
   }
 
   private table(session: OpenModelSession, view: TableView): TemplateResult {
@@ -450,6 +491,12 @@ export class StrataModelPage extends LitElement {
     this._dialog = dialog === "figure" ? { dialog, view: null } : { dialog };
   }
 
+  /** Null: shows or hides the panel. */
+  private showTab(tab: PanelTab | null): void {
+    this._panelShown = tab !== null || !this._panelShown;
+    if (tab) this._tabs.choose(tab);
+  }
+
   private async sayWhoDownloads(sourceDownload: Model["source_download"]): Promise<void> {
     try {
       await this._session?.changeModel({ source_download: sourceDownload });
@@ -471,7 +518,10 @@ export class StrataModelPage extends LitElement {
       return;
     }
     const does =
-      handleKey(event, session, (dialog) => this.show(dialog)) ||
+      handleKey(event, session, {
+        show: (dialog) => this.show(dialog),
+        panel: (tab) => this.showTab(tab),
+      }) ||
       (event.key === "Escape" && this._tour?.end());
     if (does) event.preventDefault();
   };

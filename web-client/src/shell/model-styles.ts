@@ -178,9 +178,12 @@ export const modelStyles = css`
     border-left: var(--edge) solid var(--line);
     background: var(--surface);
   }
+  aside {
+    display: grid;
+    grid-template: auto minmax(0, 1fr) / minmax(0, 1fr);
+  }
   .scroll {
     position: relative; /* visually hidden content would lengthen the page otherwise */
-    height: 100%;
     overflow: hidden auto;
     padding: 0 var(--space-3) var(--space-6);
   }
@@ -218,7 +221,6 @@ export const modelStyles = css`
       display: none;
     }
     aside {
-      display: grid;
       max-height: 44dvh;
       border-left: 0;
       border-top: var(--edge) solid var(--line);

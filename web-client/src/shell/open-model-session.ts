@@ -261,6 +261,7 @@ export class OpenModelSession implements ModelSession {
       tables: this.tables,
       comments: this.comments,
       model: () => this.model,
+      me: () => this.user,
       changed: changes("activity"),
     });
     this.reviews = new Reviews(api, modelId, {

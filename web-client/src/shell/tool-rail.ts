@@ -196,7 +196,7 @@ export class StrataToolRail extends LitElement {
         class="icon quiet"
         aria-label=${texts.past.title}
         aria-pressed=${session.past.isOpen}
-        title="${texts.past.title} (J)"
+        title="${texts.past.title} (Z)"
         @click=${() => session.past.toggle()}
       >
         ${icon("history")}

@@ -37,6 +37,7 @@ export const texts = {
   delete: "Löschen",
   try_again: "Erneut versuchen",
   loading: "Wird geladen …",
+  more_info: (about) => `Mehr dazu: ${about}`,
   unnamed: "Unbenannt",
 
   sign_in: {
@@ -446,7 +447,7 @@ export const texts = {
     not_found_lead: "Es wurde gelöscht, oder die Adresse ist falsch.",
     waiting_for_picture: "Modell wird geladen …",
     details: "Über dieses Modell",
-    panel: "Ebenen, Pinsel und Ansicht",
+    panel: "Seitenleiste",
     resize_panel: "Breite der Seitenleiste",
     show_panel: "Seitenleiste einblenden",
     hide_panel: "Seitenleiste ausblenden",
@@ -1269,8 +1270,8 @@ export const texts = {
     find_hint: "Wörter oder Name",
     show_pins: "Markierungen auf dem Modell einblenden",
     hide_pins: "Markierungen auf dem Modell ausblenden",
-    none: "Noch keine Kommentare. Wählen Sie das Werkzeug „Kommentar“ (C), und klicken Sie auf das Modell.",
-    none_viewer: "Noch keine Kommentare.",
+    none: "Noch keine Kommentare.",
+    none_more: "Wählen Sie das Werkzeug „Kommentar“ (C), und klicken Sie auf das Modell.",
     none_found: "Keine passenden Kommentare.",
     more: (n) => `${count(n, "weiteren", "weitere")} anzeigen`,
     failed: "Die Kommentare konnten nicht geladen werden.",
@@ -1403,6 +1404,7 @@ export const texts = {
     of_model: "Dieses Modell",
     of_project: "Ganzes Projekt",
     none: "Noch keine Aktivitäten.",
+    unseen: "Neue Aktivitäten",
     failed: "Die Aktivitäten konnten nicht geladen werden.",
     more: "Frühere anzeigen",
     server: "Der Server",
@@ -1500,6 +1502,13 @@ export const texts = {
     },
   },
 
+  records_panel: {
+    title: "Datensätze",
+    none: "Keine Ebene hat eine Tabelle.",
+    none_more:
+      "Ebenen von Objekten mit Datensätzen haben eine Tabelle: einen Datensatz je Objekt, etwa einen Fund oder einen Stein, mit Werten, Begriffen und Fotos.",
+    chosen: "Ausgewählter Datensatz",
+  },
   tables: {
     panel: "Tabelle",
     open: "Tabelle der Datensätze",
@@ -1770,8 +1779,8 @@ export const texts = {
     look_name: "Name",
     look_delete_title: (name) => `Oberflächenbild „${name}“ löschen?`,
     look_delete_lead: "Das Bild wird für alle gelöscht. Dies kann nicht rückgängig gemacht werden.",
-    no_looks: "Dieses Modell hat keine Oberflächenbilder.",
-    no_looks_curator:
+    no_looks: "Keine Oberflächenbilder.",
+    no_looks_more:
       "Ein Oberflächenbild ist ein Bild in den Texturkoordinaten des Modells: seine Farben oder dieselbe Oberfläche unter UV-Licht oder im Infrarot. Fügen Sie ein JPEG, PNG, TIFF, WebP, BMP oder TGA hinzu.",
     too_many_looks: (n) =>
       `Eine Ansicht zeigt höchstens ${n} Oberflächenbilder. Blenden Sie zuerst eines aus.`,
@@ -1818,10 +1827,10 @@ export const texts = {
   kept_views: {
     title: "Ansichten",
     keep: "Ansicht speichern …",
-    none: "Noch keine gespeicherten Ansichten. Speichern Sie die Kamera mit Ebenen, Licht und Schnitt unter einem Namen: für andere, einen Bericht oder eine Führung.",
-    none_viewer:
-      "Noch keine gespeicherten Ansichten. Zum Speichern ist die Rolle „Annotieren“ nötig.",
-    none_yet: "Noch keine gespeicherten Ansichten.",
+    none: "Noch keine gespeicherten Ansichten.",
+    none_more:
+      "Speichern Sie die Kamera mit Ebenen, Licht und Schnitt unter einem Namen: für andere, einen Bericht oder eine Führung.",
+    none_viewer: "Zum Speichern ist die Rolle „Annotieren“ nötig.",
     failed: "Die Ansichten konnten nicht geladen werden.",
     more: (n) => `${formatCount(n)} weitere anzeigen`,
     missing: "Ansicht nicht gefunden. Sie wurde gelöscht, oder der Link ist falsch.",
@@ -1930,7 +1939,9 @@ export const texts = {
   tours: {
     title: "Führungen",
     new: "Neue Führung …",
-    none: "Noch keine Führungen. Eine Führung leitet das Publikum von Ansicht zu Ansicht, mit Texten in mehreren Sprachen, auf einem Bildschirm in einer Ausstellung.",
+    none: "Noch keine Führungen.",
+    none_more:
+      "Eine Führung leitet das Publikum von Ansicht zu Ansicht, mit Texten in mehreren Sprachen, auf einem Bildschirm in einer Ausstellung.",
     failed: "Die Führungen konnten nicht geladen werden.",
     about: (stops, languages) => `${count(stops, "Station", "Stationen")} · ${languages}`,
     edit: "Bearbeiten …",
@@ -2211,7 +2222,12 @@ export const texts = {
       ["K", "nächstes Licht"],
       ["X", "Schnitt: nächste Achse, dann aus"],
       ["N · Umschalt + N", "nächste · vorherige gespeicherte Ansicht"],
-      ["J", "Verlauf: das Modell, wie es war; Esc: zurück zu jetzt"],
+      ["Z", "Verlauf: das Modell, wie es war; Esc: zurück zu jetzt"],
+      [
+        "Y · R · W · J · U",
+        "Ebenen · Datensätze · Ansicht · Kommentare · Aktivitäten in der Seitenleiste",
+      ],
+      ["Q", "Seitenleiste ein- oder ausblenden"],
       ["T", "Tabelle der Ebene öffnen oder schließen"],
       ["F", "maßstäbliche Abbildung als PDF, SVG, PNG oder TIFF erstellen"],
       ["Esc", "nicht mehr folgen; auch jede eigene Bewegung der Ansicht beendet es"],

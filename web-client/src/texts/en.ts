@@ -22,6 +22,7 @@ export const texts = {
   delete: "Delete",
   try_again: "Try again",
   loading: "Loading…",
+  more_info: (about: string) => `More about this: ${about}`,
   unnamed: "Untitled",
 
   sign_in: {
@@ -418,7 +419,7 @@ export const texts = {
     not_found_lead: "It was deleted, or the address is wrong.",
     waiting_for_picture: "Loading the model…",
     details: "About this model",
-    panel: "Layers, brush and view",
+    panel: "Side panel",
     resize_panel: "Panel width",
     show_panel: "Show panel",
     hide_panel: "Hide panel",
@@ -1222,8 +1223,8 @@ export const texts = {
     find_hint: "Words or a name",
     show_pins: "Show pins on the model",
     hide_pins: "Hide pins on the model",
-    none: "No comments yet. Choose the comment tool (C) and click the model.",
-    none_viewer: "No comments yet.",
+    none: "No comments yet.",
+    none_more: "Choose the comment tool (C) and click the model.",
     none_found: "No matching comments.",
     more: (n: number) => `Show ${formatCount(n)} more`,
     failed: "The comments could not be loaded.",
@@ -1355,6 +1356,7 @@ export const texts = {
     of_model: "This model",
     of_project: "Whole project",
     none: "No activity yet.",
+    unseen: "New activity",
     failed: "The activity could not be loaded.",
     more: "Show earlier",
     server: "The server",
@@ -1452,6 +1454,13 @@ export const texts = {
     },
   },
 
+  records_panel: {
+    title: "Records",
+    none: "No layer has a table.",
+    none_more:
+      "Layers of objects with records have a table: one record for each object, such as a find or a stone, with its values, terms and photos.",
+    chosen: "Selected record",
+  },
   tables: {
     panel: "Table",
     open: "Table of records",
@@ -1721,8 +1730,8 @@ export const texts = {
     look_name: "Name",
     look_delete_title: (name: string) => `Delete the surface image “${name}”?`,
     look_delete_lead: "The image is deleted for everyone. This cannot be undone.",
-    no_looks: "This model has no surface images.",
-    no_looks_curator:
+    no_looks: "No surface images.",
+    no_looks_more:
       "A surface image is a picture in the model's own texture coordinates: its colors, or the same surface under UV light or in infrared. Add a JPEG, PNG, TIFF, WebP, BMP or TGA.",
     too_many_looks: (n: number) => `A view shows at most ${n} surface images. Hide one first.`,
     light: "Light",
@@ -1768,9 +1777,10 @@ export const texts = {
   kept_views: {
     title: "Views",
     keep: "Save view…",
-    none: "No saved views yet. Save the camera with its layers, light and section under a name, for others, a report or a tour.",
-    none_viewer: "No saved views yet. Annotators can save views.",
-    none_yet: "No saved views yet.",
+    none: "No saved views yet.",
+    none_more:
+      "Save the camera with its layers, light and section under a name, for others, a report or a tour.",
+    none_viewer: "Annotators can save views.",
     failed: "The views could not be loaded.",
     more: (n: number) => `Show ${formatCount(n)} more`,
     missing: "View not found. It was deleted, or the link is wrong.",
@@ -1874,7 +1884,9 @@ export const texts = {
   tours: {
     title: "Tours",
     new: "New tour…",
-    none: "No tours yet. A tour leads visitors from view to view, with texts in several languages, on a screen in an exhibition.",
+    none: "No tours yet.",
+    none_more:
+      "A tour leads visitors from view to view, with texts in several languages, on a screen in an exhibition.",
     failed: "The tours could not be loaded.",
     about: (stops: number, languages: string) => `${count(stops, "stop", "stops")} · ${languages}`,
     edit: "Edit…",
@@ -2146,7 +2158,9 @@ export const texts = {
       ["K", "next light"],
       ["X", "section: next axis, then off"],
       ["N · Shift + N", "next · previous saved view"],
-      ["J", "history: the model as it was; Escape: back to now"],
+      ["Z", "history: the model as it was; Escape: back to now"],
+      ["Y · R · W · J · U", "layers · records · view · comments · activity in the side panel"],
+      ["Q", "show or hide the side panel"],
       ["T", "open or close the layer's table"],
       ["F", "create a figure to scale as PDF, SVG, PNG or TIFF"],
       ["Escape", "stop following; moving the view stops it, too"],

@@ -42,6 +42,7 @@ export const texts = {
   delete: "Eliminar",
   try_again: "Reintentar",
   loading: "Cargando…",
+  more_info: (about) => `Más información: ${about}`,
   unnamed: "Sin título",
 
   sign_in: {
@@ -443,7 +444,7 @@ export const texts = {
     not_found_lead: "Se ha eliminado, o la dirección no es correcta.",
     waiting_for_picture: "Cargando el modelo…",
     details: "Sobre este modelo",
-    panel: "Capas, pincel y vista",
+    panel: "Panel lateral",
     resize_panel: "Ancho del panel",
     show_panel: "Mostrar el panel",
     hide_panel: "Ocultar el panel",
@@ -1265,8 +1266,8 @@ export const texts = {
     find_hint: "Palabras o un nombre",
     show_pins: "Mostrar los marcadores en el modelo",
     hide_pins: "Ocultar los marcadores en el modelo",
-    none: "Todavía no hay comentarios. Elija la herramienta de comentarios (C) y haga clic en el modelo.",
-    none_viewer: "Todavía no hay comentarios.",
+    none: "Todavía no hay comentarios.",
+    none_more: "Elija la herramienta de comentarios (C) y haga clic en el modelo.",
     none_found: "No se han encontrado comentarios.",
     more: (n) => `Mostrar ${formatCount(n)} más`,
     failed: "No se han podido cargar los comentarios.",
@@ -1396,6 +1397,7 @@ export const texts = {
     of_model: "Este modelo",
     of_project: "Todo el proyecto",
     none: "Todavía no hay actividad.",
+    unseen: "Actividad nueva",
     failed: "No se ha podido cargar la actividad.",
     more: "Mostrar anteriores",
     server: "El servidor",
@@ -1493,6 +1495,13 @@ export const texts = {
     },
   },
 
+  records_panel: {
+    title: "Registros",
+    none: "Ninguna capa tiene tabla.",
+    none_more:
+      "Las capas de objetos con registros tienen una tabla: un registro por objeto, como un hallazgo o un sillar, con sus valores, términos y fotos.",
+    chosen: "Registro seleccionado",
+  },
   tables: {
     panel: "Tabla",
     open: "Tabla de registros",
@@ -1764,8 +1773,8 @@ export const texts = {
     look_name: "Nombre",
     look_delete_title: (name) => `¿Eliminar la imagen de la superficie «${name}»?`,
     look_delete_lead: "La imagen se elimina para todos. Esta acción no se puede deshacer.",
-    no_looks: "Este modelo no tiene imágenes de la superficie.",
-    no_looks_curator:
+    no_looks: "No hay imágenes de la superficie.",
+    no_looks_more:
       "Una imagen de la superficie usa las coordenadas de textura del propio modelo: sus colores, o la misma superficie con luz ultravioleta o en infrarrojo. Añada un archivo JPEG, PNG, TIFF, WebP, BMP o TGA.",
     too_many_looks: (n) =>
       `Una vista muestra como máximo ${n} imágenes de la superficie. Oculte una primero.`,
@@ -1814,9 +1823,10 @@ export const texts = {
   kept_views: {
     title: "Vistas",
     keep: "Guardar vista…",
-    none: "Todavía no hay vistas guardadas. Guarde con un nombre la cámara y sus capas, luz y sección: para otras personas, un informe o un recorrido.",
-    none_viewer: "Todavía no hay vistas guardadas. Los anotadores pueden guardar vistas.",
-    none_yet: "Todavía no hay vistas guardadas.",
+    none: "Todavía no hay vistas guardadas.",
+    none_more:
+      "Guarde con un nombre la cámara y sus capas, luz y sección: para otras personas, un informe o un recorrido.",
+    none_viewer: "Los anotadores pueden guardar vistas.",
     failed: "No se han podido cargar las vistas.",
     more: (n) => `Mostrar ${formatCount(n)} más`,
     missing: "Vista no encontrada. Se ha eliminado, o el enlace no es correcto.",
@@ -1924,7 +1934,9 @@ export const texts = {
   tours: {
     title: "Recorridos",
     new: "Nuevo recorrido…",
-    none: "Todavía no hay recorridos. Un recorrido lleva a los visitantes de vista en vista, con textos en varios idiomas, en una pantalla de una exposición.",
+    none: "Todavía no hay recorridos.",
+    none_more:
+      "Un recorrido lleva a los visitantes de vista en vista, con textos en varios idiomas, en una pantalla de una exposición.",
     failed: "No se han podido cargar los recorridos.",
     about: (stops, languages) => `${count(stops, "parada", "paradas")} · ${languages}`,
     edit: "Editar…",
@@ -2208,7 +2220,12 @@ export const texts = {
       ["K", "luz siguiente"],
       ["X", "sección: eje siguiente y, al final, ninguna"],
       ["N · Mayús + N", "vista guardada siguiente · anterior"],
-      ["J", "historial: el modelo como era; Esc: volver a ahora"],
+      ["Z", "historial: el modelo como era; Esc: volver a ahora"],
+      [
+        "Y · R · W · J · U",
+        "capas · registros · vista · comentarios · actividad en el panel lateral",
+      ],
+      ["Q", "mostrar u ocultar el panel lateral"],
       ["T", "abrir o cerrar la tabla de la capa"],
       ["F", "crear una figura a escala en PDF, SVG, PNG o TIFF"],
       ["Esc", "dejar de seguir; mover la vista también lo termina"],

@@ -1,6 +1,7 @@
 // Every screen of the page, with a way to it, for checks of all screens (accessibility_test.mjs)
 // and for their pictures (contact_sheet.mjs).
 import assert from "node:assert/strict";
+import { open_tab } from "./panel.mjs";
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 import { texts_of } from "./texts.mjs";
@@ -161,9 +162,15 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     await dialog.first().waitFor();
   };
   const escape = () => page.keyboard.press("Escape");
-  const of_layer = (layer, name) => from_menu(w.layers.options(layer), name);
+  const of_layer = (layer, name) => async () => {
+    await open_tab(page, w, w.layers.title);
+    await from_menu(w.layers.options(layer), name)();
+  };
   const account = (name) => from_menu(w.account.menu("owner"), name);
-  const choose_layer = (name) => button(w.layers.select(name)).click();
+  const choose_layer = async (name) => {
+    await open_tab(page, w, w.layers.title);
+    await button(w.layers.select(name)).click();
+  };
   /** Selects a layer that has names in several languages. */
   const choose_named = ({ name, labels }) => {
     const names = [...new Set([name, ...Object.values(labels)])].map((each) =>
@@ -552,12 +559,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     {
       name: "view",
       start: async () => {
-        await page
-          .locator("strata-view-panel")
-          .getByRole("button", { name: w.view.title })
-          .first()
-          .click();
-        await page.keyboard.press("Escape");
+        await open_tab(page, w, w.view.title);
         await page.getByRole("radio", exact(w.view.lights.raking)).click();
         await page.getByRole("radio", exact(w.view.sections.box)).click();
       },
@@ -957,7 +959,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await site.fill_as_bea("finds");
         // the page gets it when the edit is durable
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
-        await page.getByRole("button", { name: w.review.title }).click();
+        await open_tab(page, w, w.activity.title);
         await page
           .locator("strata-review-panel")
           .getByRole("button", exact(w.review.reject_all))
@@ -966,7 +968,6 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       },
       end: async () => {
         await page.keyboard.press("Escape");
-        await page.getByRole("button", { name: w.review.title }).click();
         await server.json("POST", `/models/${site.model}/layers/finds/review`, {
           decision: "reject",
           all: true,
@@ -974,7 +975,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: false });
         // Otherwise it would arrive during the walk through the next screen, as a control that the
         // keyboard does not reach.
-        await page.getByRole("button", { name: w.review.title }).waitFor({ state: "detached" });
+        await page.locator("strata-review-panel").waitFor({ state: "detached" });
       },
       keyboard: true,
     },
@@ -1009,10 +1010,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await card.getByRole("button", exact(w.comments.resolve)).click();
         await card.getByRole("button", exact(w.comments.reopen)).waitFor();
         await card.getByRole("button", exact(w.comments.close)).click();
-        await page
-          .locator("strata-comment-panel")
-          .getByRole("button", { name: w.comments.title, expanded: false })
-          .click();
+        await open_tab(page, w, w.comments.title);
         await page
           .locator("strata-comment-panel")
           .getByRole("radio", exact(w.comments.states.all))
@@ -1030,7 +1028,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       name: "activity",
       start: async () => {
         const panel = page.locator("strata-activity-panel");
-        await panel.getByRole("button", { name: w.activity.title, expanded: false }).click();
+        await open_tab(page, w, w.activity.title);
         await panel.getByRole("radio", exact(w.activity.of_project)).click();
         await panel.getByRole("listitem").first().waitFor();
         await panel.evaluate((all) => all.scrollIntoView());

@@ -8,9 +8,9 @@ import { formatList } from "../../core/locale";
 import { formatArea } from "../../domain/measure";
 import { called } from "../../domain/people";
 import type { Activity } from "../../core/protocol.gen";
-import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
+import { SidePanel, sidePanelStyles } from "../../session/side-panel";
 import { icon } from "../../ui/icons";
-import { panelLineStyles } from "../../ui/panel-styles";
+import { panelLineStyles } from "../../ui/panel/panel-styles";
 import { personMark, personMarkStyles } from "../../ui/person-mark";
 import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
@@ -25,15 +25,15 @@ const textOf = (
 ): string => keys.map((key) => all[key]).find((text) => text !== undefined) ?? all.other;
 
 @customElement("strata-activity-panel")
-export class StrataActivityPanel extends FoldingPanel {
+export class StrataActivityPanel extends SidePanel {
   protected readonly heading = words.title;
 
   constructor() {
-    super("activity", "activity", "tables", "layers", "comments");
+    super("activity", "tables", "layers", "comments");
   }
 
   static override styles = [
-    foldingStyles,
+    sidePanelStyles,
     panelLineStyles,
     personMarkStyles,
     css`
@@ -71,16 +71,12 @@ export class StrataActivityPanel extends FoldingPanel {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.session.activity.watch(this.isOpen);
+    this.session.activity.watch(true);
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this.session.activity.watch(false);
-  }
-
-  protected override toggled(): void {
-    this.session.activity.watch(this.isOpen);
   }
 
   protected content(): TemplateResult {

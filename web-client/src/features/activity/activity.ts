@@ -21,6 +21,8 @@ export interface ActivitiesHost {
   readonly tables: TablesPart;
   readonly comments: CommentsPart;
   model(): Model | null;
+  /** The user name of this person. */
+  me(): string;
   changed(): void;
 }
 
@@ -30,6 +32,8 @@ export class Activities {
   loaded = false;
   failed = false;
   busy = false;
+  /** Another person has changed something since the panel was last open. */
+  unseen = false;
   private _whole = false;
   private _watched = false;
   private _log = kNone;
@@ -64,13 +68,19 @@ export class Activities {
   watch(watched: boolean): void {
     if (watched === this._watched) return;
     this._watched = watched;
-    if (watched) void this.load();
-    else this._again.stop();
+    if (watched) {
+      this.unseen = false;
+      void this.load();
+    } else this._again.stop();
   }
 
-  /** The activity has changed. */
-  outdated(): void {
+  /** The activity has changed; `user`: the person who did it, if known. */
+  outdated(user?: string): void {
     if (this._watched) this._again.news();
+    else if (user !== undefined && user !== this._host.me() && !this.unseen) {
+      this.unseen = true;
+      this._host.changed();
+    }
   }
 
   close(): void {

@@ -7,10 +7,11 @@ import type { Look } from "../../core/protocol.gen";
 import { ask, askText } from "../../ui/dialog";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
+import "../../ui/panel/empty-state";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { listHeadStyles } from "../../ui/panel-styles";
+import { listHeadStyles } from "../../ui/panel/panel-styles";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
@@ -99,7 +100,7 @@ export class StrataLookList extends LitElement {
       </div>
       ${
         shown.length === 0
-          ? html`<p class="hint">${session.canCurate ? words.no_looks_curator : words.no_looks}</p>`
+          ? html`<strata-empty line=${words.no_looks} more=${session.canCurate ? words.no_looks_more : ""}></strata-empty>`
           : html`<ul>
             ${shown.map((look) => this.look(look))}
           </ul>`

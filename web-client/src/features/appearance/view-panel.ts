@@ -5,7 +5,7 @@ import { customElement } from "lit/decorators.js";
 import { formatLength, metresPer } from "../../domain/measure";
 import type { LightMode, Point3 } from "../../core/protocol.gen";
 import { kAxes, withBoxSide, worldPosition, type SectionMode } from "../../math/section";
-import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
+import { SidePanel, sidePanelStyles } from "../../session/side-panel";
 import { icon } from "../../ui/icons";
 import "../../ui/light-pad";
 import "./light-sliders";
@@ -21,25 +21,18 @@ const kSections: readonly Exclude<SectionMode, "planes">[] = ["off", "x", "y", "
 const kSteps = 1000; // steps of a section's slider
 
 @customElement("strata-view-panel")
-export class StrataViewPanel extends FoldingPanel {
+export class StrataViewPanel extends SidePanel {
   protected readonly heading = texts.view.title;
 
   constructor() {
-    super("view", "appearance");
+    super("appearance");
   }
 
   static override styles = [
-    foldingStyles,
+    sidePanelStyles,
     css`
-      h2 .dot {
-        width: 0.5rem;
-        height: 0.5rem;
-        border-radius: 50%;
-        background: var(--accent);
-      }
       .parts {
         gap: var(--space-4);
-        margin-top: var(--space-2);
       }
       .part {
         display: grid;
@@ -77,16 +70,9 @@ export class StrataViewPanel extends FoldingPanel {
     `,
   ];
 
-  protected override besideHeading(): unknown {
-    const { changed } = texts.view;
-    return this.session.appearance.isDefault || this.isOpen
-      ? nothing
-      : html`<span class="dot" role="img" aria-label=${changed} title=${changed}></span>`;
-  }
-
   protected override tools(): unknown {
     const { appearance } = this.session;
-    return this.isOpen && !appearance.isDefault
+    return !appearance.isDefault
       ? html`<button class="link" @click=${() => appearance.reset()}>${texts.view.reset}</button>`
       : nothing;
   }

@@ -6,9 +6,10 @@ import { repeat } from "lit/directives/repeat.js";
 import type { Thread, ThreadState } from "../../domain/comments";
 import { formatCount } from "../../core/locale";
 import { called } from "../../domain/people";
-import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
+import { SidePanel, sidePanelStyles } from "../../session/side-panel";
+import "../../ui/panel/empty-state";
 import { icon } from "../../ui/icons";
-import { panelLineStyles } from "../../ui/panel-styles";
+import { panelLineStyles } from "../../ui/panel/panel-styles";
 import { personMark, personMarkStyles } from "../../ui/person-mark";
 import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
@@ -19,16 +20,16 @@ const kStates: readonly ThreadState[] = ["open", "resolved", "all"];
 const kAtOnce = 50;
 
 @customElement("strata-comment-panel")
-export class StrataCommentPanel extends FoldingPanel {
+export class StrataCommentPanel extends SidePanel {
   protected readonly heading = words.title;
   @state() private _most = kAtOnce;
 
   constructor() {
-    super("comment", "comments", "layers", "tables", "together");
+    super("comments", "layers", "tables", "together");
   }
 
   static override styles = [
-    foldingStyles,
+    sidePanelStyles,
     panelLineStyles,
     personMarkStyles,
     css`
@@ -76,20 +77,6 @@ export class StrataCommentPanel extends FoldingPanel {
     `,
   ];
 
-  protected override besideHeading(): TemplateResult {
-    const { openCount, unreadCount } = this.session.comments;
-    return html`${
-      openCount > 0
-        ? html`<span class="number" aria-label=${words.open_count(openCount)} role="img">${formatCount(openCount)}</span>`
-        : nothing
-    }
-    ${
-      unreadCount > 0
-        ? html`<span class="dot" role="img" aria-label=${words.unread(unreadCount)} title=${words.unread(unreadCount)}></span>`
-        : nothing
-    }`;
-  }
-
   protected override tools(): TemplateResult {
     const { comments } = this.session;
     const label = comments.pinsShown ? words.hide_pins : words.show_pins;
@@ -129,7 +116,7 @@ export class StrataCommentPanel extends FoldingPanel {
       ${comments.unreadCount > 0 ? html`<div><button class="link" @click=${() => comments.markAllRead()}>${words.mark_all_read}</button></div>` : nothing}
       ${
         shown.length === 0
-          ? html`<p class="hint">${this.nothingThere()}</p>`
+          ? this.nothingThere()
           : html`<ul>
             ${repeat(
               shown,
@@ -141,11 +128,11 @@ export class StrataCommentPanel extends FoldingPanel {
       ${listed.length > shown.length ? html`<button @click=${() => (this._most += kAtOnce)}>${words.more(listed.length - shown.length)}</button>` : nothing}`;
   }
 
-  private nothingThere(): string {
+  private nothingThere(): TemplateResult {
     const { comments, canPaint } = this.session;
-    if (!comments.loaded) return texts.loading;
-    if (comments.threads.length > 0) return words.none_found;
-    return canPaint ? words.none : words.none_viewer;
+    const isNone = comments.loaded && comments.threads.length === 0;
+    const line = isNone ? words.none : comments.loaded ? words.none_found : texts.loading;
+    return html`<strata-empty line=${line} more=${isNone && canPaint ? words.none_more : ""}></strata-empty>`;
   }
 
   private row(thread: Thread): TemplateResult {

@@ -6,16 +6,6 @@ export const layerPanelStyles = css`
   :host {
     display: block;
   }
-  .heading {
-    display: flex;
-    align-items: center;
-    gap: var(--space-2);
-    margin-bottom: var(--space-2);
-  }
-  h2 {
-    flex: 1;
-    font-size: var(--text-large);
-  }
   .list {
     display: grid;
     grid-template-columns: minmax(0, 1fr); /* a long name does not widen its card */

@@ -18,9 +18,11 @@ import { layerPanelStyles } from "./layer-panel-styles";
 import { layerJobRow, layerJobStyles } from "./layer-job-row";
 import { canBeColored } from "./color-dialog";
 import { layerChip, legend, legendStyles } from "./legend";
+import "../../ui/panel/empty-state";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
+import { panelHeadingStyles } from "../../ui/panel/panel-styles";
 import { dragStyles, sharedStyles } from "../../ui/styles";
 import { chooseRaster, formatsOf, kFeatureFormats, saveFeatures, saveRaster } from "./raster-files";
 import type { TermsRequest } from "../../session/requests";
@@ -52,6 +54,7 @@ export class StrataLayerPanel extends LitElement {
 
   static override styles = [
     sharedStyles,
+    panelHeadingStyles,
     legendStyles,
     layerJobStyles,
     dragStyles,
@@ -92,8 +95,7 @@ export class StrataLayerPanel extends LitElement {
       ${
         shown.length === 0
           ? html`<div class="empty">
-            <b>${words.empty_title}</b>
-            <p>${words.empty_lead}</p>
+            <strata-empty line=${words.empty_title} more=${words.empty_lead}></strata-empty>
             ${
               session.canCurate
                 ? html`<button @click=${() => this.request({ dialog: "template" })}>${icon("layers")}${texts.templates.open}</button>`

@@ -57,9 +57,10 @@ function find(name: StepName, page: ParentNode): OnboardingTarget | null {
       return stage && { element: stage, bar: stage, isRoom: true };
     }
     case "layers": {
-      const panel = within(page.querySelector("aside"), page, "strata-layer-panel");
-      const button = within(head, head, "[data-tour=panel]");
-      return panel?.bar.checkVisibility() ? panel : button && { ...button, isWay: true };
+      const panel = page.querySelector("aside");
+      const bar = panel?.checkVisibility() ? panel : null;
+      const way = within(bar, page, "[data-tab=layers]") ?? within(head, head, "[data-tour=panel]");
+      return within(bar, page, "strata-layer-panel") ?? (way && { ...way, isWay: true });
     }
     case "brush":
     case "undo":

@@ -177,7 +177,7 @@ export class StrataPastBar extends LitElement {
   }
 
   private closeButton(): TemplateResult {
-    return html`<button class="icon quiet close" aria-label=${words.close} title="${words.close} (J)" @click=${() => this.session.past.close()}>
+    return html`<button class="icon quiet close" aria-label=${words.close} title="${words.close} (Z)" @click=${() => this.session.past.close()}>
       ${icon("close")}
     </button>`;
   }

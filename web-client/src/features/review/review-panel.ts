@@ -10,9 +10,9 @@ import { formatArea } from "../../domain/measure";
 import { called } from "../../domain/people";
 import type { Review, WaitingStroke } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
+import { SidePanel, sidePanelStyles } from "../../session/side-panel";
 import { icon } from "../../ui/icons";
-import { panelLineStyles } from "../../ui/panel-styles";
+import { panelLineStyles } from "../../ui/panel/panel-styles";
 import { personMark, personMarkStyles } from "../../ui/person-mark";
 import type { Waiting } from "./reviews";
 import { texts } from "../../texts";
@@ -31,18 +31,18 @@ const same = (a: Rejecting | null, layer: Layer, what: Rejecting["what"]): boole
   a !== null && a.layer === layer.id && JSON.stringify(a.what) === JSON.stringify(what);
 
 @customElement("strata-review-panel")
-export class StrataReviewPanel extends FoldingPanel {
+export class StrataReviewPanel extends SidePanel {
   protected readonly heading = words.title;
   @state() private _rejecting: Rejecting | null = null;
   @state() private _busy = false;
   @state() private _reason = "";
 
   constructor() {
-    super("review", "reviews", "layers", "together");
+    super("reviews", "layers", "together");
   }
 
   static override styles = [
-    foldingStyles,
+    sidePanelStyles,
     panelLineStyles,
     personMarkStyles,
     css`

@@ -8,10 +8,11 @@ import type { TourEntry } from "../../core/protocol.gen";
 import { ask } from "../../ui/dialog";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
+import "../../ui/panel/empty-state";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { listHeadStyles, listRowStyles } from "../../ui/panel-styles";
+import { listHeadStyles, listRowStyles } from "../../ui/panel/panel-styles";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import type { TourRequest } from "../../session/requests";
@@ -58,7 +59,8 @@ export class StrataTourList extends LitElement {
         <div><button @click=${() => void tours.load()}>${texts.try_again}</button></div>`;
     }
     if (!tours.loaded) return html`<p class="hint">${texts.loading}</p>`;
-    if (tours.all.length === 0) return html`<p class="hint">${words.none}</p>`;
+    if (tours.all.length === 0)
+      return html`<strata-empty line=${words.none} more=${words.none_more}></strata-empty>`;
     return html`<ul>
       ${repeat(
         tours.all,

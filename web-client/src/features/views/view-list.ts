@@ -9,10 +9,11 @@ import { copyText } from "../../ui/copy-field";
 import { ask } from "../../ui/dialog";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
+import "../../ui/panel/empty-state";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { listHeadStyles, listRowStyles } from "../../ui/panel-styles";
+import { listHeadStyles, listRowStyles } from "../../ui/panel/panel-styles";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
@@ -103,7 +104,7 @@ export class StrataViewList extends LitElement {
     const { all, current } = views;
     if (!views.loaded) return html`<p class="hint">${texts.loading}</p>`;
     if (all.length === 0)
-      return html`<p class="hint">${canPaint ? words.none : words.none_viewer}</p>`;
+      return html`<strata-empty line=${words.none} more=${canPaint ? words.none_more : words.none_viewer}></strata-empty>`;
     return html`<ul>
         ${repeat(
           all.slice(0, this._most),

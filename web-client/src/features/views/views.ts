@@ -140,7 +140,7 @@ export class Views {
     const at = all.findIndex(({ id }) => id === this._shown?.id);
     const next = all[at < 0 ? (by > 0 ? 0 : all.length - 1) : (at + by + all.length) % all.length];
     if (next) this.goTo(next, true);
-    else notices.show("info", words.none_yet);
+    else notices.show("info", words.none);
   }
 
   /** Whether there is a state before the first applied view to return to. */

@@ -67,6 +67,7 @@ describe("the activity of a model", () => {
     comments: { goTo: (id: number) => flown.push(id) },
     layers: { find: () => null, all: [] },
     model: () => ({ id: 7, project: 1 }),
+    me: () => "ada",
     changed: () => {},
   } as unknown as ActivitiesHost;
   let activity: Activities;
@@ -112,6 +113,19 @@ describe("the activity of a model", () => {
     activity.watch(false);
     vi.runAllTimers();
     expect(asked).toHaveLength(5);
+  });
+
+  it("is unseen after another person's change, until it is read", async () => {
+    activity.outdated("ada");
+    activity.outdated();
+    expect(activity.unseen).toBe(false); // this person's own change
+    activity.outdated("bea");
+    expect(activity.unseen).toBe(true);
+    activity.watch(true);
+    expect(activity.unseen).toBe(false);
+    activity.outdated("bea");
+    expect(activity.unseen).toBe(false);
+    await settle();
   });
 
   it("goes on where the page ended, and of the whole project begins anew", async () => {

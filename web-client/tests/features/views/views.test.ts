@@ -664,7 +664,7 @@ describe("the list of views", () => {
     listed();
     await session.views.load();
     session.views.step(1);
-    expect(told.at(-1)!.title).toBe(words.none_yet);
+    expect(told.at(-1)!.title).toBe(words.none);
   });
 });
 

@@ -2,6 +2,24 @@
 
 import { css } from "lit";
 
+/** The heading of a panel, with its tools. */
+export const panelHeadingStyles = css`
+  .heading {
+    display: flex;
+    align-items: center;
+    gap: 0.5rem;
+    min-height: 2.25rem;
+    margin-bottom: 0.5rem;
+  }
+  h2 {
+    flex: 1;
+    display: flex;
+    align-items: center;
+    gap: 0.5rem;
+    font-size: 1.08rem;
+  }
+`;
+
 /** Lines in a panel, each a button with three columns: person, content and time. */
 export const panelLineStyles = css`
   ul {

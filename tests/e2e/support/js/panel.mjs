@@ -1,0 +1,8 @@
+// The side panel of a model's page.
+
+/** Opens the tab of the side panel with this title, and the panel itself if it is hidden. */
+export async function open_tab(page, w, title) {
+  const show = page.getByRole("button", { name: w.model.show_panel, exact: true });
+  if (await show.isVisible()) await show.click();
+  await page.getByRole("tab", { name: title }).click();
+}
