@@ -297,9 +297,7 @@ test("the list finds threads by words, state and person, and goes to them", asyn
   await open_tab(bea.page, words, words.comments.title);
   const rows = panel(bea).locator("li button");
   await wait_for(async () => (await rows.count()) === 3, "three open threads");
-  await panel(bea)
-    .getByRole("img", { name: words.comments.unread(3) })
-    .waitFor();
+  await bea.page.getByRole("tab", { name: words.comments.unread(3) }).waitFor();
   await panel(bea).getByRole("textbox", { name: words.comments.find }).fill("RIM owner");
   await wait_for(async () => (await rows.count()) === 1, "the one with these words");
   await panel(bea).getByRole("textbox", { name: words.comments.find }).fill("");
@@ -316,7 +314,7 @@ test("the list finds threads by words, state and person, and goes to them", asyn
   await pin(bea, fingerprint.id).waitFor();
   await shot(bea, "flown");
   await panel(bea).getByRole("button", { name: words.comments.mark_all_read }).click();
-  await gone(panel(bea).getByRole("img", { name: /unread/ }));
+  await gone(bea.page.getByRole("tab", { name: /unread/ }));
 });
 
 test("an address leads to its comment, also to a reply", async () => {

@@ -6,7 +6,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
-import { open_tab } from "../support/js/panel.mjs";
+import { open_on_picture, open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -146,10 +146,12 @@ test.beforeAll(async () => {
 test("the dialog shows the sheet: white paper with the model on it, of all that the person sees", async () => {
   await open_model(ada);
   const panel = ada.page.locator("strata-view-panel");
-  await open_tab(ada.page, words, words.view.title);
-  await panel.getByRole("radio", { name: words.view.lights.raking, exact: true }).click();
-  await panel.getByRole("radio", { name: words.view.sections.x, exact: true }).click();
+  for (const part of ["light", "section"]) await open_on_picture(ada.page, words, words.view[part]);
+  await ada.page.getByRole("radio", { name: words.view.lights.raking, exact: true }).click();
+  await ada.page.getByRole("radio", { name: words.view.sections.x, exact: true }).click();
+  await open_tab(ada.page, words, words.layers.title);
   await ada.page.getByRole("button", { name: `Hide ${hidden_name}` }).click();
+  await open_tab(ada.page, words, words.view.title);
   await panel.getByRole("button", { name: words.figures.open }).click();
   await dialog(ada).getByRole("dialog").waitFor();
   const first = await sheet(ada);

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { violations } from "../support/js/accessible.mjs";
 import { Browser, kOfRedoc } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
-import { open_tab } from "../support/js/panel.mjs";
+import { open_on_picture, open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -129,8 +129,8 @@ test.beforeAll(async () => {
     await shoot(desk, `${language}_value`);
 
     console.log(`${language}: the words of the light switch keep apart`);
-    const view = page.locator("strata-view-panel");
-    await open_tab(page, w, w.view.title);
+    const view = page.locator("strata-light-controls");
+    await open_on_picture(page, w, w.view.light);
     const lights = view.getByRole("radiogroup", { name: w.view.light }).getByRole("radio");
     await lights.first().scrollIntoViewIfNeeded();
     const gaps = await lights.evaluateAll((all) =>

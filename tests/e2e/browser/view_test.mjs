@@ -5,7 +5,7 @@ import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
-import { open_tab } from "../support/js/panel.mjs";
+import { open_on_picture, open_tab } from "../support/js/panel.mjs";
 import { encode_png } from "../support/js/png.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
@@ -15,7 +15,7 @@ const words = texts_of("en");
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-view";
 mkdirSync(kOutput, { recursive: true });
 const kCyan = [0, 200, 255]; // no part of the pot has this hue
-const radio = (name) => panel.getByRole("radio", { name, exact: true });
+const radio = (name) => bar.getByRole("radio", { name, exact: true });
 const stage = async () => browser.picture(await browser.stage_box());
 const shot = async (name) =>
   writeFileSync(join(kOutput, `view-${name}.png`), await browser.settled());
@@ -26,7 +26,7 @@ const brightness = ({ data, width, height }, from, to) => {
   return sum / ((to - from) * width * 0.13 * height);
 };
 
-let browser, page, server, panel, side, cyan, inside, uncut;
+let browser, page, server, panel, bar, side, cyan, inside, uncut;
 
 test.beforeAll(async () => {
   browser = await Browser.open();
@@ -34,6 +34,7 @@ test.beforeAll(async () => {
   server = new StrataServer({ demo: true });
 
   panel = page.locator("strata-view-panel");
+  bar = page.locator("strata-picture-bar");
   await server.start();
   side = 64;
   cyan = { width: side, height: side, data: new Uint8Array(side * side * 4) };
@@ -53,7 +54,7 @@ test("the panel begins with the layers; tabs change by mouse, arrows and keys, a
   const chosen = () => page.getByRole("tab", { selected: true }).getAttribute("data-tab");
   assert.equal(await chosen(), "layers");
   await tab(words.view.title).click();
-  await radio(words.view.lights.museum).waitFor();
+  await panel.getByRole("heading", { name: words.view.title, exact: true }).waitFor();
   await tab(words.view.title).focus();
   for (const [key, name] of [
     ["ArrowRight", "comments"],
@@ -93,8 +94,9 @@ test("a picture that is added is shown, and blends by its slider", async () => {
 });
 
 test("raking light comes from where the pad is dragged to, and from where the keys move it", async () => {
+  await open_on_picture(page, words, words.view.light);
   await radio(words.view.lights.raking).click();
-  const pad = panel.getByRole("slider", { name: words.view.light_direction });
+  const pad = bar.getByRole("slider", { name: words.view.light_direction });
   const box = await pad.boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
@@ -116,9 +118,10 @@ test("raking light comes from where the pad is dragged to, and from where the ke
 });
 
 test("a section opens the pot, and the brush paints what is seen then", async () => {
+  await open_on_picture(page, words, words.view.section);
   await radio(words.view.sections.y).click();
-  await panel.getByLabel(words.view.cut_position).fill("0");
-  await panel.getByRole("button", { name: words.view.flip }).click();
+  await bar.getByLabel(words.view.cut_position).fill("0");
+  await bar.getByRole("button", { name: words.view.flip }).click();
   inside = ({ data }) => {
     let count = 0;
     for (let at = 0; at < data.length; at += 4)
@@ -126,7 +129,7 @@ test("a section opens the pot, and the brush paints what is seen then", async ()
     return count;
   };
   uncut = inside(await stage()); // some of the clay also has that color
-  await panel.getByLabel(words.view.cut_position).fill("500");
+  await bar.getByLabel(words.view.cut_position).fill("500");
   await wait_for(
     async () => inside(await stage()) > 3 * uncut + 3000,
     "the wall to be shown cut",
@@ -149,11 +152,43 @@ test("a section opens the pot, and the brush paints what is seen then", async ()
 
 test("a box keeps what is inside, and sides do not pass each other", async () => {
   await radio(words.view.sections.box).click();
-  await panel.getByLabel(words.view.box_to("Z")).fill("300");
-  await panel.getByLabel(words.view.box_from("Z")).fill("900");
-  assert.ok(Number(await panel.getByLabel(words.view.box_from("Z")).inputValue()) < 300);
-  await panel.getByLabel(words.view.box_from("Z")).fill("0");
+  await bar.getByLabel(words.view.box_to("Z")).fill("300");
+  await bar.getByLabel(words.view.box_from("Z")).fill("900");
+  assert.ok(Number(await bar.getByLabel(words.view.box_from("Z")).inputValue()) < 300);
+  await bar.getByLabel(words.view.box_from("Z")).fill("0");
   await shot("box");
+});
+
+test("the cube shows the side that is seen; a face, an arrow key or a drag turns the model", async () => {
+  const cube = page.getByRole("radiogroup", { name: words.picture_bar.cube });
+  const face = (name) => cube.getByRole("radio", { name, exact: true });
+  const chosen = (name) => face(name).getAttribute("aria-checked");
+  await page.getByRole("button", { name: words.views.first, exact: true }).click();
+  assert.equal(await cube.getByRole("radio", { checked: true }).count(), 0);
+  await face(words.views.top).click();
+  assert.equal(await chosen(words.views.top), "true");
+  await face(words.views.top).focus();
+  for (const [key, name] of [
+    ["ArrowDown", words.views.front],
+    ["ArrowRight", words.views.right],
+    ["ArrowRight", words.views.back],
+    ["ArrowRight", words.views.left],
+    ["ArrowDown", words.views.bottom],
+    ["ArrowUp", words.views.front],
+  ]) {
+    await page.keyboard.press(key);
+    assert.equal(await chosen(name), "true", `after ${key}`);
+  }
+  await page.keyboard.press("6");
+  assert.equal(await chosen(words.views.bottom), "true");
+  await page.keyboard.press("1");
+  const box = await cube.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 20, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await cube.getByRole("radio", { checked: true }).count(), 0);
+  await page.keyboard.press("Shift+Home");
 });
 
 test("keys step through lights and cuts", async () => {
@@ -165,13 +200,14 @@ test("keys step through lights and cuts", async () => {
 test("reset shows the model as others see it", async () => {
   await page.keyboard.press("Control+z");
   await browser.saved();
+  await open_tab(page, words, words.view.title);
   await panel.getByRole("button", { name: words.view.reset }).click();
   assert.equal(await radio(words.view.lights.museum).getAttribute("aria-checked"), "true");
   assert.equal(await radio(words.view.sections.off).getAttribute("aria-checked"), "true");
   await wait_for(async () => inside(await stage()) < 2 * uncut + 1000, "the whole pot", 150);
 });
 
-test("on a phone the panel is in the sheet", async () => {
+test("on a phone the bar is on the picture, above the sheet", async () => {
   const phone = await Browser.open({
     viewport: { width: 390, height: 844 },
     deviceScaleFactor: 2,
@@ -182,8 +218,9 @@ test("on a phone the panel is in the sheet", async () => {
     await phone.sign_in(server, server.token);
     await phone.page.goto(`${server.url}/models/1`);
     await phone.drawn();
-    const view = phone.page.locator("strata-view-panel");
+    const view = phone.page.locator("strata-picture-bar");
     await open_tab(phone.page, words, words.view.title);
+    await open_on_picture(phone.page, words, words.view.light);
     await view.getByRole("radio", { name: words.view.lights.raking, exact: true }).click();
     await view.getByRole("slider", { name: words.view.light_direction }).scrollIntoViewIfNeeded();
     writeFileSync(join(kOutput, "view-phone.png"), await phone.settled());

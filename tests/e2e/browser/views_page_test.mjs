@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
-import { open_tab } from "../support/js/panel.mjs";
+import { open_on_picture, open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -25,7 +25,8 @@ const row = (who, name) => list(who).locator("li", { hasText: name });
 const go = (who, name) => row(who, name).locator("button.go");
 const dialog = ({ page }) => page.locator("strata-view-dialog");
 const notice = ({ page }, text) => page.locator("strata-notices .notice", { hasText: text });
-const radio = (who, name) => panel(who).getByRole("radio", { name, exact: true });
+const bar = ({ page }) => page.locator("strata-picture-bar");
+const radio = (who, name) => bar(who).getByRole("radio", { name, exact: true });
 const is_chosen = async (who, name) =>
   (await radio(who, name).getAttribute("aria-checked")) === "true";
 const gone = (locator) => locator.waitFor({ state: "detached" });
@@ -68,6 +69,7 @@ async function open_model(who, hash = "") {
 async function open_panel(who) {
   await open_tab(who.page, words, words.view.title);
   await list(who).waitFor();
+  for (const part of ["light", "section"]) await open_on_picture(who.page, words, words.view[part]);
 }
 let id;
 
@@ -104,8 +106,10 @@ test("what is seen is kept under a name, and others have it at once", async () =
     await ada.page.keyboard.press(key);
   await radio(ada, words.view.lights.raking).click();
   await radio(ada, words.view.sections.x).click();
-  await panel(ada).getByLabel(words.view.cut_position).fill("620");
+  await bar(ada).getByLabel(words.view.cut_position).fill("620");
+  await open_tab(ada.page, words, words.layers.title);
   await ada.page.getByRole("button", { name: `Hide ${layers[0].name}` }).click();
+  await open_tab(ada.page, words, words.view.title);
   kept = await picture(ada);
   await list(ada).getByRole("button", { name: words.kept_views.keep }).click();
   await dialog(ada).getByRole("button", { name: words.kept_views.keep_yes, exact: true }).click();
@@ -139,7 +143,9 @@ test("going elsewhere and back to it shows the same pixels, and leads back to wh
   await surface(ada);
   for (const key of ["p", "Home", "ArrowLeft", "ArrowLeft"]) await ada.page.keyboard.press(key);
   await panel(ada).getByRole("button", { name: words.view.reset }).click();
+  await open_tab(ada.page, words, words.layers.title);
   await ada.page.getByRole("button", { name: `Show ${layers[0].name}` }).click();
+  await open_tab(ada.page, words, words.view.title);
   assert.equal(await go(ada, "West wall").getAttribute("aria-current"), "false");
   const own = await picture(ada);
   assert.notEqual(own, kept);
@@ -176,7 +182,9 @@ test("its link leads there in somebody else's browser", async () => {
     [await is_chosen(bea, words.view.lights.raking), await is_chosen(bea, words.view.sections.x)],
     [true, true],
   );
+  await open_tab(bea.page, words, words.layers.title);
   await bea.page.getByRole("button", { name: `Show ${layers[0].name}` }).waitFor();
+  await open_tab(bea.page, words, words.view.title);
   await surface(bea);
   await bea.page.keyboard.press("ArrowLeft");
   await wait_for(
@@ -243,10 +251,10 @@ test("a section that is none of the page's own is kept as it is, and can be turn
     camera: oblique,
   });
   await go(ada, "Oblique").click();
-  await panel(ada).getByText(words.view.section_of_view(2)).waitFor();
+  await bar(ada).getByText(words.view.section_of_view(2)).waitFor();
   const cut = await picture(ada);
   await shot(ada, "oblique");
-  await panel(ada).getByRole("button", { name: words.view.section_remove }).click();
+  await bar(ada).getByRole("button", { name: words.view.section_remove }).click();
   await wait_for(async () => (await picture(ada)) !== cut, "the whole pot");
   assert.equal(await is_chosen(ada, words.view.sections.off), true);
 });

@@ -16,13 +16,13 @@ export const sidePanelStyles = [
       display: block;
     }
     .number {
-      font: 600 0.82rem var(--sans, inherit);
+      font: 600 var(--text-small) var(--sans, inherit);
       color: var(--ink-soft);
     }
     .parts {
       display: grid;
       grid-template-columns: minmax(0, 1fr);
-      gap: 0.625rem;
+      gap: var(--space-2);
     }
     .segments {
       display: flex;

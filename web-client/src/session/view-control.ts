@@ -104,10 +104,20 @@ export class ViewControl {
   }
   /** Flies to a part of the model, as `fly`. */
   flyTo(box: Bounds, normal?: Vec3): void {
+    this.flyToResult(() => this.camera.lookAt(box, normal));
+  }
+  flyToStandard(view: StandardView): void {
+    this.flyToResult(() => this.camera.standardView(view));
+  }
+  /** Flies to the view in which the model was opened. */
+  flyToFirst(): void {
+    this.flyToResult(() => this.camera.firstView());
+  }
+  private flyToResult(change: () => void): void {
     if (this._host.isPainting()) return;
     const from = placeOf(this.camera);
     this.camera.resetField();
-    this.camera.lookAt(box, normal);
+    change();
     const to = placeOf(this.camera);
     Object.assign(this.camera, from);
     this.fly(to);

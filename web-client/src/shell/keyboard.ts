@@ -80,7 +80,8 @@ export function handleKey(
       session.gestures.zoom(1.15, width / 2, height / 2);
       return true;
     case "Home":
-      session.view.fit();
+      if (event.shiftKey) session.view.flyToFirst();
+      else session.view.fit();
       return true;
     case "p":
     case "P":

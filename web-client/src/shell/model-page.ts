@@ -73,6 +73,7 @@ import { Splitter } from "./splitter";
 import { PanelTabs, type PanelTab } from "./panel-tabs";
 import { tabId, tabListStyles } from "../ui/panel/tab-list";
 import { lostBanner, savingStatus } from "./connection-status";
+import "../features/appearance/picture-bar";
 import "../features/appearance/view-panel";
 
 const kNarrow = 820; // window width up to which the panel lies over the model
@@ -328,6 +329,7 @@ export class StrataModelPage extends LitElement {
           <strata-together-bar .session=${session}></strata-together-bar>
           <strata-comment-pins .session=${session}></strata-comment-pins>
           ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
+          <strata-picture-bar .session=${session}></strata-picture-bar>
           ${lostBanner(session)}
           <div class="readings">
             ${

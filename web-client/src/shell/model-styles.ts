@@ -122,6 +122,13 @@ export const modelStyles = css`
     color: var(--danger);
     font-weight: 600;
   }
+  strata-picture-bar {
+    position: absolute;
+    z-index: 2;
+    top: 0.625rem;
+    right: 0.625rem;
+    max-width: calc(100% - 1.25rem);
+  }
   .banner {
     position: absolute;
     z-index: 5;

@@ -82,13 +82,13 @@ function badge(tab: PanelTab, session: OpenModelSession): TemplateResult | typeo
       ];
       const text = said.filter(Boolean).join(", ");
       return openCount > 0
-        ? html`<span class="badge numeric ${unreadCount > 0 ? "news" : ""}" role="img" aria-label=${text}>${formatCount(openCount)}</span>`
+        ? html`<span class="badge ${unreadCount > 0 ? "news" : ""}" role="img" aria-label=${text}>${formatCount(openCount)}</span>`
         : dot(text);
     }
     case "activity":
       if (session.canPaint && reviews.count > 0) {
         const text = texts.review.waiting(reviews.count);
-        return html`<span class="badge numeric" role="img" aria-label=${text}>${formatCount(reviews.count)}</span>`;
+        return html`<span class="badge" role="img" aria-label=${text}>${formatCount(reviews.count)}</span>`;
       }
       return activity.unseen ? dot(texts.activity.unseen) : nothing;
     case "view":

@@ -1,12 +1,10 @@
-// <strata-tool-rail>: tools, views, undo and redo.
+// <strata-tool-rail>: tools, undo and redo.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import type { StandardView } from "../math/camera";
 import { kChangingTools, kToolKeys, type ToolName } from "../tools/tool";
 import { followSession } from "../session/follow-session";
 import { icon } from "../ui/icons";
-import "../ui/menu";
 import type { OpenModelSession } from "./open-model-session";
 import { ScrollFade } from "../ui/scroll-fade";
 import { sharedStyles } from "../ui/styles";
@@ -16,7 +14,6 @@ import type { StepName } from "../features/onboarding/onboarding-steps";
 const kTools = Object.entries(kToolKeys) as [keyof typeof kToolKeys, string][];
 /** The steps of the tour for tools. */
 const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "values" };
-const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
 
 @customElement("strata-tool-rail")
 export class StrataToolRail extends LitElement {
@@ -24,7 +21,7 @@ export class StrataToolRail extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "tools", "layers", "marks", "tables", "view");
+    followSession(this, "tools", "layers", "marks", "tables");
     new ScrollFade(this);
   }
 
@@ -55,17 +52,11 @@ export class StrataToolRail extends LitElement {
       .turns {
         display: contents;
       }
-      hr:not(strata-menu > hr) {
+      hr {
         width: 1.75rem;
         margin: var(--space-1) 0;
         border: 0;
         border-top: var(--edge) solid var(--line);
-      }
-      kbd {
-        margin-left: auto;
-        padding-left: var(--space-4);
-        color: var(--ink-soft);
-        font: var(--text-tiny) var(--mono);
       }
       @media (max-width: 820px) {
         :host {
@@ -101,9 +92,6 @@ export class StrataToolRail extends LitElement {
           padding-right: var(--space-2);
           background: var(--surface);
         }
-        .turns hr:last-child {
-          display: none;
-        }
         :host([more-before]) {
           --from: var(--fade);
         }
@@ -115,22 +103,18 @@ export class StrataToolRail extends LitElement {
           mask-image: linear-gradient(to right, transparent, black var(--from), black calc(100% - var(--turns) - var(--to)), transparent calc(100% - var(--turns))),
             linear-gradient(to right, transparent calc(100% - var(--turns)), black calc(100% - var(--turns)));
         }
-        hr:not(strata-menu > hr) {
+        hr {
           width: 0;
           height: 1.625rem;
           margin: 0 var(--space-1);
           border-left: var(--edge) solid var(--line);
           border-top: 0;
         }
-        button.icon,
-        strata-menu {
+        button.icon {
           flex: 1 1 0;
           width: auto;
           min-width: 2.125rem;
           max-width: 3.25rem;
-        }
-        strata-menu {
-          text-align: center;
         }
       }
     `,
@@ -180,18 +164,10 @@ export class StrataToolRail extends LitElement {
             >
               ${icon("redo")}
             </button>
-            <hr />
           </div>`
-          : html`<hr />`
+          : nothing
       }
-      <button
-        class="icon quiet"
-        aria-label=${texts.views.fit}
-        title="${texts.views.fit} (Home)"
-        @click=${() => session.view.fit()}
-      >
-        ${icon("fit")}
-      </button>
+      <hr />
       <button
         class="icon quiet"
         aria-label=${texts.past.title}
@@ -200,17 +176,7 @@ export class StrataToolRail extends LitElement {
         @click=${() => session.past.toggle()}
       >
         ${icon("history")}
-      </button>
-      <strata-menu label=${words.view} glyph="cube" side="right">
-        ${kViews.map(
-          (view, index) =>
-            html`<button class="quiet" role="menuitem" @click=${() => session.view.standardView(view)}>
-              ${texts.views[view]}<kbd>${index + 1}</kbd>
-            </button>`,
-        )}
-        <hr />
-        ${this.projection(true, texts.views.perspective, "P")} ${this.projection(false, texts.views.orthographic, "O")}
-      </strata-menu>`;
+      </button>`;
   }
 
   /** Whether the tool is shown: line and point only if the layer's table has columns for them. */
@@ -222,18 +188,5 @@ export class StrataToolRail extends LitElement {
       session.tools.active === name ||
       session.marks.column(name) !== null
     );
-  }
-
-  private projection(perspective: boolean, label: string, key: string): TemplateResult {
-    const { session } = this;
-    const chosen = session.view.camera.perspective === perspective;
-    return html`<button
-      class="quiet"
-      role="menuitemradio"
-      aria-checked=${chosen}
-      @click=${() => session.view.setPerspective(perspective)}
-    >
-      ${label}${chosen ? icon("check") : nothing}<kbd>${key}</kbd>
-    </button>`;
   }
 }

@@ -494,8 +494,14 @@ export const texts = {
     part: "Wiederherzustellenden Teil zeichnen",
   },
 
+  picture_bar: {
+    title: "Bild",
+    cube: "Ansichtswürfel",
+    close: (part) => `${part} schließen`,
+  },
   views: {
     fit: "Modell einpassen",
+    first: "Erste Ansicht",
     front: "Vorn",
     back: "Hinten",
     left: "Links",
@@ -2217,6 +2223,7 @@ export const texts = {
       ["Pfeiltasten", "drehen (mit Umschalt: verschieben)"],
       ["+ · −", "vergrößern · verkleinern"],
       ["Pos1", "Modell einpassen"],
+      ["Umschalt + Pos1", "erste Ansicht"],
       ["1 – 6", "vorn, hinten, links, rechts, oben, unten"],
       ["P · O", "perspektivisch · parallel"],
       ["K", "nächstes Licht"],

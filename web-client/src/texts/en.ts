@@ -466,8 +466,14 @@ export const texts = {
     part: "Draw the part to restore",
   },
 
+  picture_bar: {
+    title: "Picture",
+    cube: "View cube",
+    close: (part: string) => `Close ${part}`,
+  },
   views: {
     fit: "Fit to view",
+    first: "First view",
     front: "Front",
     back: "Back",
     left: "Left",
@@ -2153,6 +2159,7 @@ export const texts = {
       ["Arrows", "orbit (with Shift: pan)"],
       ["+ · −", "zoom in · out"],
       ["Home", "fit to view"],
+      ["Shift + Home", "first view"],
       ["1 – 6", "front, back, left, right, top, bottom"],
       ["P · O", "perspective · parallel"],
       ["K", "next light"],

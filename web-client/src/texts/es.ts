@@ -491,8 +491,14 @@ export const texts = {
     part: "Dibujar la parte que restaurar",
   },
 
+  picture_bar: {
+    title: "Imagen",
+    cube: "Cubo de vistas",
+    close: (part) => `Cerrar: ${part}`,
+  },
   views: {
     fit: "Ajustar a la vista",
+    first: "Primera vista",
     front: "Frontal",
     back: "Posterior",
     left: "Izquierda",
@@ -2215,6 +2221,7 @@ export const texts = {
       ["Flechas", "girar (con Mayús: desplazar)"],
       ["+ · −", "acercar · alejar"],
       ["Inicio", "ajustar a la vista"],
+      ["Mayús + Inicio", "primera vista"],
       ["1 – 6", "frontal, posterior, izquierda, derecha, superior, inferior"],
       ["P · O", "perspectiva · paralela"],
       ["K", "luz siguiente"],

@@ -6,3 +6,11 @@ export async function open_tab(page, w, title) {
   if (await show.isVisible()) await show.click();
   await page.getByRole("tab", { name: title }).click();
 }
+
+/** Opens the controls of the light (`w.view.light`) or the section beside the bar on the picture. */
+export async function open_on_picture(page, w, title) {
+  const button = page
+    .getByRole("toolbar", { name: w.picture_bar.title, exact: true })
+    .getByRole("button", { name: title, exact: true });
+  if ((await button.getAttribute("aria-expanded")) === "false") await button.click();
+}

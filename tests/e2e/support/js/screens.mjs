@@ -1,7 +1,7 @@
 // Every screen of the page, with a way to it, for checks of all screens (accessibility_test.mjs)
 // and for their pictures (contact_sheet.mjs).
 import assert from "node:assert/strict";
-import { open_tab } from "./panel.mjs";
+import { open_on_picture, open_tab } from "./panel.mjs";
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 import { texts_of } from "./texts.mjs";
@@ -560,6 +560,8 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       name: "view",
       start: async () => {
         await open_tab(page, w, w.view.title);
+        await open_on_picture(page, w, w.view.light);
+        await open_on_picture(page, w, w.view.section);
         await page.getByRole("radio", exact(w.view.lights.raking)).click();
         await page.getByRole("radio", exact(w.view.sections.box)).click();
       },
@@ -745,7 +747,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
           camera: { ...view.camera, section: [[0.6, 0.6, 0.5, 0]] },
         });
         // Until the page has the change, the button still opens the view's previous state.
-        const section = page.locator("strata-view-panel").getByText(w.view.section_of_view(1));
+        const section = page.locator("strata-picture-bar").getByText(w.view.section_of_view(1));
         await wait_for(
           async () => {
             await page

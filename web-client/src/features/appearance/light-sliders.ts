@@ -1,5 +1,5 @@
 // <strata-light-sliders>: the exposure of this person's picture and, in raking light, its fill and
-// the strength of the layers; part of the view panel.
+// the strength of the layers; part of the controls on the picture.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -26,14 +26,14 @@ export class StrataLightSliders extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 2px;
+        gap: var(--space-half);
       }
       label {
         display: grid;
         grid-template-columns: 6.5rem minmax(0, 1fr) 4rem;
         align-items: center;
-        gap: 0.625rem;
-        font-size: 0.88rem;
+        gap: var(--space-2);
+        font-size: var(--text-small);
       }
       output {
         text-align: right;

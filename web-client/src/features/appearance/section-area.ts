@@ -1,4 +1,4 @@
-// <strata-section-area>: the area of the cuts of this person's section; part of the view panel.
+// <strata-section-area>: the area of the cuts of this person's section; part of the controls on the picture.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -28,7 +28,7 @@ export class StrataSectionArea extends LitElement {
     sharedStyles,
     css`
       p {
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         color: var(--ink-soft);
       }
     `,

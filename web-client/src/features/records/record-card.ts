@@ -32,24 +32,24 @@ export class StrataRecordCard extends LitElement {
       }
       section {
         display: grid;
-        gap: 0.5rem;
-        padding: 0.5rem 0.5rem 0.625rem 0.8125rem;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-2) var(--space-2) var(--space-3);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
       .row button.icon {
         width: 1.75rem;
-        min-height: 1.75rem;
+        min-height: var(--control-small);
       }
       dl {
         max-height: 8.125rem;
         overflow: auto;
       }
       .row button {
-        min-height: 1.875rem;
+        min-height: var(--control-small);
       }
     `,
   ];

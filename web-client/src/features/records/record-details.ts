@@ -14,7 +14,7 @@ import { texts } from "../../texts";
 
 export const recordDetailStyles = css`
   .row b {
-    font: 600 1.02rem var(--serif);
+    font: 600 var(--text-large) var(--serif);
   }
   .picture img {
     display: block;
@@ -26,9 +26,9 @@ export const recordDetailStyles = css`
   dl {
     display: grid;
     grid-template-columns: auto minmax(0, 1fr);
-    gap: 3px 0.875rem;
+    gap: var(--space-1) var(--space-3);
     margin: 0;
-    font-size: 0.88rem;
+    font-size: var(--text-small);
   }
   dt {
     color: var(--ink-soft);
@@ -60,7 +60,7 @@ export function recordDetails(
     ${picture(session, table, record)}
     <dl>
       <dt>${words.key}</dt>
-      <dd class="numeric">${record.key}</dd>
+      <dd>${record.key}</dd>
       ${tellingColumns(table, record)
         .slice(0, most)
         .map(
@@ -71,7 +71,7 @@ export function recordDetails(
       ${measuresOf(table).map(
         ({ label, text }) =>
           html`<dt>${label}</dt>
-            <dd class="numeric">${text(record) || "–"}</dd>`,
+            <dd>${text(record) || "–"}</dd>`,
       )}
     </dl>`;
 }

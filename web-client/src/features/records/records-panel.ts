@@ -37,7 +37,7 @@ export class StrataRecordsPanel extends LitElement {
       }
       ul {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
         margin: 0;
         padding: 0;
         list-style: none;
@@ -45,8 +45,8 @@ export class StrataRecordsPanel extends LitElement {
       li {
         display: flex;
         align-items: center;
-        gap: 2px;
-        padding: 3px 4px 3px 2px;
+        gap: var(--space-half);
+        padding: var(--space-1) var(--space-1) var(--space-1) var(--space-half);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -59,16 +59,16 @@ export class StrataRecordsPanel extends LitElement {
         flex: 1;
         justify-content: flex-start;
         min-width: 0;
-        padding: 0 0.5rem;
+        padding: 0 var(--space-2);
       }
       li.open button.go {
         font-weight: 600;
       }
       section {
         display: grid;
-        gap: 0.5rem;
-        margin-top: 1.125rem;
-        padding-top: 0.9375rem;
+        gap: var(--space-2);
+        margin-top: var(--space-4);
+        padding-top: var(--space-4);
         border-top: var(--edge) solid var(--line);
       }
       section .row {

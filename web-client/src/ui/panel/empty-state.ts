@@ -20,11 +20,11 @@ export class StrataEmpty extends LitElement {
         display: block;
       }
       .row {
-        gap: 2px;
+        gap: var(--space-half);
       }
       button.icon {
         width: 1.75rem;
-        min-height: 1.75rem;
+        min-height: var(--control-small);
         color: var(--ink-soft);
       }
       button.icon svg.glyph {

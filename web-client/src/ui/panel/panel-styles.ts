@@ -7,16 +7,16 @@ export const panelHeadingStyles = css`
   .heading {
     display: flex;
     align-items: center;
-    gap: 0.5rem;
-    min-height: 2.25rem;
-    margin-bottom: 0.5rem;
+    gap: var(--space-2);
+    min-height: var(--control);
+    margin-bottom: var(--space-2);
   }
   h2 {
     flex: 1;
     display: flex;
     align-items: center;
-    gap: 0.5rem;
-    font-size: 1.08rem;
+    gap: var(--space-2);
+    font-size: var(--text-large);
   }
 `;
 

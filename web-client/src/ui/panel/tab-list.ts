@@ -78,23 +78,23 @@ export const tabListStyles = css`
   .tabs {
     display: flex;
     container-type: inline-size;
-    padding: 4px 0.375rem 0;
+    padding: var(--space-1) var(--space-2) 0;
     border-bottom: var(--edge) solid var(--line);
   }
   .tabs button {
     flex: 1 1 auto;
     display: grid;
     justify-items: center;
-    gap: 1px;
+    gap: var(--space-half);
     min-width: 2.75rem;
     min-height: 2.875rem;
-    padding: 0.3125rem 2px 0.25rem;
+    padding: var(--space-1) var(--space-half) var(--space-1);
     border: 0;
     border-bottom: 3px solid transparent;
     border-radius: var(--radius-small) var(--radius-small) 0 0;
     background: transparent;
     color: var(--ink-soft);
-    font-size: 0.75rem;
+    font-size: var(--text-tiny);
     line-height: 1.2;
   }
   .tabs button:hover {
@@ -118,12 +118,12 @@ export const tabListStyles = css`
     top: -0.25rem;
     left: calc(100% - 0.4375rem);
     min-width: 1rem;
-    padding: 0 0.25rem;
+    padding: 0 var(--space-1);
     border-radius: 99px;
     background: var(--chosen);
     color: var(--chosen-ink);
     box-shadow: 0 0 0 1px var(--line-strong);
-    font: 600 0.6875rem/1rem var(--sans, inherit);
+    font: 600 var(--text-tiny)/1rem var(--sans, inherit);
     text-align: center;
   }
   .tabs .glyphs .badge.news {

@@ -1,0 +1,201 @@
+// <strata-picture-bar>: the bar on the picture: the view cube, fit to view, light and section. The
+// controls of light and section open beside it, and stay open while you work on the model.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { Kept } from "../../core/kept";
+import { followSession } from "../../session/follow-session";
+import type { ModelSession } from "../../session/model-session";
+import { icon, type IconName } from "../../ui/icons";
+import "../../ui/menu";
+import { sharedStyles } from "../../ui/styles";
+import { texts } from "../../texts";
+import { kStandardViews } from "../../math/view-cube";
+import "./light-controls";
+import "./section-controls";
+import "./view-cube";
+
+const words = texts.picture_bar;
+
+/** The parts that open beside the bar, in its order. */
+const kParts = {
+  light: {
+    glyph: "bulb",
+    key: "K",
+    content: (session: ModelSession) =>
+      html`<strata-light-controls .session=${session}></strata-light-controls>`,
+  },
+  section: {
+    glyph: "section",
+    key: "X",
+    content: (session: ModelSession) =>
+      html`<strata-section-controls .session=${session}></strata-section-controls>`,
+  },
+} satisfies Record<
+  string,
+  { glyph: IconName; key: string; content(session: ModelSession): TemplateResult }
+>;
+type Part = keyof typeof kParts;
+const kPartNames = Object.keys(kParts) as Part[];
+
+@customElement("strata-picture-bar")
+export class StrataPictureBar extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  private readonly _open = new Kept<Part[]>(() => localStorage, "strata.picture_bar", []);
+
+  constructor() {
+    super();
+    followSession(this, "appearance", "view");
+  }
+
+  static override styles = [
+    sharedStyles,
+    css`
+      :host {
+        display: flex;
+        flex-direction: row-reverse;
+        align-items: flex-start;
+        gap: var(--space-2);
+        pointer-events: none;
+      }
+      .column {
+        display: grid;
+        flex: none;
+        justify-items: center;
+        gap: var(--space-2);
+      }
+      .column > *,
+      section {
+        pointer-events: auto;
+      }
+      .bar,
+      section {
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+        box-shadow: var(--shadow);
+      }
+      .bar {
+        display: grid;
+        gap: var(--space-half);
+        padding: var(--space-1);
+      }
+      .bar button[aria-expanded="true"] {
+        background: var(--accent-soft);
+      }
+      .bar button.on {
+        background: var(--accent);
+        color: var(--accent-ink);
+      }
+      section {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: var(--space-2);
+        box-sizing: border-box;
+        padding: var(--space-2) var(--space-3) var(--space-3);
+      }
+      .beside {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: var(--space-2);
+        width: 20.5rem;
+        min-width: 0;
+      }
+      section .row {
+        justify-content: space-between;
+      }
+      h2 {
+        font-size: var(--text-large);
+      }
+      section button.icon {
+        width: 1.75rem;
+        min-height: var(--control-small);
+      }
+      kbd {
+        margin-left: auto;
+        padding-left: var(--space-4);
+        color: var(--ink-soft);
+        font: var(--text-tiny) var(--mono);
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const open = kPartNames.filter((part) => this._open.value.includes(part));
+    return html`<div class="column">
+        <strata-view-cube .session=${session}></strata-view-cube>
+        <div class="bar" role="toolbar" aria-label=${words.title} aria-orientation="vertical">
+          <button class="icon quiet" aria-label=${texts.views.first} title="${texts.views.first} (Shift Home)" @click=${() => session.view.flyToFirst()}>
+            ${icon("home")}
+          </button>
+          <button class="icon quiet" aria-label=${texts.views.fit} title="${texts.views.fit} (Home)" @click=${() => session.view.fit()}>
+            ${icon("fit")}
+          </button>
+          ${this.viewMenu()} ${kPartNames.map((part) => this.button(part))}
+        </div>
+      </div>
+      ${open.length > 0 ? html`<div class="beside">${open.map((part) => this.controls(part))}</div>` : nothing}`;
+  }
+
+  private button(part: Part): TemplateResult {
+    const { appearance } = this.session;
+    const isOn =
+      part === "light" ? appearance.light.mode !== "museum" : appearance.section.mode !== "off";
+    const label = texts.view[part];
+    return html`<button
+      class="icon quiet ${isOn ? "on" : ""}"
+      aria-label=${label}
+      data-part=${part}
+      aria-expanded=${this._open.value.includes(part)}
+      title="${label} (${kParts[part].key})"
+      @click=${() => this.toggle(part)}
+    >
+      ${icon(kParts[part].glyph)}
+    </button>`;
+  }
+
+  private controls(part: Part): TemplateResult {
+    const close = words.close(texts.view[part]);
+    return html`<section aria-label=${texts.view[part]} @keydown=${(event: KeyboardEvent) => this.onKey(event, part)}>
+      <div class="row">
+        <h2>${texts.view[part]}</h2>
+        <button class="icon quiet" aria-label=${close} title=${close} @click=${() => this.toggle(part)}>${icon("close")}</button>
+      </div>
+      ${kParts[part].content(this.session)}
+    </section>`;
+  }
+
+  private viewMenu(): TemplateResult {
+    const { view } = this.session;
+    return html`<strata-menu label=${texts.model.view} glyph="cube">
+      ${kStandardViews.map(
+        (each, index) =>
+          html`<button class="quiet" role="menuitem" @click=${() => view.standardView(each)}>${texts.views[each]}<kbd>${index + 1}</kbd></button>`,
+      )}
+      <hr />
+      ${this.projection(true, texts.views.perspective, "P")} ${this.projection(false, texts.views.orthographic, "O")}
+    </strata-menu>`;
+  }
+
+  private projection(perspective: boolean, label: string, key: string): TemplateResult {
+    const { view } = this.session;
+    const isChosen = view.camera.perspective === perspective;
+    return html`<button class="quiet" role="menuitemradio" aria-checked=${isChosen} @click=${() => view.setPerspective(perspective)}>
+      ${label}${isChosen ? icon("check") : nothing}<kbd>${key}</kbd>
+    </button>`;
+  }
+
+  private onKey(event: KeyboardEvent, part: Part): void {
+    if (event.key !== "Escape") return;
+    event.preventDefault();
+    this.toggle(part);
+    this.renderRoot.querySelector<HTMLElement>(`[data-part="${part}"]`)?.focus();
+  }
+
+  private toggle(part: Part): void {
+    const open = this._open.value;
+    this._open.value = open.includes(part) ? open.filter((each) => each !== part) : [...open, part];
+    this.requestUpdate();
+  }
+}
