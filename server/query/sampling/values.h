@@ -14,7 +14,7 @@ struct Camera;
 namespace strata::mesh {
 class SearchTree;
 struct SurfaceMap;
-}
+}  // namespace strata::mesh
 
 namespace strata::query {
 
