@@ -46,8 +46,8 @@ export class StrataPastBar extends LitElement {
       }
       section {
         display: grid;
-        gap: 0.375rem;
-        padding: 0.5rem 0.75rem 0.375rem;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-3) var(--space-2);
         border-top: var(--edge) solid var(--line);
         background: var(--surface);
         color: var(--ink);
@@ -57,19 +57,19 @@ export class StrataPastBar extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 0.375rem 0.5rem;
+        gap: var(--space-2) var(--space-2);
         min-width: 0;
       }
       .group {
         display: flex;
         align-items: center;
-        gap: 0.25rem;
+        gap: var(--space-1);
       }
       .state {
         display: flex;
         flex: 1 1 11rem;
         align-items: center;
-        gap: 0.5rem;
+        gap: var(--space-2);
         min-width: 0;
         min-height: 2.25rem;
       }
@@ -78,19 +78,19 @@ export class StrataPastBar extends LitElement {
         min-width: 0;
       }
       .state small {
-        font-size: 0.8rem;
+        font-size: var(--text-tiny);
         color: var(--ink-soft);
       }
       select {
         width: auto;
       }
       .group button:not(.icon) {
-        padding-inline: 0.75rem;
+        padding-inline: var(--space-3);
         white-space: nowrap;
       }
       @media (max-width: 820px) {
         section {
-          padding: 0.375rem 0.5rem;
+          padding: var(--space-2) var(--space-2);
         }
         .state {
           order: -2;

@@ -51,11 +51,11 @@ export class StrataPastOverlay extends LitElement {
         position: absolute;
         top: 0.625rem;
         max-width: calc(50% - 1.5rem);
-        padding: 0.25rem 0.75rem;
-        border-radius: 99px;
+        padding: var(--space-1) var(--space-3);
+        border-radius: var(--radius-round);
         background: var(--accent);
         color: var(--accent-ink);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         font-weight: 600;
       }
       .label.only {
@@ -81,7 +81,7 @@ export class StrataPastOverlay extends LitElement {
         top: 0;
         bottom: 0;
         width: 2.75rem;
-        margin-left: -1.375rem;
+        margin-left: calc(-1 * var(--space-6));
         cursor: ew-resize;
         pointer-events: auto;
         touch-action: none;
@@ -93,7 +93,7 @@ export class StrataPastOverlay extends LitElement {
         bottom: 0;
         left: 50%;
         width: 3px;
-        margin-left: -1.5px;
+        margin-left: calc(-1 * var(--space-half));
         background: var(--mark-light);
         box-shadow: 0 0 0 1px var(--mark-dark);
       }

@@ -35,15 +35,15 @@ export class StrataPastRestore extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 0.375rem;
-        padding: 0.375rem 0.5rem;
-        border-radius: 6px;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-2);
+        border-radius: var(--radius-small);
         background: var(--paper);
       }
       label {
         display: flex;
         align-items: center;
-        gap: 0.375rem;
+        gap: var(--space-2);
         min-width: 0;
       }
       select {
@@ -53,7 +53,7 @@ export class StrataPastRestore extends LitElement {
       p {
         flex: 1 1 12rem;
         margin: 0;
-        font-size: 0.88rem;
+        font-size: var(--text-small);
       }
     `,
   ];

@@ -38,12 +38,12 @@ export class StrataPastSince extends LitElement {
       div {
         display: flex;
         align-items: center;
-        gap: 0.5rem;
-        padding: 0.375rem 0.375rem 0.375rem 0.75rem;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-2) var(--space-2) var(--space-3);
         border-radius: var(--radius);
         background: var(--surface);
         color: var(--ink);
-        font-size: 0.88rem;
+        font-size: var(--text-small);
         box-shadow: var(--shadow);
       }
       span {

@@ -59,7 +59,7 @@ export class StrataPastSlider extends LitElement {
       .track {
         position: relative;
         height: 2.75rem;
-        border-radius: 6px;
+        border-radius: var(--radius-small);
         background: var(--paper);
         cursor: ew-resize;
         touch-action: none;
@@ -85,8 +85,8 @@ export class StrataPastSlider extends LitElement {
         top: -0.25rem;
         bottom: -0.25rem;
         width: 3px;
-        margin-left: -1.5px;
-        border-radius: 2px;
+        margin-left: calc(-1 * var(--space-half));
+        border-radius: var(--radius-tiny);
         background: var(--accent);
         pointer-events: none;
       }
@@ -98,16 +98,16 @@ export class StrataPastSlider extends LitElement {
         width: 1rem;
         height: 1.5rem;
         border: 2px solid var(--surface);
-        border-radius: 6px;
+        border-radius: var(--radius-small);
         background: var(--accent);
         transform: translate(-50%, -50%);
       }
       .ends {
         display: flex;
         justify-content: space-between;
-        gap: 0.5rem;
-        margin-top: 0.125rem;
-        font-size: 0.75rem;
+        gap: var(--space-2);
+        margin-top: var(--space-half);
+        font-size: var(--text-tiny);
         color: var(--ink-soft);
         white-space: nowrap;
       }

@@ -79,11 +79,11 @@ export class StrataCellInput extends LitElement {
       }
       input[type="date"] {
         width: 100%;
-        min-height: 38px;
-        padding: var(--space-2) var(--space-2);
+        min-height: var(--control);
+        padding: var(--space-1) var(--space-2);
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
-        background: var(--raised);
+        background: var(--field);
       }
       :host([fixed]) :is(input, textarea, select, .number) {
         background: var(--surface);
@@ -93,8 +93,8 @@ export class StrataCellInput extends LitElement {
         opacity: var(--unavailable);
       }
       :host(.in-cell) :is(input, select, textarea) {
-        min-height: 28px;
-        padding: var(--space-half) var(--space-2);
+        min-height: var(--control-small);
+        padding-block: var(--space-half);
         font-size: var(--text-small);
       }
       :host(.in-cell) .number > span {

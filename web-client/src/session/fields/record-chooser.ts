@@ -64,7 +64,7 @@ export class StrataRecordChooser extends LitElement {
         padding: var(--space-1) var(--space-1);
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
-        background: var(--raised);
+        background: var(--field);
       }
       .field:focus-within {
         outline: var(--focus);

@@ -97,7 +97,7 @@ export class StrataTermChooser extends LitElement {
         overflow: auto;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
-        background: var(--raised);
+        background: var(--field);
       }
       .rows {
         position: relative;
