@@ -18,11 +18,12 @@ PgArray ids_of(const std::vector<LayerId>& layers) {
   return ids;
 }
 
+// Times are shown in milliseconds: a time that was read from an edit includes that edit.
 // One row for each interval, author and layer: the intervals are joined in memory, so that the
 // answer is bounded by the number of intervals.
 constexpr const char* kCells =
     "WITH seen AS MATERIALIZED (SELECT time, sequence, layer_id, user_name FROM edits WHERE model_id = $1 AND layer_id = any($2) "
-    "AND time >= coalesce($3::timestamptz, '-infinity') AND time <= coalesce($4::timestamptz, 'infinity')), "
+    "AND time >= coalesce($3::timestamptz, '-infinity') AND time < coalesce($4::timestamptz, 'infinity') + interval '1 millisecond'), "
     "bounds AS (SELECT coalesce($3::timestamptz, min(time)) AS low, coalesce($4::timestamptz, max(time)) AS high FROM seen) "
     "SELECT b.low, b.high, least(CASE WHEN b.high > b.low THEN floor(date_part('epoch', s.time - b.low) / "
     "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, count(*), min(s.sequence), "

@@ -29,7 +29,9 @@ async function stroke(who, from, to) {
 }
 /** Waits until the stage shows that state. */
 const shows = (who, sequence) =>
-  who.page.locator(`strata-stage canvas[data-scene-sequence="${sequence}"][data-still=true]`).waitFor();
+  who.page
+    .locator(`strata-stage canvas[data-scene-sequence="${sequence}"][data-still=true]`)
+    .waitFor();
 const newest = async () => (await server.json("GET", `/models/${model.id}`)).sequence;
 
 test.beforeAll(async () => {
@@ -142,7 +144,9 @@ test("then is next to now, with a divider that moves", async () => {
 
 test("a part of the layer is restored, after its size was shown", async () => {
   await button(ada, past.restore).click();
-  await bar(ada).getByText(/The restore changes/).waitFor();
+  await bar(ada)
+    .getByText(/The restore changes/)
+    .waitFor();
   await bar(ada).getByRole("button", { name: past.part, exact: true }).click();
   await bar(ada).getByText(past.draw_part).waitFor();
   // around the third stroke alone
@@ -152,7 +156,9 @@ test("a part of the layer is restored, after its size was shown", async () => {
     [0.62, 0.72],
     [0.36, 0.72],
   ]);
-  await bar(ada).getByText(/The restore changes/).waitFor();
+  await bar(ada)
+    .getByText(/The restore changes/)
+    .waitFor();
   await shoot(ada, "restore");
   await button(ada, past.restore_now).click();
   await notice(ada, past.restored_hint).waitFor();

@@ -30,9 +30,7 @@ export class Visits {
     private readonly _api: Api,
     private readonly _modelId: string,
     private readonly _changed: () => void,
-  ) {
-    addEventListener("pagehide", this.write);
-  }
+  ) {}
 
   /** The server has identified this person. */
   async welcome(user: string, newest: number): Promise<void> {
@@ -71,7 +69,6 @@ export class Visits {
 
   close(): void {
     this.write();
-    removeEventListener("pagehide", this.write);
   }
 
   private get key(): string {

@@ -35,8 +35,6 @@ describe("visits", () => {
       getItem: (key: string) => kept.get(key) ?? null,
       setItem: (key: string, value: string) => void kept.set(key, value),
     });
-    vi.stubGlobal("addEventListener", () => {});
-    vi.stubGlobal("removeEventListener", () => {});
   });
   afterEach(() => void vi.unstubAllGlobals());
 
