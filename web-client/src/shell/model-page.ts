@@ -186,7 +186,17 @@ export class StrataModelPage extends LitElement {
   private async open(session: OpenModelSession): Promise<void> {
     session.subscribe(
       () => this.onSession(session),
-      ["saving", "tools", "layers", "tables", "comments", "reviews", "activity", "appearance", "past"],
+      [
+        "saving",
+        "tools",
+        "layers",
+        "tables",
+        "comments",
+        "reviews",
+        "activity",
+        "appearance",
+        "past",
+      ],
     );
     session.subscribe(
       () => this.onPlace(session),

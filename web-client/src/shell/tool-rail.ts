@@ -21,7 +21,7 @@ export class StrataToolRail extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "tools", "layers", "marks", "tables");
+    followSession(this, "tools", "layers", "marks", "tables", "past");
     new ScrollFade(this);
   }
 

@@ -1343,8 +1343,7 @@ export const texts = {
     part: "Only a part",
     draw_part: "Draw a line around the part in the picture. Escape: the whole layer.",
     same: "The layer is the same now.",
-    changes: (texels: number, area: string) =>
-      `The restore changes ${area} (${count(texels, "texel", "texels")}).`,
+    changes: (area: string) => `The restore changes ${area}.`,
     restore_now: "Restore",
     restored: (layer: string, area: string) => `${layer} restored: ${area} changed`,
     since: (when: string, edits: string, people: string, layers: string) =>
@@ -1770,12 +1769,12 @@ export const texts = {
     section_of_view: (planes: number) =>
       `Section of the saved view, with ${count(planes, "plane", "planes")}`,
     section_remove: "Turn off",
-    cut_position: "Cut position",
     cut_area: (area: string | null) =>
       area === null
         ? "The surface is open at the cut, so the cut has no area."
         : `Area of the cut: ${area}`,
     cut_measuring: "Measuring the cut…",
+    cut_position: "Cut position",
     flip: "Show the other side",
     box_from: (axis: string) => `Box from ${axis}`,
     box_to: (axis: string) => `Box to ${axis}`,

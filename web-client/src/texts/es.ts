@@ -1384,8 +1384,7 @@ export const texts = {
     part: "Solo una parte",
     draw_part: "Rodee la parte en la imagen. Esc: toda la capa.",
     same: "La capa es igual ahora.",
-    changes: (texels, area) =>
-      `La restauración cambia ${area} (${count(texels, "téxel", "téxeles")}).`,
+    changes: (area) => `La restauración cambia ${area}.`,
     restore_now: "Restaurar",
     restored: (layer, area) => `${layer} restaurada: ${area} cambiados`,
     since: (when, edits, people, layers) =>

@@ -70,7 +70,7 @@ export class StrataExpressionField extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "layers", "tables");
+    followSession(this, "layers", "tables", "lit");
   }
 
   static override styles = [

@@ -117,7 +117,7 @@ export class StrataPastRestore extends LitElement {
     if (this.session.past.drawsPart) return words.draw_part;
     if (!this._count) return texts.loading;
     const { texels, area_m2: areaM2 } = this._count;
-    return texels === 0 ? words.same : words.changes(texels, formatArea(areaM2));
+    return texels === 0 ? words.same : words.changes(formatArea(areaM2));
   }
 
   private async restore(layer: Layer): Promise<void> {

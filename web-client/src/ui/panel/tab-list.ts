@@ -123,7 +123,7 @@ export const tabListStyles = css`
     background: var(--chosen);
     color: var(--chosen-ink);
     box-shadow: 0 0 0 1px var(--line-strong);
-    font: 600 var(--text-tiny)/1rem var(--sans, inherit);
+    font: 600 var(--text-tiny) / var(--space-4) var(--sans, inherit);
     text-align: center;
   }
   .tabs .glyphs .badge.news {

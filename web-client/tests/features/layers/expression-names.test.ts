@@ -43,7 +43,14 @@ const damage = layer({
 const pieces = layer({ id: 4, name: "Pieces", slug: "pieces", kind: "database", table: 9 });
 const columns = [
   { id: 1, name: "Width", slug: "width", labels: {}, kind: "numeric", unit: "mm" },
-  { id: 2, name: "State", slug: "state", labels: {}, kind: "enumeration", choices: ["it's loose", "firm"] },
+  {
+    id: 2,
+    name: "State",
+    slug: "state",
+    labels: {},
+    kind: "enumeration",
+    choices: ["it's loose", "firm"],
+  },
 ] as unknown as Column[];
 const of = (layers: Layer[], computes = false): NamesOf => ({
   layers,

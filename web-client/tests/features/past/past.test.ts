@@ -29,7 +29,7 @@ function make(more: Partial<PastHost> = {}): {
   const asked: Record<string, unknown>[] = [];
   const api = fakeApi({
     "GET /models/{model}/timeline": ({ query }): Timeline => {
-      const to = (query)?.to ?? iso(60);
+      const to = query?.to ?? iso(60);
       const seen = steps.filter(({ time }) => time <= to);
       const one = (query as { intervals: number }).intervals === 1;
       const intervals = seen.map((step, number) => ({
