@@ -76,8 +76,9 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   // it.
   if (!changes && (!rests_ || refined_ || moving_ || acked_ < last_frame_)) return std::nullopt;
 
-  Draw draw{++tickets_,   camera_seq_,    past_.value_or(sequence_), *camera_,
-            std::nullopt, Quality::still, 1};
+  Draw draw{++tickets_, camera_seq_,  past_.value_or(sequence_),
+            *camera_,   std::nullopt, Quality::still,
+            1};
   if (!changes) draw.samples = samples_at_rest_;
   if (everything_waits_ || refine || !changes) {
     draw.quality = moving_ ? Quality::moving : Quality::still;

@@ -59,8 +59,8 @@ class FlowControl {
   void on_change(const Box& box, std::int64_t sequence);
   void on_change_everywhere(std::int64_t sequence);
   void on_style();
-  // From now on, pictures show the scene after this earlier edit; nothing: always the newest. False:
-  // as before.
+  // From now on, pictures show the scene after this earlier edit; nothing: always the newest.
+  // False: as before.
   bool on_past(std::optional<std::int64_t> sequence);
   // frames up to this one are on the client's screen; unknown numbers are clamped
   void on_ack(std::uint64_t frame);
@@ -104,7 +104,7 @@ class FlowControl {
   std::vector<Box> boxes_;     // changes that are in no draw yet
   std::int64_t sequence_;
   std::optional<std::int64_t> past_;  // instead of `sequence_`
-  std::optional<Draw> out_;  // the draw in progress
+  std::optional<Draw> out_;           // the draw in progress
   const int samples_at_rest_;
   bool rests_ = false;    // nothing changed for a while
   bool refined_ = false;  // the screen shows the refined picture, or there will be none

@@ -209,10 +209,10 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
                      "A kiosk can only show the newest state of a model.", "at"},
                     std::string());
     if (const auto newest = room_->edits().durable_sequence(); *message.at > newest)
-      return refuse({ErrorCode::invalid, "Sequence not reached",
-                     "The newest durable edit of this model is " + std::to_string(newest) + ".",
-                     "at"},
-                    std::string());
+      return refuse(
+          {ErrorCode::invalid, "Sequence not reached",
+           "The newest durable edit of this model is " + std::to_string(newest) + ".", "at"},
+          std::string());
     settings->at = *message.at;
   }
   if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(*settings));

@@ -126,8 +126,7 @@ Result<std::shared_ptr<const PastMoment>> PastLayers::make(const Request& reques
   for (const Layer& layer : request.layers) {
     // A layer that did not exist yet has nothing to show.
     const auto last = sequences.find(layer.id);
-    auto content =
-        STRATA_TRY(layer_at(layer, last == sequences.end() ? 0 : last->second, model));
+    auto content = STRATA_TRY(layer_at(layer, last == sequences.end() ? 0 : last->second, model));
     moment->layers.emplace(layer.id, std::move(content));
     if (!layer.table || moment->features.contains(*layer.table)) continue;
     auto features = STRATA_TRY(features_->when(*layer.table, request.sight, request.at));
@@ -162,8 +161,8 @@ Result<std::shared_ptr<const PastLayer>> PastLayers::layer_at(const Layer& layer
   }
   auto snapshot = STRATA_TRY(near ? store_.journal().load_tiles_near(layer, sequence, *near)
                                   : store_.journal().load_tiles(layer, sequence));
-  auto share = STRATA_TRY(
-      memory_.reserve(own_bytes(snapshot, newest), "an earlier state of a layer"));
+  auto share =
+      STRATA_TRY(memory_.reserve(own_bytes(snapshot, newest), "an earlier state of a layer"));
   auto mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
   mirror->assign(snapshot.tiles, snapshot.sequence);
   auto past = std::make_shared<PastLayer>(renderer_, std::move(snapshot));

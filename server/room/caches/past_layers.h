@@ -64,7 +64,7 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
 
   struct Request {
     std::int64_t at = 0;
-    std::vector<Layer> layers;                  // to show
+    std::vector<Layer> layers;                // to show
     Visibility sight = Visibility::everyone;  // the most restricted visibility of columns
   };
   struct Found {
@@ -91,8 +91,7 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
     std::shared_ptr<const PastLayer> layer;
   };
   void run(const std::shared_ptr<Place>& place);
-  Result<std::shared_ptr<const PastMoment>> make(const Request& request,
-                                                 render::ModelHandle model);
+  Result<std::shared_ptr<const PastMoment>> make(const Request& request, render::ModelHandle model);
   Result<std::shared_ptr<const PastLayer>> layer_at(const Layer& layer, std::int64_t sequence,
                                                     render::ModelHandle model);
   void keep(Kept kept);  // with the mutex held

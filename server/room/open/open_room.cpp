@@ -154,7 +154,8 @@ std::optional<TileMirror::Snapshot> OpenRoom::durable_tiles(const Layer& layer) 
   const auto state = layer_state(layer.id);
   if (!state || state->mirror->type() != layer.type) return std::nullopt;
   auto newest = state->mirror->snapshot();
-  if (newest.sequence > durable_) return std::nullopt;  // the journal may still refuse its last edits
+  // The journal may still refuse its last edits.
+  if (newest.sequence > durable_) return std::nullopt;
   return newest;
 }
 

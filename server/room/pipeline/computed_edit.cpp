@@ -142,9 +142,8 @@ Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer
             auto past = STRATA_TRY(store.journal().load_tiles(layer, restore.sequence));
             auto changes = replace_content(tiles, past.tiles, layer.type, context.map);
             if (restore.outline) {
-              const auto masks = STRATA_TRY(texels_in(*restore.outline, context.map,
-                                                      context.surface, context.renderer,
-                                                      context.model));
+              const auto masks = STRATA_TRY(texels_in(
+                  *restore.outline, context.map, context.surface, context.renderer, context.model));
               changes = only_within(std::move(changes), masks);
             }
             return only_changes(std::move(changes));

@@ -129,10 +129,10 @@ constexpr auto kLoadTiles = sql(
     kRowsOfTiles);
 
 // Only the tiles that edits after $3 and up to $4 wrote.
-constexpr auto kLoadTilesNear = sql(
-    "WITH tiles AS MATERIALIZED (SELECT DISTINCT tile_y, tile_x FROM tile_revisions "
-    "WHERE layer_id = $1 AND sequence > $3 AND sequence <= $4 ORDER BY tile_y, tile_x) ",
-    kRowsOfTiles);
+constexpr auto kLoadTilesNear =
+    sql("WITH tiles AS MATERIALIZED (SELECT DISTINCT tile_y, tile_x FROM tile_revisions "
+        "WHERE layer_id = $1 AND sequence > $3 AND sequence <= $4 ORDER BY tile_y, tile_x) ",
+        kRowsOfTiles);
 
 Result<void> add_row(TileLoader& loader, const PgResult& row) {
   if (row.null(0, 2)) return {};  // the tile was empty until then
@@ -154,9 +154,8 @@ Result<TileMirror::Snapshot> Journal::load_tiles(const Layer& layer,
     // The journal only grows, so everything up to this sequence is one consistent state.
     const std::int64_t sequence = last.integer(0, 0);
     TileLoader loader(layer.type);
-    STRATA_TRY(connection.each_row(
-        kLoadTiles.c_str(), Params().id(layer.id).integer(sequence),
-        [&](const PgResult& row) { return add_row(loader, row); }));
+    STRATA_TRY(connection.each_row(kLoadTiles.c_str(), Params().id(layer.id).integer(sequence),
+                                   [&](const PgResult& row) { return add_row(loader, row); }));
     auto tiles = STRATA_TRY(loader.finish());
     return TileMirror::Snapshot{std::move(tiles), sequence};
   });
@@ -193,7 +192,8 @@ Result<std::map<LayerId, std::int64_t>> Journal::layer_sequences(ModelId model_i
         "WHERE l.model_id = $1",
         Params().id(model_id).integer(sequence)));
     std::map<LayerId, std::int64_t> last;
-    for (int i = 0; i < rows.rows(); ++i) last.emplace(LayerId(rows.integer(i, 0)), rows.integer(i, 1));
+    for (int i = 0; i < rows.rows(); ++i)
+      last.emplace(LayerId(rows.integer(i, 0)), rows.integer(i, 1));
     return last;
   });
 }

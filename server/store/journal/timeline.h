@@ -23,17 +23,18 @@ struct Timeline {
       std::string user;
       std::int64_t edits = 0;
     };
-    std::vector<Share> people;   // kMaxNamed with the most edits, these first
-    std::int64_t others = 0;     // further people
+    std::vector<Share> people;    // kMaxNamed with the most edits, these first
+    std::int64_t others = 0;      // further people
     std::vector<LayerId> layers;  // kMaxNamed with the most edits, these first
   };
   static constexpr int kMaxNamed = 3;
-  std::int64_t edits = 0;       // in all intervals
-  std::optional<Time> from, to;  // begin of the first and end of the last interval; nothing: no edit
+  std::int64_t edits = 0;  // in all intervals
+  // begin of the first and end of the last interval; nothing: no edit
+  std::optional<Time> from, to;
   std::vector<Interval> intervals;
 };
 struct TimelineQuery {
-  std::vector<LayerId> layers;           // only edits of these
+  std::vector<LayerId> layers;          // only edits of these
   std::optional<std::string> from, to;  // UTC; nothing: the first and the last edit
   int intervals = 1;
 };

@@ -37,8 +37,8 @@ class Screen {
         ASSERT_TRUE(header);
         if (header->last && member) member->ack(header->view_id, header->frame);
         if (!header->keyframe || !header->still) continue;
-        pictures_.push_back({*header, {message->begin() + protocol::kFrameHeaderBytes,
-                                       message->end()}});
+        pictures_.push_back(
+            {*header, {message->begin() + protocol::kFrameHeaderBytes, message->end()}});
       }
       changed_.notify_all();
     };
@@ -47,16 +47,18 @@ class Screen {
   Picture wait(std::uint32_t view, std::int64_t sequence, std::uint64_t camera) {
     std::unique_lock lock(mutex_);
     Picture found;
-    EXPECT_TRUE(changed_.wait_for(lock, kPatience, [&] {
-      for (const Picture& picture : pictures_)
-        if (picture.header.view_id == view && picture.header.camera_seq == camera &&
-            static_cast<std::int64_t>(picture.header.scene_sequence) == sequence) {
-          found = picture;
-          return true;
-        }
-      return false;
-    })) << "no picture of edit "
-        << sequence;
+    EXPECT_TRUE(changed_.wait_for(
+        lock, kPatience,
+        [&] {
+          for (const Picture& picture : pictures_)
+            if (picture.header.view_id == view && picture.header.camera_seq == camera &&
+                static_cast<std::int64_t>(picture.header.scene_sequence) == sequence) {
+              found = picture;
+              return true;
+            }
+          return false;
+        }))
+        << "no picture of edit " << sequence;
     return found;
   }
   void forget() {
@@ -174,8 +176,8 @@ TEST_F(RoomPast, every_state_is_read_from_every_other_one) {
   };
   for (int i = 0; i < 90; ++i) {
     const int kind = any(0, 9);
-    auto edit = stroke(cracks_, any(1, 9), {{double(any(200, 440)), double(any(160, 320))}},
-                       any(5, 40));
+    auto edit =
+        stroke(cracks_, any(1, 9), {{double(any(200, 440)), double(any(160, 320))}}, any(5, 40));
     if (kind < 2) std::get<room::StrokeEdit>(edit.edit).batch.erase = true;
     if (kind == 2) edit = request(cracks_, room::FillEdit{true, 0});
     if (kind == 3) edit = request(cracks_, room::UndoEdit{});

@@ -1390,7 +1390,7 @@ export const texts = {
     part: "Nur einen Teil",
     draw_part: "Umfahren Sie den Teil im Bild. Esc: die ganze Ebene.",
     same: "Die Ebene ist jetzt gleich.",
-    changes: (area) => `Das Wiederherstellen ändert ${area}.`,
+    changes: (area, share) => `Das Wiederherstellen ändert ${area} (${share} der Oberfläche).`,
     restore_now: "Wiederherstellen",
     restored: (layer, area) => `${layer} wiederhergestellt: ${area} geändert`,
     since: (when, edits, people, layers) =>

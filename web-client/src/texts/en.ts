@@ -1343,7 +1343,8 @@ export const texts = {
     part: "Only a part",
     draw_part: "Draw a line around the part in the picture. Escape: the whole layer.",
     same: "The layer is the same now.",
-    changes: (area: string) => `The restore changes ${area}.`,
+    changes: (area: string, share: string) =>
+      `The restore changes ${area} (${share} of the surface).`,
     restore_now: "Restore",
     restored: (layer: string, area: string) => `${layer} restored: ${area} changed`,
     since: (when: string, edits: string, people: string, layers: string) =>

@@ -1384,7 +1384,7 @@ export const texts = {
     part: "Solo una parte",
     draw_part: "Rodee la parte en la imagen. Esc: toda la capa.",
     same: "La capa es igual ahora.",
-    changes: (area) => `La restauración cambia ${area}.`,
+    changes: (area, share) => `La restauración cambia ${area} (${share} de la superficie).`,
     restore_now: "Restaurar",
     restored: (layer, area) => `${layer} restaurada: ${area} cambiados`,
     since: (when, edits, people, layers) =>

@@ -66,14 +66,10 @@ nlohmann::json to_json(const store::Timeline::Interval& interval) {
   for (const auto& person : interval.people)
     people.push_back({{"user", person.user}, {"edits", person.edits}});
   for (const LayerId layer : interval.layers) layers.push_back(layer.number());
-  return {{"number", interval.number},
-          {"edits", interval.edits},
-          {"first", interval.first},
-          {"last", interval.last},
-          {"begun", utc_text(interval.begun)},
-          {"ended", utc_text(interval.ended)},
-          {"people", std::move(people)},
-          {"others", interval.others},
+  return {{"number", interval.number},         {"edits", interval.edits},
+          {"first", interval.first},           {"last", interval.last},
+          {"begun", utc_text(interval.begun)}, {"ended", utc_text(interval.ended)},
+          {"people", std::move(people)},       {"others", interval.others},
           {"layers", std::move(layers)}};
 }
 
@@ -129,9 +125,8 @@ Result<Response> difference(const RouteContext& context, const Request& request)
   const auto body = STRATA_TRY(body_of<protocol::DifferenceRequest>(request));
   const auto room = STRATA_TRY(open_room(context, request));
   const auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
-  const auto sequence_of =
-      [&](const protocol::At& at,
-          const std::string& field) -> Result<std::optional<std::int64_t>> {
+  const auto sequence_of = [&](const protocol::At& at,
+                               const std::string& field) -> Result<std::optional<std::int64_t>> {
     auto found = find_sequence(context, *room, at);
     if (found) return found;
     Error problem = found.error();
@@ -147,8 +142,7 @@ Result<Response> difference(const RouteContext& context, const Request& request)
     STRATA_TRY(validate(body.within->camera));
     outline = room::Outline{body.within->camera, body.within->path, body.within->through};
   }
-  const auto found =
-      STRATA_TRY(room->queries().difference(layer.slug, from, to, outline));
+  const auto found = STRATA_TRY(room->queries().difference(layer.slug, from, to, outline));
   Response response = json_response({{"from", *from},
                                      {"to", *to},
                                      {"texels", found.texels},
@@ -166,11 +160,11 @@ void add_timeline_routes(Router& router, const RouteContext& context) {
               .handler = answering(
                   [&context](const Request& request) { return timeline(context, request); }),
               .query = {"from", "to", "intervals"}});
-  router.add({.method = Method::get,
-              .pattern = "/api/v1/models/{model}/timeline/steps",
-              .handler = answering(
-                  [&context](const Request& request) { return steps(context, request); }),
-              .query = {"before", "after", "limit"}});
+  router.add(
+      {.method = Method::get,
+       .pattern = "/api/v1/models/{model}/timeline/steps",
+       .handler = answering([&context](const Request& request) { return steps(context, request); }),
+       .query = {"before", "after", "limit"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/layers/{layer}/difference",
               .handler = answering(

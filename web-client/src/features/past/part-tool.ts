@@ -5,7 +5,7 @@ import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";
 
 export interface PartHost extends OutlineHost {
-  /** The person wants no part. */
+  /** The person ends it without a part. */
   giveUp(): void;
 }
 

@@ -81,7 +81,7 @@ export class StrataPastOverlay extends LitElement {
         top: 0;
         bottom: 0;
         width: 2.75rem;
-        margin-left: calc(-1 * var(--space-6));
+        transform: translateX(-50%);
         cursor: ew-resize;
         pointer-events: auto;
         touch-action: none;
@@ -93,7 +93,7 @@ export class StrataPastOverlay extends LitElement {
         bottom: 0;
         left: 50%;
         width: 3px;
-        margin-left: calc(-1 * var(--space-half));
+        transform: translateX(-50%);
         background: var(--mark-light);
         box-shadow: 0 0 0 1px var(--mark-dark);
       }

@@ -5,6 +5,8 @@ import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { formatArea } from "../../domain/measure";
 import { labelOf } from "../../domain/cells";
+import type { Difference } from "../../core/protocol.gen";
+import { formatFixed } from "../../core/locale";
 import type { Layer } from "../../core/types";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
@@ -18,7 +20,7 @@ const words = texts.past;
 export class StrataPastRestore extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _layer: number | null = null; // null: the selected one
-  @state() private _count: { texels: number; area_m2: number } | null = null;
+  @state() private _count: Difference | null = null;
   @state() private _working = false;
   private _counted = ""; // what `_count` is of
   private _asked = 0;
@@ -35,15 +37,15 @@ export class StrataPastRestore extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: var(--space-2);
-        padding: var(--space-2) var(--space-2);
+        gap: var(--space-1);
+        padding: var(--space-1) var(--space-2);
         border-radius: var(--radius-small);
         background: var(--paper);
       }
       label {
         display: flex;
         align-items: center;
-        gap: var(--space-2);
+        gap: var(--space-1);
         min-width: 0;
       }
       select {
@@ -116,8 +118,10 @@ export class StrataPastRestore extends LitElement {
   private told(): string {
     if (this.session.past.drawsPart) return words.draw_part;
     if (!this._count) return texts.loading;
-    const { texels, area_m2: areaM2 } = this._count;
-    return texels === 0 ? words.same : words.changes(formatArea(areaM2));
+    const { texels, area_m2: areaM2, share } = this._count;
+    return texels === 0
+      ? words.same
+      : words.changes(formatArea(areaM2), `${formatFixed(share * 100, share < 0.01 ? 2 : 1)} %`);
   }
 
   private async restore(layer: Layer): Promise<void> {

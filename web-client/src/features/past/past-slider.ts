@@ -64,7 +64,7 @@ export class StrataPastSlider extends LitElement {
         cursor: ew-resize;
         touch-action: none;
       }
-      svg {
+      .track > svg {
         position: absolute;
         inset: 0;
         width: 100%;
@@ -85,7 +85,7 @@ export class StrataPastSlider extends LitElement {
         top: -0.25rem;
         bottom: -0.25rem;
         width: 3px;
-        margin-left: calc(-1 * var(--space-half));
+        transform: translateX(-50%);
         border-radius: var(--radius-tiny);
         background: var(--accent);
         pointer-events: none;

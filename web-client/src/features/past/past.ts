@@ -3,7 +3,7 @@
 
 import type { Api } from "../../net/api";
 import { ApiError } from "../../net/api-error";
-import type { Timeline, TimelineInterval, TimelineStep } from "../../core/protocol.gen";
+import type { Difference, Timeline, TimelineInterval, TimelineStep } from "../../core/protocol.gen";
 import type { FrameMessage } from "../../net/frame-header";
 import type { Point } from "../../net/stroke";
 import type { CameraMessage } from "../../math/camera";
@@ -142,7 +142,7 @@ export class Past {
     this._host.changed();
   }
 
-  /** The server knows nothing about this person's earlier requests. */
+  /** The connection is new: the server has no earlier request of this page. */
   welcome(): void {
     this.drawn = null;
     this._host.changed();
@@ -390,7 +390,7 @@ export class Past {
   }
 
   /** What the restore would change; null: unknown. The person was shown the reason. */
-  async count(layer: number): Promise<{ texels: number; area_m2: number } | null> {
+  async count(layer: number): Promise<Difference | null> {
     if (this.at === null) return null;
     try {
       return await this._api.json("POST /models/{model}/layers/{layer}/difference", {
@@ -403,7 +403,7 @@ export class Past {
     }
   }
 
-  /** Restores the layer, and shows the newest state. Null: refused, and the person was told why. */
+  /** Restores the layer, and shows the newest state. Null: refused, with a notice. */
   async restore(layer: number): Promise<{ texels_changed: number; area_m2: number } | null> {
     if (this.at === null) return null;
     try {
