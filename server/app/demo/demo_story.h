@@ -31,7 +31,7 @@ Result<DemoStory> make_demo_story(store::Store& store, const TemplateRegistry& t
 // Erases what make_demo_story makes, with everything that people added to it: the pot with its
 // layers, comments, views and tours, and the tables of the story. Other models and tables of the
 // project stay. conflict: a layer of another model uses one of the tables. `close_room` is called
-// once nobody can open the model any more. Blocks.
+// once the model can no longer be opened. Blocks.
 Result<void> erase_demo_story(store::Store& store,
                               const std::function<void(ModelId)>& close_room = {});
 

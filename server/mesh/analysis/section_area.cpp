@@ -31,8 +31,8 @@ struct Half {
   glm::dvec2 flattened(const glm::dvec2& p) const { return p - std::min(0.0, height(p)) * normal; }
 };
 
-// Moves what is outside onto the border. Closed outlines stay closed, and what was outside bounds
-// no area any more.
+// Moves what is outside onto the border. Closed outlines stay closed, and what was outside no
+// longer bounds an area.
 std::vector<Piece> clipped(const std::vector<Piece>& pieces, const Half& half) {
   std::vector<Piece> result;
   result.reserve(pieces.size());

@@ -165,9 +165,7 @@ def test_a_restore_of_a_part_changes_what_the_difference_counts(server, people, 
     assert 0 < part["texels"] < whole["texels"] and part["from"] == then, (part, whole)
     assert whole["to"] == server.get(M).json()["sequence"]
     restore = {"sequence": then, "within": left}
-    assert (
-        server.request("POST", L + "/restore", restore, token=people["vera"]).status == 403
-    )
+    assert server.request("POST", L + "/restore", restore, token=people["vera"]).status == 403
     done = server.ok("POST", L + "/restore", restore, token=people["ada"]).json()
     assert done["texels_changed"] == part["texels"], (done, part)
     rest = server.ok("POST", L + "/difference", {"from": then}).json()

@@ -1,5 +1,5 @@
 // <strata-picture-bar>: the bar on the picture: the view cube, fit to view, light and section. The
-// controls of light and section open beside it, and stay open while you work on the model.
+// controls of light and section open next to it, and stay open while you work on the model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -17,7 +17,7 @@ import "./view-cube";
 
 const words = texts.picture_bar;
 
-/** The parts that open beside the bar, in its order. */
+/** The parts that open next to the bar, in its order. */
 const kParts = {
   light: {
     glyph: "bulb",
