@@ -7,7 +7,7 @@ export async function open_tab(page, w, title) {
   await page.getByRole("tab", { name: title }).click();
 }
 
-/** Opens the controls of the light (`w.view.light`) or the section next to the bar on the picture. */
+/** Opens the controls of light (`w.view.light`) or section next to the bar on the picture. */
 export async function open_on_picture(page, w, title) {
   const button = page
     .getByRole("toolbar", { name: w.picture_bar.title, exact: true })
