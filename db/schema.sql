@@ -1029,8 +1029,10 @@ CREATE TABLE public.kiosks (
     last_seen timestamp with time zone,
     revoked timestamp with time zone,
     wants_reload boolean DEFAULT false NOT NULL,
+    phone text,
     CONSTRAINT kiosks_hash_check CHECK ((octet_length(hash) = 32)),
-    CONSTRAINT kiosks_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200)))
+    CONSTRAINT kiosks_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200))),
+    CONSTRAINT kiosks_phone_check CHECK ((char_length(phone) = 43))
 );
 
 ALTER TABLE public.kiosks ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -1249,6 +1251,29 @@ ALTER TABLE public.tool_shapes ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY 
     CACHE 1
 );
 
+CREATE TABLE public.tour_files (
+    id bigint NOT NULL,
+    tour_id bigint NOT NULL,
+    sha256 bytea NOT NULL,
+    name text NOT NULL,
+    media_type text NOT NULL,
+    width integer,
+    height integer,
+    user_name text NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    CONSTRAINT tour_files_check CHECK (((width IS NULL) = (height IS NULL))),
+    CONSTRAINT tour_files_name_check CHECK ((name <> ''::text))
+);
+
+ALTER TABLE public.tour_files ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.tour_files_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.tours (
     id bigint NOT NULL,
     model_id bigint NOT NULL,
@@ -1359,6 +1384,9 @@ ALTER TABLE ONLY public.kiosks
     ADD CONSTRAINT kiosks_hash_key UNIQUE (hash);
 
 ALTER TABLE ONLY public.kiosks
+    ADD CONSTRAINT kiosks_phone_key UNIQUE (phone);
+
+ALTER TABLE ONLY public.kiosks
     ADD CONSTRAINT kiosks_pkey PRIMARY KEY (id);
 
 ALTER TABLE ONLY public.layer_inputs
@@ -1441,6 +1469,9 @@ ALTER TABLE ONLY public.tokens
 
 ALTER TABLE ONLY public.tool_shapes
     ADD CONSTRAINT tool_shapes_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.tour_files
+    ADD CONSTRAINT tour_files_pkey PRIMARY KEY (id);
 
 ALTER TABLE ONLY public.tours
     ADD CONSTRAINT tours_model_id_slug_key UNIQUE (model_id, slug);
@@ -1561,6 +1592,10 @@ CREATE INDEX tokens_project ON public.tokens USING btree (project_id) WHERE (pro
 CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
 
 CREATE UNIQUE INDEX tool_shapes_slug ON public.tool_shapes USING btree (slug) WHERE (deleted IS NULL);
+
+CREATE INDEX tour_files_blob ON public.tour_files USING btree (sha256);
+
+CREATE INDEX tour_files_tour ON public.tour_files USING btree (tour_id);
 
 CREATE UNIQUE INDEX users_name_in_any_case ON public.users USING btree (lower(name));
 
@@ -1745,6 +1780,12 @@ ALTER TABLE ONLY public.tokens
 
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_user_name_fkey FOREIGN KEY (user_name) REFERENCES public.users(name) ON UPDATE CASCADE ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.tour_files
+    ADD CONSTRAINT tour_files_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);
+
+ALTER TABLE ONLY public.tour_files
+    ADD CONSTRAINT tour_files_tour_id_fkey FOREIGN KEY (tour_id) REFERENCES public.tours(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tours
     ADD CONSTRAINT tours_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;

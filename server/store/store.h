@@ -20,6 +20,7 @@ class Groups;
 class Jobs;
 class Journal;
 class Kiosks;
+class TourFiles;
 class Layers;
 class SurfaceImages;
 class Members;
@@ -84,6 +85,7 @@ class Store {
   NamedParts& tours();  // the same
   Jobs& jobs();
   Kiosks& kiosks();
+  TourFiles& tour_files();
   Groups& groups();
   Trash& trash();
 

@@ -15,6 +15,7 @@
 #include "store/content/projects.h"
 #include "store/content/surface_images.h"
 #include "store/content/tools.h"
+#include "store/content/tour_files.h"
 #include "store/content/trash.h"
 #include "store/journal/journal_reads.h"
 #include "store/people/accounts.h"
@@ -107,6 +108,7 @@ struct Store::Impl {
   Comments comments{pool};
   NamedParts views{pool, NamedParts::kViews}, tours{pool, NamedParts::kTours};
   Kiosks kiosks{pool};
+  TourFiles tour_files{pool};
   Jobs jobs{pool};
   Groups groups{pool};
   Trash trash{pool};

@@ -138,6 +138,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_comment_routes(router_, context_);
   add_view_routes(router_, context_);
   add_tour_routes(router_, context_);
+  add_tour_file_routes(router_, context_);
   add_kiosk_routes(router_, context_);
   add_tool_routes(router_, context_);
   add_table_routes(router_, context_);

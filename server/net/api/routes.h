@@ -23,6 +23,7 @@ void add_surface_image_routes(Router& router, const RouteContext& context);
 void add_comment_routes(Router& router, const RouteContext& context);
 void add_view_routes(Router& router, const RouteContext& context);
 void add_tour_routes(Router& router, const RouteContext& context);
+void add_tour_file_routes(Router& router, const RouteContext& context);
 void add_kiosk_routes(Router& router, const RouteContext& context);
 void add_tool_routes(Router& router, const RouteContext& context);
 void add_table_routes(Router& router, const RouteContext& context);

@@ -33,6 +33,7 @@ constexpr std::string_view kOpen[] = {
     "/api/v1/models/{model}/views/{view}",
     "/api/v1/models/{model}/views/{view}/picture",
     "/api/v1/models/{model}/tours/{tour}",
+    "/api/v1/models/{model}/tours/{tour}/files/{file}",
     "/api/v1/tables/{table}",
     "/api/v1/tables/{table}/columns",
     "/api/v1/tables/{table}/records/{key}",

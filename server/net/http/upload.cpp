@@ -67,4 +67,10 @@ Result<std::vector<Upload>> take_upload(const Request& request, const fs::path& 
   return std::vector<Upload>{{request.body_file, std::move(name)}};
 }
 
+UploadedFiles::~UploadedFiles() {
+  std::error_code gone_already;
+  for (const Upload& upload : uploads_)
+    if (upload.file != body_) std::filesystem::remove(upload.file, gone_already);
+}
+
 }  // namespace strata::net

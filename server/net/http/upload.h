@@ -14,6 +14,19 @@ struct Upload {
   std::string filename;
 };
 
+// Holds the extracted parts of a form until the answer is sent, and then deletes them.
+class UploadedFiles {
+ public:
+  UploadedFiles(const std::vector<Upload>& uploads, const std::filesystem::path& body)
+      : uploads_(uploads), body_(body) {}
+  UploadedFiles(const UploadedFiles&) = delete;
+  ~UploadedFiles();
+
+ private:
+  const std::vector<Upload>& uploads_;
+  const std::filesystem::path& body_;  // belongs to the request
+};
+
 constexpr const char* kScanUpload =
     "Send the scan as the body (PLY, OBJ, STL, glTF, GLB, or a zip of one scan with its textures), or the mesh and its "
     "material and picture files together in a multipart/form-data form.";

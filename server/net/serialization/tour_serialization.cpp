@@ -87,6 +87,19 @@ Result<nlohmann::json> stored_layers(const RouteContext& context, const Model& m
   return stored;
 }
 
+Result<nlohmann::json> stored_names(const std::vector<protocol::TourClassName>& classes,
+                                    const std::string& field) {
+  nlohmann::json stored = nlohmann::json::array();
+  std::set<double> known;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (!known.insert(classes[i].value).second)
+      return fail(ErrorCode::invalid, "Duplicate name", "This class appears twice. Send it once.",
+                  at(field, i) + ".value");
+    stored.push_back(protocol::to_json(classes[i]));
+  }
+  return stored;
+}
+
 // Checks that `words` (by language) use only languages of the tour.
 Result<void> check_words(const nlohmann::json& words, const nlohmann::json& languages,
                          const std::string& field) {
@@ -108,6 +121,11 @@ Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& langua
                 field + ".title");
   for (const char* member : {"title", "text"})
     STRATA_TRY(check_words(stop.at(member), languages, field + "." + member));
+  if (const auto media = stop.find("media"); media != stop.end())
+    for (std::size_t i = 0; i < media->size(); ++i)
+      for (const char* member : {"alt", "caption", "subtitles"})
+        STRATA_TRY(check_words((*media)[i].value(member, nlohmann::json::object()), languages,
+                               at(field + ".media", i) + "." + member));
   for (std::size_t i = 0; i < stop.at("records").size(); ++i) {
     const auto& columns = stop.at("records")[i].at("columns");
     for (std::size_t k = 0; k < columns.size(); ++k)
@@ -115,6 +133,16 @@ Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& langua
                                   at(at(field + ".records", i) + ".columns", k) + ".labels");
           !good)
         return good;
+  }
+  return {};
+}
+
+Result<void> check_class_names(const nlohmann::json& all, const nlohmann::json& languages) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& classes = all[i].at("classes");
+    for (std::size_t k = 0; k < classes.size(); ++k)
+      STRATA_TRY(check_words(classes[k].at("names"), languages,
+                             at(at("classes", i) + ".classes", k) + ".names"));
   }
   return {};
 }
@@ -129,6 +157,15 @@ class Seen {
     seen.views_ = std::move(views);
     for (const Layer& layer : layers) seen.layers_[layer.id] = layer.slug;
     return seen;
+  }
+
+  // Without the layers that were deleted or that the role cannot see.
+  nlohmann::json classes(const nlohmann::json& stored) const {
+    nlohmann::json shown = nlohmann::json::array();
+    for (const nlohmann::json& each : stored)
+      if (const auto layer = layers_.find(each.at("layer").get<LayerId>()); layer != layers_.end())
+        shown.push_back({{"layer", layer->second}, {"classes", each.at("classes")}});
+    return shown;
   }
 
   Result<nlohmann::json> stop(const nlohmann::json& stored) {
@@ -184,7 +221,8 @@ class Seen {
 }  // namespace
 
 Result<nlohmann::json> stored_stops(const RouteContext& context, const Model& model, Role role,
-                                    const std::vector<protocol::TourStopCreate>& stops) {
+                                    const std::vector<protocol::TourStopCreate>& stops,
+                                    const TourFilesById& files) {
   nlohmann::json all = nlohmann::json::array();
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const protocol::TourStopCreate& stop = stops[i];
@@ -196,6 +234,8 @@ Result<nlohmann::json> stored_stops(const RouteContext& context, const Model& mo
     auto records = STRATA_TRY(stored_records(
         context, model, role, stop.records.value_or(std::vector<protocol::TourRecords>{}),
         here + ".records"));
+    const auto media = stop.media.value_or(std::vector<protocol::TourMedium>{});
+    STRATA_TRY(check_media(media, files, here + ".media"));
     all.push_back(
         {{"view", view->id},
          {"title", stop.title},
@@ -205,8 +245,26 @@ Result<nlohmann::json> stored_stops(const RouteContext& context, const Model& mo
          {"transition_s", stop.transition_s},
          {"layers", std::move(layers)},
          {"records", std::move(records)}});
+    if (media.empty()) continue;
+    for (const protocol::TourMedium& medium : media)
+      all.back()["media"].push_back(protocol::to_json(medium));
   }
   return all;
+}
+
+Result<nlohmann::json> stored_classes(const RouteContext& context, const Model& model, Role role,
+                                      const std::vector<protocol::TourClasses>& all) {
+  nlohmann::json stored = nlohmann::json::array();
+  std::set<LayerId> known;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string here = at("classes", i);
+    const auto layer = context.store.layers().find(model.id, all[i].layer, role);
+    if (!layer) return at_field(layer.error(), here + ".layer");
+    STRATA_TRY(once(known, layer->id, "layer", here + ".layer"));
+    auto names = STRATA_TRY(stored_names(all[i].classes, here + ".classes"));
+    stored.push_back({{"layer", layer->id}, {"classes", std::move(names)}});
+  }
+  return stored;
 }
 
 Result<void> check_languages(const nlohmann::json& content, bool stops_are_new) {
@@ -225,6 +283,8 @@ Result<void> check_languages(const nlohmann::json& content, bool stops_are_new) 
                       " does not match these languages: " + good.error().detail,
                   "languages");
     }
+  if (const auto classes = content.find("classes"); classes != content.end())
+    STRATA_TRY(check_class_names(*classes, languages));
   return {};
 }
 
@@ -251,6 +311,16 @@ Result<nlohmann::json> to_json(const RouteContext& context, const store::NamedPa
     auto stop = STRATA_TRY(seen.stop(stored));
     json["stops"].push_back(std::move(stop));
   }
+  if (const auto theme = tour.content.find("theme"); theme != tour.content.end())
+    json["theme"] = *theme;
+  if (const auto classes = tour.content.find("classes"); classes != tour.content.end())
+    json["classes"] = seen.classes(*classes);
+  const auto used = files_in(tour.content);
+  if (used.empty()) return json;
+  json["files"] = nlohmann::json::array();
+  const auto files = STRATA_TRY(context.store.tour_files().of_tour(tour.id));
+  for (const store::TourFile& file : files)
+    if (used.contains(file.id)) json["files"].push_back(to_json(file));
   return json;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto kKiosks = sql(
     "SELECT k.id, k.name, t.id, m.id, p.id, t.slug, t.name, m.slug, m.name, p.slug, k.user_name, k.created, "
-    "k.expires, k.last_seen, k.revoked, k.wants_reload FROM kiosks k JOIN tours t ON t.id = k.tour_id "
+    "k.expires, k.last_seen, k.revoked, k.wants_reload, k.phone FROM kiosks k JOIN tours t ON t.id = k.tour_id "
     "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id ");
 constexpr auto kGoodKiosk = sql("(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))");
 // Older links are deleted when the next one is made; they are not listed any longer.
@@ -37,6 +37,7 @@ Kiosk read_kiosk(const PgResult& rows, int i) {
   kiosk.last_seen = row.optional_time();
   kiosk.revoked = row.optional_time();
   kiosk.wants_reload = row.boolean();
+  kiosk.phone = row.optional_text().value_or(std::string());
   return kiosk;
 }
 
@@ -44,6 +45,15 @@ Result<Kiosk> load(PgConnection& connection, KioskId id) {
   auto rows = STRATA_TRY(connection.query(sql(kKiosks, "WHERE k.id = $1"), Params().id(id)));
   if (rows.rows() == 0) return no_such("kiosk", to_string(id));
   return read_kiosk(rows, 0);
+}
+
+// The kiosk after a change that affects only valid links.
+Result<Kiosk> changed(PgConnection& connection, KioskId id, const PgResult& done) {
+  auto kiosk = load(connection, id);
+  if (kiosk && done.affected() == 0)
+    return fail(ErrorCode::conflict, "Link is not valid",
+                "The link of this kiosk is revoked or expired. Create a new link.");
+  return kiosk;
 }
 
 }  // namespace
@@ -86,7 +96,7 @@ Result<std::vector<KioskId>> Kiosks::of_tour(NamedPartId tour_id) {
 
 Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
                                 const std::string& user,
-                                std::optional<std::chrono::seconds> lifetime) {
+                                std::optional<std::chrono::seconds> lifetime, bool phones) {
   STRATA_TRY(check_name(name));
   STRATA_TRY(check_texts({{&user, "user"}}));
   return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
@@ -111,8 +121,9 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
     if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
     const Sha256 hash = sha256(made.secret);
     auto row = STRATA_TRY(connection.query(
-        "INSERT INTO kiosks (tour_id, hash, name, user_name, expires) VALUES ($1, $2, $3, $4, $5) RETURNING id",
-        Params().id(tour_id).bytes(hash).text(name).text(user).time(expires)));
+        "INSERT INTO kiosks (tour_id, hash, name, user_name, expires, phone) VALUES ($1, $2, $3, $4, $5, $6) RETURNING id",
+        Params().id(tour_id).bytes(hash).text(name).text(user).time(expires).optional_text(
+            phones ? std::optional(random_token()) : std::nullopt)));
     auto kiosk = STRATA_TRY(load(connection, row.id<KioskId>(0, 0)));
     made.kiosk = std::move(kiosk);
     return made;
@@ -123,8 +134,12 @@ Result<std::optional<Kiosk>> Kiosks::find(const std::string& secret) {
   return pool_.read([&](PgConnection& connection) -> Result<std::optional<Kiosk>> {
     const Sha256 hash = sha256(secret);
     auto rows = STRATA_TRY(
-        connection.query(sql(kKiosks, "WHERE k.hash = $1 AND ", kGoodKiosk), Params().bytes(hash)));
-    return rows.rows() == 0 ? std::optional<Kiosk>() : read_kiosk(rows, 0);
+        connection.query(sql(kKiosks, "WHERE (k.hash = $1 OR k.phone = $2) AND ", kGoodKiosk),
+                         Params().bytes(hash).text(secret)));
+    if (rows.rows() == 0) return std::optional<Kiosk>();
+    Kiosk kiosk = read_kiosk(rows, 0);
+    kiosk.is_phone = kiosk.phone == secret;
+    return std::optional(std::move(kiosk));
   });
 }
 
@@ -153,11 +168,20 @@ Result<Kiosk> Kiosks::ask_reload(KioskId id) {
     auto done = STRATA_TRY(connection.query(
         sql("UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND ", kGoodKiosk),
         Params().id(id)));
-    auto kiosk = load(connection, id);
-    if (kiosk && done.affected() == 0)
-      return fail(ErrorCode::conflict, "Link is not valid",
-                  "The link of this kiosk is revoked or expired. Create a new link.");
-    return kiosk;
+    return changed(connection, id, done);
+  });
+}
+
+Result<Kiosk> Kiosks::allow_phones(KioskId id, bool allowed) {
+  const auto phone = allowed ? std::optional(random_token()) : std::nullopt;
+  return pool_.write([&](PgConnection& connection) -> Result<Kiosk> {
+    // A code that is on keeps its secret: phones that use it stay connected.
+    auto done = STRATA_TRY(connection.query(
+        sql("UPDATE kiosks k SET phone = CASE WHEN $2::text IS NULL THEN NULL ELSE coalesce(k.phone, $2) END "
+            "WHERE k.id = $1 AND ",
+            kGoodKiosk),
+        Params().id(id).optional_text(phone)));
+    return changed(connection, id, done);
   });
 }
 

@@ -25,6 +25,8 @@ struct Kiosk {
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> expires, last_seen, revoked;
   bool wants_reload = false;  // a reload was requested, and the page was not loaded since
+  std::string phone;          // secret of the link for visitors' phones; empty: none
+  bool is_phone = false;      // found by that secret
 };
 
 struct NewKiosk {
@@ -52,14 +54,17 @@ class Kiosks {
 
   // Refused: an empty name (malformed), an unknown tour (not_found), too many kiosks (conflict).
   Result<NewKiosk> create(NamedPartId tour_id, const std::string& name, const std::string& user,
-                          std::optional<std::chrono::seconds> lifetime);
-  // Nothing: unknown, expired or revoked.
+                          std::optional<std::chrono::seconds> lifetime, bool phones = false);
+  // Found by its own secret, or by that for phones. Nothing: unknown, expired or revoked.
   Result<std::optional<Kiosk>> find(const std::string& secret);
   // Records that the kiosk is running, to a minute. `loaded`: its page was loaded just now, which
   // ends a requested reload.
   Result<void> seen(KioskId id, bool loaded);
   Result<void> revoke(KioskId id);       // no effect if it is revoked already
   Result<Kiosk> ask_reload(KioskId id);  // conflict: it is revoked or expired
+  // Switches the link for phones on or off. Each time it is switched on it has another secret.
+  // conflict: as for ask_reload.
+  Result<Kiosk> allow_phones(KioskId id, bool allowed);
 
  private:
   Pool& pool_;

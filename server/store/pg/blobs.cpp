@@ -160,7 +160,8 @@ constexpr auto kIsUnused =
         "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) "
         "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "
         "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "
-        "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256)");
+        "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256) "
+        "AND NOT EXISTS (SELECT 1 FROM tour_files f WHERE f.sha256 = b.sha256)");
 
 Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes) {

@@ -252,38 +252,38 @@ Result<Attachment> Attachments::show(AttachmentId id, Visibility visibility,
   });
 }
 
-Result<void> Attachments::read(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
+Result<void> Attachments::read(const std::string& sha256, std::uint64_t begin, std::uint64_t end,
                                const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   auto row = STRATA_TRY(pool_.read([&](PgConnection& connection) {
-    return connection.query("SELECT sha256 FROM attachments WHERE id = $1",
-                            Params().id(attachment.id));
+    return connection.query("SELECT sha256, bytes FROM blobs WHERE sha256 = decode($1, 'hex')",
+                            Params().text(sha256));
   }));
-  if (row.rows() == 0) return no_such("attachment", to_string(attachment.id));
+  if (row.rows() == 0) return no_such("file", sha256);
   const Bytes hash = row.bytes(0, 0);
-  return stream_blob(pool_, {hash.begin(), hash.end()}, begin, std::min(end, attachment.bytes),
-                     sink);
+  return stream_blob(pool_, {hash.begin(), hash.end()}, begin,
+                     std::min(end, static_cast<std::uint64_t>(row.integer(0, 1))), sink);
 }
 
-Result<std::optional<std::vector<std::uint8_t>>> Attachments::thumbnail(
-    const Attachment& attachment, int side) {
+Result<std::optional<std::vector<std::uint8_t>>> Attachments::thumbnail(const std::string& sha256,
+                                                                        int side) {
   using Found = std::optional<std::vector<std::uint8_t>>;
   return pool_.read([&](PgConnection& connection) -> Result<Found> {
     auto row = STRATA_TRY(connection.query(
         "SELECT picture FROM thumbnails WHERE sha256 = decode($1, 'hex') AND side = $2",
-        Params().text(attachment.sha256).integer(side)));
+        Params().text(sha256).integer(side)));
     if (row.rows() == 0) return Found();
     const Bytes picture = row.bytes(0, 0);
     return Found(std::vector(picture.begin(), picture.end()));
   });
 }
 
-Result<void> Attachments::keep_thumbnail(const Attachment& attachment, int side,
+Result<void> Attachments::keep_thumbnail(const std::string& sha256, int side,
                                          std::span<const std::uint8_t> picture) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto saved = connection.query(
-        "INSERT INTO thumbnails (sha256, side, picture) SELECT sha256, $2, $3 FROM attachments WHERE id = $1 "
-        "ON CONFLICT DO NOTHING",
-        Params().id(attachment.id).integer(side).bytes(picture));
+        "INSERT INTO thumbnails (sha256, side, picture) SELECT sha256, $2, $3 FROM blobs "
+        "WHERE sha256 = decode($1, 'hex') ON CONFLICT DO NOTHING",
+        Params().text(sha256).integer(side).bytes(picture));
     return saved ? Result<void>{} : tl::unexpected(saved.error());
   });
 }

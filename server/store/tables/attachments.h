@@ -57,14 +57,13 @@ class Attachments {
                                            std::span<const AttachmentId> ids);
   Result<Attachment> show(AttachmentId id, Visibility visibility,
                           const IdempotentResponse<Attachment>& answer = {});
-  // Passes the bytes from `begin` to before `end`, in pieces of at most 1 MiB; `sink` returns false
-  // to stop.
-  Result<void> read(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
+  // The content with this hash (hexadecimal), of an attachment or of a file of a tour. Passes the
+  // bytes from `begin` to before `end`, in pieces of at most 1 MiB; `sink` returns false to stop.
+  Result<void> read(const std::string& sha256, std::uint64_t begin, std::uint64_t end,
                     const std::function<bool(std::span<const std::uint8_t>)>& sink);
-  // Small pictures, stored once made; all attachments with the same content share them.
-  Result<std::optional<std::vector<std::uint8_t>>> thumbnail(const Attachment& attachment,
-                                                             int side);
-  Result<void> keep_thumbnail(const Attachment& attachment, int side,
+  // Small pictures, stored once made; all files with the same content share them.
+  Result<std::optional<std::vector<std::uint8_t>>> thumbnail(const std::string& sha256, int side);
+  Result<void> keep_thumbnail(const std::string& sha256, int side,
                               std::span<const std::uint8_t> picture);
   // Deletes contents that no model, surface image or attachment uses, and returns their number.
   // Called at start and after a table is deleted.

@@ -81,7 +81,7 @@ class Attachments : public ::testing::Test {
                       std::uint64_t end = UINT64_MAX) {
     std::string bytes;
     const auto read = store_->attachments().read(
-        attachment, begin, end, [&](std::span<const std::uint8_t> piece) {
+        attachment.sha256, begin, end, [&](std::span<const std::uint8_t> piece) {
           bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
           return true;
         });
@@ -232,12 +232,14 @@ TEST_F(Attachments, orphans_go_with_their_table_and_at_start_and_others_stay) {
 TEST_F(Attachments, small_pictures_are_kept_by_content_and_go_with_it) {
   const auto attached = attach(1, {file("a.jpg", "same"), file("b.jpg", "same")});
   const std::vector<std::uint8_t> small{1, 2, 3};
-  EXPECT_EQ(store_->attachments().thumbnail(attached->attachments[0], 256).value(), std::nullopt);
-  ASSERT_TRUE(store_->attachments().keep_thumbnail(attached->attachments[0], 256, small));
-  ASSERT_TRUE(store_->attachments().keep_thumbnail(attached->attachments[1], 256, small))
+  EXPECT_EQ(store_->attachments().thumbnail(attached->attachments[0].sha256, 256).value(),
+            std::nullopt);
+  ASSERT_TRUE(store_->attachments().keep_thumbnail(attached->attachments[0].sha256, 256, small));
+  ASSERT_TRUE(store_->attachments().keep_thumbnail(attached->attachments[1].sha256, 256, small))
       << "of two at once one is kept";
-  EXPECT_EQ(store_->attachments().thumbnail(attached->attachments[1], 256).value(), small);
-  EXPECT_EQ(store_->attachments().thumbnail(attached->attachments[1], 64).value(), std::nullopt);
+  EXPECT_EQ(store_->attachments().thumbnail(attached->attachments[1].sha256, 256).value(), small);
+  EXPECT_EQ(store_->attachments().thumbnail(attached->attachments[1].sha256, 64).value(),
+            std::nullopt);
   ASSERT_TRUE(store_->tables().remove(table_.id));
   EXPECT_EQ(count("thumbnails"), 0);
 }

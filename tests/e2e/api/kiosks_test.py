@@ -6,7 +6,18 @@ import uuid
 
 import pytest
 from support.browsers import Browser, join
-from support.kiosk_site import ALL, STOP, TOUR, M, make_kiosk, make_site, others_closed, sweep, told
+from support.kiosk_site import (
+    ALL,
+    PNG,
+    STOP,
+    TOUR,
+    M,
+    make_kiosk,
+    make_site,
+    others_closed,
+    sweep,
+    told,
+)
 from support.live_client import LiveClient, Refused
 from support.strata_server import LONG_S, wait_for
 
@@ -216,6 +227,7 @@ def test_links(server, tokens, story):
 
 def test_a_kiosk_opens_the_doors_of_its_tour_alone(server, site, story):
     _, files, thread = site
+    files["tour"] = server.ok("POST", story.tour + "/files?name=west.png", PNG).json()["id"]
     _, story.sweep_secret = make_kiosk(server, story.tour, "Sweep")
     answered, refused = sweep(server, story.sweep_secret, story.tour, files, thread)
     others_closed(server, story.sweep_secret, files)

@@ -142,7 +142,7 @@ def make_kiosk(server, tour, name="Hall", **more):
 def is_open(path):
     """Whether the contract lets a kiosk read this path of the model."""
     return re.fullmatch(
-        r"/api/v1/(kiosk|models/\{model\}(|/layers(|/\{layer\}(|/records/\{key\}(|/attachments)))|/looks(|/\{look\})|/views(|/\{view\}(|/picture))|/tours/\{tour\})"
+        r"/api/v1/(kiosk|models/\{model\}(|/layers(|/\{layer\}(|/records/\{key\}(|/attachments)))|/looks(|/\{look\})|/views(|/\{view\}(|/picture))|/tours/\{tour\}(|/files/\{file\}))"
         r"|tables/\{table\}(|/columns|/terms|/records/\{key\}(|/attachments))|attachments/\{attachment\})",
         path,
     )
@@ -160,6 +160,7 @@ def sweep(server, secret, tour, files, thread):
         "table": "finds",
         "key": "1",
         "attachment": str(files["public"]),
+        "file": str(files["tour"]),
         "column": "name",
         "project": "default",
         "comment": str(thread),

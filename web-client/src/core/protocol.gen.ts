@@ -494,6 +494,75 @@ export interface TourRecords {
   columns: TourColumn[];
 }
 
+/** Caption by language. Plain text; keys are languages of the tour. */
+export type TourCaption = Record<string, string>;
+
+/** Subtitles of a video by language. Ids of WebVTT files of the tour; keys are languages of the tour. */
+export type TourSubtitles = Record<string, number>;
+
+/** Picture, sound or video at a stop. */
+export interface TourMedium {
+  /** Id of a file of the tour. */
+  file: number;
+  /** For people who cannot see or hear it. */
+  alt?: TourWords;
+  caption?: TourCaption;
+  subtitles?: TourSubtitles;
+}
+
+/** Kind of a file of a tour. */
+export type TourFileKind = "picture" | "sound" | "video" | "subtitles";
+
+/** File of a tour. Its content never changes. */
+export interface TourFile {
+  id: number;
+  name: string;
+  kind: TourFileKind;
+  /** Determined from the content. */
+  media_type: string;
+  bytes: number;
+  /** Of pictures, in pixels. */
+  width?: number;
+  height?: number;
+}
+
+/** Light or dark pages. `dark` is for dark rooms. */
+export type TourMode = "light" | "dark";
+
+/** Font of headings. */
+export type TourFont = "serif" | "sans";
+
+/** Design of the kiosks that show a tour. The text has a contrast of at least 4.5:1 with the background, and the accent color one of at least 3:1 (WCAG 2.2). */
+export interface TourTheme {
+  /** Absent: `light`. */
+  mode?: TourMode;
+  /** Color of buttons. Absent: that of the mode. */
+  accent?: BackgroundColor;
+  /** Color of the page and around the object. Absent: that of the mode. */
+  background?: BackgroundColor;
+  /** Absent: `serif`. */
+  font?: TourFont;
+  /** Id of a picture of the tour. Absent: no logo. */
+  logo?: number;
+  /** Name of the museum, for people who cannot see the logo. */
+  logo_alt?: string;
+}
+
+/** Names of a class by language. */
+export interface TourClassName {
+  /** Value of the class in the layer. */
+  value: number;
+  names: TourWords;
+}
+
+/** Names of the classes of a layer in the languages of a tour. */
+export interface TourClasses {
+  /** Its slug; in requests also its id. */
+  layer: string;
+  /** Each value once. */
+  classes: TourClassName[];
+}
+
 /** Stop of a tour. */
 export interface TourStop {
   /** Slug of the saved view. Absent: the view was deleted, and the tour skips the stop. */
@@ -506,6 +575,8 @@ export interface TourStop {
   /** Slugs of the layers to swipe between, in their order. */
   layers: string[];
   records: TourRecords[];
+  /** Pictures, sounds and videos, in their order. Absent: none. */
+  media?: TourMedium[];
 }
 
 /** Tour of a model. Saved views in an order, with texts for each. Layers, tables and columns are left out if they were deleted or if the caller cannot see them. */
@@ -521,6 +592,12 @@ export interface Tour {
   /** Seconds after the last touch until the tour restarts and plays by itself. */
   idle_s: number;
   stops: TourStop[];
+  /** Absent: the default design. */
+  theme?: TourTheme;
+  /** Other names of classes. Absent: none. */
+  classes?: TourClasses[];
+  /** The files that the stops and the design use. Absent: none. */
+  files?: TourFile[];
   /** Creator of the tour; empty for kiosks. */
   user: string;
   /** UTC, RFC 3339. */
@@ -2310,6 +2387,8 @@ export interface TourStopCreate {
   layers?: string[];
   /** Each entry has another table of the project. */
   records?: TourRecords[];
+  /** Pictures, sounds and videos of the tour, in this order. Each file once. */
+  media?: TourMedium[];
 }
 
 /** New tour. */
@@ -2321,6 +2400,9 @@ export interface TourCreate {
   languages: TourLanguage[];
   /** Seconds after the last touch until the tour restarts and plays by itself. Default: 60. */
   idle_s?: number;
+  theme?: TourTheme;
+  /** Other names of classes. Each layer once. */
+  classes?: TourClasses[];
   stops: TourStopCreate[];
 }
 
@@ -2332,6 +2414,9 @@ export interface TourPatch {
   /** The first one is the default language; every stop has a title in it. Each language once. */
   languages?: TourLanguage[];
   idle_s?: number;
+  theme?: TourTheme;
+  /** Other names of classes. Each layer once. */
+  classes?: TourClasses[];
   stops?: TourStopCreate[];
 }
 
@@ -2360,6 +2445,8 @@ export interface Kiosk {
   revoked?: string;
   /** A reload of the page was requested, and the kiosk has not reloaded it yet. */
   wants_reload: boolean;
+  /** The screen shows a QR code, with which visitors open the tour on their phones. */
+  phones?: boolean;
 }
 
 /** Kiosk links, in the order of their creation. */
@@ -2374,6 +2461,14 @@ export interface KioskCreate {
   name: string;
   /** Days until the link expires. Absent: never. */
   days?: number;
+  /** The screen shows a QR code, with which visitors open the tour on their phones. Default: false. */
+  phones?: boolean;
+}
+
+/** Changes to a kiosk link. */
+export interface KioskPatch {
+  /** false: the QR code disappears, and the links that phones opened by it become invalid. true: a new code. */
+  phones: boolean;
 }
 
 /** A new kiosk link, which is shown only now. */
@@ -2403,6 +2498,10 @@ export interface KioskSelf {
   expires?: string;
   /** true: reload the page and sign in with the link, which clears this member. */
   wants_reload: boolean;
+  /** The caller has the link for phones. Absent: false. */
+  is_phone?: boolean;
+  /** Path of the page for visitors' phones, after the address of the server. Absent: the kiosk shows no QR code. */
+  phone_path?: string;
 }
 
 /** Brush shapes of the site, sorted by name. */

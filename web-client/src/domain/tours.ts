@@ -2,12 +2,17 @@
 // refusal of the server concerns.
 
 import { readNumber, typedNumber } from "../core/locale";
+import { problemOfTheme } from "./tour-theme";
 import type {
   Tour,
+  TourClasses,
   TourCreate,
+  TourFile,
+  TourMedium,
   TourRecords,
   TourStop,
   TourStopCreate,
+  TourTheme,
   TourTransition,
 } from "../core/protocol.gen";
 
@@ -16,10 +21,18 @@ export const kMostLanguages = 20;
 export const kMostLayers = 20;
 export const kMostRecordTables = 10;
 export const kMostKeys = 100;
+export const kMostMedia = 12; // of a stop
 export const kSeconds = { idle: [30, 3600], attract: [1, 600], transition: [0, 30] } as const;
 
 /** Texts by language; they may be empty during editing. */
 export type Words = Readonly<Record<string, string>>;
+
+export interface MediumDraft {
+  readonly file: number;
+  readonly alt: Words;
+  readonly caption: Words;
+  readonly subtitles: Readonly<Record<string, number>>; // files, by language
+}
 
 export interface StopDraft {
   /** Only for the page: it stays the same when the stop moves. */
@@ -34,6 +47,7 @@ export interface StopDraft {
   readonly transition_s: string;
   readonly layers: readonly string[];
   readonly records: readonly TourRecords[];
+  readonly media: readonly MediumDraft[];
 }
 
 export interface TourDraft {
@@ -42,6 +56,10 @@ export interface TourDraft {
   readonly languages: readonly string[]; // the first is the default
   readonly idle_s: string;
   readonly stops: readonly StopDraft[];
+  readonly theme: TourTheme;
+  readonly classes: readonly TourClasses[];
+  /** The known files: those that the tour uses, and the new ones. */
+  readonly files: readonly TourFile[];
 }
 
 let made = 0;
@@ -59,6 +77,14 @@ export const newStop = (
   transition_s: typedNumber(2),
   layers: [],
   records: [],
+  media: [],
+});
+
+export const newMedium = (file: number): MediumDraft => ({
+  file,
+  alt: {},
+  caption: {},
+  subtitles: {},
 });
 
 const stopOf = (stop: TourStop): StopDraft => ({
@@ -67,6 +93,7 @@ const stopOf = (stop: TourStop): StopDraft => ({
   view: stop.view ?? "",
   attract_s: typedNumber(stop.attract_s),
   transition_s: typedNumber(stop.transition_s),
+  media: (stop.media ?? []).map((medium) => ({ ...newMedium(medium.file), ...medium })),
 });
 
 export const emptyTour = (language: string): TourDraft => ({
@@ -75,14 +102,29 @@ export const emptyTour = (language: string): TourDraft => ({
   languages: [language],
   idle_s: typedNumber(60),
   stops: [],
+  theme: {},
+  classes: [],
+  files: [],
 });
 
-export const draftOf = ({ name, text, languages, idle_s: idleS, stops }: Tour): TourDraft => ({
+export const draftOf = ({
+  name,
+  text,
+  languages,
+  idle_s: idleS,
+  stops,
+  theme = {},
+  classes = [],
+  files = [],
+}: Tour): TourDraft => ({
   name,
   text,
   languages,
   idle_s: typedNumber(idleS),
   stops: stops.map(stopOf),
+  theme,
+  classes,
+  files,
 });
 
 /** Returns a copy with the item at `from` moved to the index `to` of the result. */
@@ -94,7 +136,7 @@ export function moved<T>(all: readonly T[], from: number, to: number): T[] {
 
 // ── languages ────────────────────────────────────────────────────────────────────────────────────
 
-const without = (words: Words, language: string): Words =>
+const without = <T>(words: Readonly<Record<string, T>>, language: string): Record<string, T> =>
   Object.fromEntries(Object.entries(words).filter(([tag]) => tag !== language));
 
 /**
@@ -104,10 +146,20 @@ export function withoutLanguage(draft: TourDraft, language: string): TourDraft {
   return {
     ...draft,
     languages: draft.languages.filter((each) => each !== language),
+    classes: draft.classes.map(({ layer, classes }) => ({
+      layer,
+      classes: classes.map(({ value, names }) => ({ value, names: without(names, language) })),
+    })),
     stops: draft.stops.map((stop) => ({
       ...stop,
       title: without(stop.title, language),
       text: without(stop.text, language),
+      media: stop.media.map((medium) => ({
+        file: medium.file,
+        alt: without(medium.alt, language),
+        caption: without(medium.caption, language),
+        subtitles: without(medium.subtitles, language),
+      })),
       records: stop.records.map((records) => ({
         ...records,
         columns: records.columns.map(({ column, labels }) => ({
@@ -122,11 +174,16 @@ export function withoutLanguage(draft: TourDraft, language: string): TourDraft {
 const says = (words: Words, language: string): boolean => (words[language] ?? "").trim() !== "";
 
 /** Whether any text in the language exists. */
-export const writesIn = ({ stops }: TourDraft, language: string): boolean =>
+export const writesIn = ({ stops, classes }: TourDraft, language: string): boolean =>
+  classes.some((layer) => layer.classes.some(({ names }) => says(names, language))) ||
   stops.some(
-    ({ title, text, records }) =>
+    ({ title, text, records, media }) =>
       says(title, language) ||
       says(text, language) ||
+      media.some(
+        ({ alt, caption, subtitles }) =>
+          says(alt, language) || says(caption, language) || subtitles[language] !== undefined,
+      ) ||
       records.some(({ columns }) => columns.some(({ labels }) => says(labels ?? {}, language))),
   );
 
@@ -145,7 +202,8 @@ export type Wrong =
   | "stops_missing"
   | "view_missing"
   | "title_missing"
-  | "seconds";
+  | "seconds"
+  | "contrast";
 
 export interface DraftProblem {
   /** The server's name of the field: `stops[2].title.fr`. */
@@ -175,6 +233,8 @@ export function problemOf(draft: TourDraft): DraftProblem | null {
   if (first === undefined) return { field: "languages", wrong: "language_missing" };
   const idle = seconds("idle_s", draft.idle_s, kSeconds.idle, true);
   if (idle) return idle;
+  const theme = problemOfTheme(draft.theme);
+  if (theme) return { field: `theme.${theme.field}`, wrong: "contrast" };
   if (draft.stops.length === 0) return { field: "stops", wrong: "stops_missing" };
   for (const [index, stop] of draft.stops.entries()) {
     const at = `stops[${index}]`;
@@ -199,6 +259,28 @@ const written = (words: Words): Record<string, string> =>
       .sort(([a], [b]) => (a < b ? -1 : 1)),
   );
 
+function bodyOfMedium({ file, alt, caption, subtitles }: MediumDraft): TourMedium {
+  const [ownAlt, ownCaption] = [written(alt), written(caption)];
+  const has = (words: object): boolean => Object.keys(words).length > 0;
+  return {
+    file,
+    ...(has(ownAlt) ? { alt: ownAlt } : {}),
+    ...(has(ownCaption) ? { caption: ownCaption } : {}),
+    ...(has(subtitles) ? { subtitles: { ...subtitles } } : {}),
+  };
+}
+
+/** Without layers and classes that have no names. */
+const bodyOfClasses = (all: readonly TourClasses[]): TourClasses[] =>
+  all
+    .map(({ layer, classes }) => ({
+      layer,
+      classes: classes
+        .map(({ value, names }) => ({ value, names: written(names) }))
+        .filter(({ names }) => Object.keys(names).length > 0),
+    }))
+    .filter(({ classes }) => classes.length > 0);
+
 function bodyOfStop(stop: StopDraft): TourStopCreate {
   // for a cut, the duration is unused and may have any value
   const heldS = readNumber(stop.transition_s);
@@ -222,6 +304,7 @@ function bodyOfStop(stop: StopDraft): TourStopCreate {
         return Object.keys(own).length === 0 ? { column } : { column, labels: own };
       }),
     })),
+    media: stop.media.map(bodyOfMedium),
   };
 }
 
@@ -232,12 +315,20 @@ export const bodyOf = ({
   languages,
   idle_s: idleS,
   stops,
+  theme,
+  classes,
 }: TourDraft): Required<TourCreate> => ({
   name: name.trim(),
   text: text.trim(),
   languages: [...languages],
   idle_s: readNumber(idleS),
   stops: stops.map(bodyOfStop),
+  theme: Object.fromEntries(
+    Object.entries(theme)
+      .filter(([, value]) => value !== undefined && value !== "")
+      .sort(([a], [b]) => (a < b ? -1 : 1)),
+  ),
+  classes: bodyOfClasses(classes),
 });
 
 /** Whether two drafts differ. */
@@ -258,7 +349,9 @@ export const isAbout = (within: string, field: string): boolean =>
   within === field || within.startsWith(`${field}.`) || within.startsWith(`${field}[`);
 
 /**
- * The language of a field name: for `title.fr`, `text.fr` and `records[0].columns[1].labels.fr`.
+ * The language of a field name: for `title.fr`, `text.fr`, `media[0].alt.fr` and
+ * `records[0].columns[1].labels.fr`.
  */
 export const languageOfField = (within: string): string | null =>
-  /^(?:title|text|.*\.labels)\.([A-Za-z0-9-]+)$/.exec(within)?.[1] ?? null;
+  /^(?:title|text|.*\.(?:labels|alt|caption|subtitles))\.([A-Za-z0-9-]+)$/.exec(within)?.[1] ??
+  null;

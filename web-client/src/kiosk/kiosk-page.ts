@@ -3,15 +3,20 @@
 
 import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { guard } from "lit/directives/guard.js";
 import { repeat } from "lit/directives/repeat.js";
 import { styled } from "../ui/styled";
 import { nameOfLanguage } from "../core/languages";
+import { modeOf, propertiesOf } from "../domain/tour-theme";
 import { fillScreen } from "./guard";
 import { directionOfLanguage } from "./languages";
 import { kioskStyles } from "./kiosk-styles";
 import type { KioskSession } from "./kiosk-session";
+import "./player";
 import "./stage";
+import { addressOfFile, type ShownMedium } from "./media";
 import { nameOfLayer } from "./place";
+import { codeOf, phoneAddress } from "./phone";
 import { followSwipes } from "./swipe";
 import { textsIn } from "./texts";
 
@@ -26,6 +31,9 @@ function nameOnButton(tag: string): string {
 
 const arrowBack = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="M15 5l-7 7 7 7" /></svg>`;
 const arrowOn = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="m9 5 7 7-7 7" /></svg>`;
+
+const soundSign = svg`<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M4 9.5v5h3.5L12 18.5v-13L7.5 9.5zM15.5 9a4.2 4.2 0 0 1 0 6M18 6.5a8 8 0 0 1 0 11" /></svg>`;
+const filmSign = svg`<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M3 6h18v12H3zM10 9.2v5.6l4.6-2.8z" /></svg>`;
 
 @customElement("strata-kiosk")
 export class StrataKiosk extends LitElement {
@@ -68,6 +76,10 @@ export class StrataKiosk extends LitElement {
     const root = document.documentElement;
     root.lang = session.language;
     root.dir = directionOfLanguage(session.language);
+    const theme = session.tour?.theme;
+    this.dataset["mode"] = modeOf(theme);
+    for (const [name, value] of Object.entries(propertiesOf(theme)))
+      this.style.setProperty(name, value);
     const title = session.tour?.name ?? "Strata";
     if (document.title !== title) document.title = title;
     if (panel !== this._swipedPanel) {
@@ -91,11 +103,13 @@ export class StrataKiosk extends LitElement {
         ? ".asking button"
         : session.resting
           ? ".begin"
-          : session.enlarged
-            ? ".enlarged button"
-            : session.card
-              ? ".card h2"
-              : "";
+          : session.medium
+            ? "strata-kiosk-player"
+            : session.enlarged
+              ? ".enlarged button"
+              : session.card
+                ? ".card h2"
+                : "";
     if (open === this._focused) return;
     this._focused = open;
     this.renderRoot.querySelector<HTMLElement>(open || ".panel h1")?.focus({ preventScroll: true });
@@ -109,7 +123,8 @@ export class StrataKiosk extends LitElement {
     if (!session.ready || !show) return this.alone(words.waiting, "");
     if (!session.stop) return this.alone(words.nothing, words.nothing_detail);
     const asked = session.idle.presence.is === "asked";
-    const covered = asked || session.resting || session.enlarged !== null;
+    const { medium } = session;
+    const covered = asked || session.resting || session.enlarged !== null || medium !== null;
     return html`
       ${repeat(
         [show],
@@ -117,9 +132,20 @@ export class StrataKiosk extends LitElement {
         () =>
           html`<strata-kiosk-stage class=${session.resting ? "resting" : ""} .session=${session} .show=${show} .changes=${this._changes} ?inert=${covered}></strata-kiosk-stage>`,
       )}
+      ${this.logo()} ${this.phone()}
       ${show.away ? html`<p class="sign away" role="status">${words.stored}</p>` : nothing}
       ${!session.resting && session.index === 0 && show.untouched && show.drawn ? html`<p class="sign">${words.hint}</p>` : nothing}
       ${session.place && !covered ? this.place(session.place) : nothing} ${this.panel(covered)} ${session.enlarged ? this.enlarged(asked) : nothing} ${session.resting ? this.invitation() : nothing}
+      ${
+        medium && !session.resting
+          ? repeat(
+              [medium],
+              ({ id }) => id,
+              () =>
+                html`<strata-kiosk-player role="dialog" aria-modal="true" aria-label=${medium.alt} .session=${session} .medium=${medium} language=${session.language} ?inert=${asked}></strata-kiosk-player>`,
+            )
+          : nothing
+      }
       ${asked ? this.question() : nothing}
     `;
   }
@@ -141,6 +167,24 @@ export class StrataKiosk extends LitElement {
     </div>`;
   }
 
+  private logo(): TemplateResult | typeof nothing {
+    const { self } = this.session;
+    const { logo, logo_alt: alt = "" } = self?.tour.theme ?? {};
+    return self && logo !== undefined
+      ? html`<img class="logo" src=${addressOfFile(self, logo)} alt=${alt} draggable="false" />`
+      : nothing;
+  }
+
+  private phone(): TemplateResult | typeof nothing {
+    const { self, index, language, words, resting } = this.session;
+    if (!self?.phone_path || resting) return nothing;
+    const address = phoneAddress(location.origin, self.phone_path, { stop: index, language });
+    return html`<figure class="phone" role="img" aria-label=${words.phone_code}>
+      ${guard([address], () => codeOf(address))}
+      <figcaption aria-hidden="true">${words.phone}</figcaption>
+    </figure>`;
+  }
+
   private alone(title: string, detail: string): TemplateResult {
     return html`<main class="alone" role="status">
       <h1>${title}</h1>
@@ -158,7 +202,7 @@ export class StrataKiosk extends LitElement {
         <h1 tabindex="-1">${session.title}</h1>
         ${session.text ? html`<p>${session.text}</p>` : nothing}
       </div>
-      ${resting ? nothing : this.controls()} ${session.card ? this.card() : nothing}
+      ${resting ? nothing : html`${this.media()}${this.controls()}`} ${session.card ? this.card() : nothing}
     </main>`;
   }
 
@@ -179,6 +223,23 @@ export class StrataKiosk extends LitElement {
         ${session.languages.length > 1 ? this.languages() : nothing}
         <button class="next main" ?disabled=${index === stops.length - 1} @click=${() => session.step(1)}>${words.next}${arrowOn}</button>
       </div>`;
+  }
+
+  /** What a stop has next to its texts: pictures as such, sounds and videos as buttons. */
+  private media(): TemplateResult | typeof nothing {
+    const { session } = this;
+    const { words, media } = session;
+    if (media.length === 0) return nothing;
+    const content = (medium: ShownMedium): TemplateResult =>
+      medium.kind === "picture"
+        ? html`<img src=${medium.thumbnail} alt="" draggable="false" />`
+        : html`${medium.kind === "video" ? filmSign : soundSign}<span>${medium.caption || medium.alt}</span>`;
+    return html`<div class="row scrolls pictures media" role="group" aria-label=${words.media} ?inert=${session.card !== null}>
+      ${media.map(
+        (medium) =>
+          html`<button class=${medium.kind} aria-label=${(medium.kind === "picture" ? words.enlarge : words.play_of)(medium.alt)} @click=${() => session.showMedium(medium)}>${content(medium)}</button>`,
+      )}
+    </div>`;
   }
 
   private choices(behind: boolean): TemplateResult | typeof nothing {

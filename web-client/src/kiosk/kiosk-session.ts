@@ -4,12 +4,15 @@
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
 import type { SocketLike } from "../net/socket";
-import type { KioskSelf, Picked, Tour, View } from "../core/protocol.gen";
+import type { KioskSelf, Picked, Tour, TourClassName, View } from "../core/protocol.gen";
+import { roomOf } from "../domain/tour-theme";
 import { AttractLoop } from "./attract";
 import { cardOf, type Card } from "./cards";
 import { IdleWatch } from "./idle";
 import { wordsIn } from "./languages";
 import { KioskLink } from "./link";
+import { mediaOf, type ShownMedium } from "./media";
+import type { PhonePlace } from "./phone";
 import { layerThere, wordsOfPlace, type TappedPlace } from "./place";
 import { KioskShow } from "./show";
 import {
@@ -25,9 +28,6 @@ import {
 import type { KioskStore } from "./store";
 import { textsIn, type KioskTexts } from "./texts";
 
-/** Around the object: --room-top and --room of the styles. */
-const kRoom = { top: "#edebe7", bottom: "#dedad3" };
-
 export interface NamedRecord {
   table: string;
   key: number;
@@ -40,6 +40,8 @@ export interface SessionOptions {
   store: Pick<KioskStore, "lastTold" | "keep" | "forget">;
   reload: () => void;
   makeSocket?: (url: string, protocol: string) => SocketLike;
+  /** A visitor's phone begins where the screen was. */
+  phone?: PhonePlace | null;
 }
 
 export class KioskSession {
@@ -57,6 +59,8 @@ export class KioskSession {
   named: NamedRecord[] = [];
   card: Card | null = null;
   enlarged: Card["pictures"][number] | null = null;
+  /** Id of the open medium of the stop. */
+  private _medium: number | null = null;
   /** The tapped place, until the picture moves. */
   private _place: TappedPlace | null = null;
   show: KioskShow | null = null;
@@ -131,13 +135,30 @@ export class KioskSession {
   get text(): string {
     return wordsIn(this.stop?.stop.text, this.language, this.languages);
   }
+  /** Pictures, sounds and videos of the stop. */
+  get media(): ShownMedium[] {
+    return this.self && this.stop ? mediaOf(this.self, this.stop.stop, this.language) : [];
+  }
+  /** The one that covers the screen. */
+  get medium(): ShownMedium | null {
+    return this._medium === null
+      ? null
+      : (this.media.find(({ id }) => id === this._medium) ?? null);
+  }
   /** The name of the tapped place and its position on the stage; null: none. */
   get place(): { title: string; about: string; x: number; y: number } | null {
     const { _place: place, show } = this;
     const layer = place && show?.layers.find(({ id }) => id === place.layer);
     return layer
-      ? { ...wordsOfPlace(layer, place.value, this.language), x: place.x, y: place.y }
+      ? {
+          ...wordsOfPlace(layer, place.value, this.language, this.classNames(layer.slug)),
+          x: place.x,
+          y: place.y,
+        }
       : null;
+  }
+  private classNames(layer: string): readonly TourClassName[] {
+    return this.tour?.classes?.find((each) => each.layer === layer)?.classes ?? [];
   }
   /** No visitor: the tour plays automatically. */
   get resting(): boolean {
@@ -197,6 +218,11 @@ export class KioskSession {
     this._askedCard += 1;
     this.card = this.enlarged = null;
     this._place = null;
+    this._medium = null;
+    this.changed();
+  }
+  showMedium(medium: ShownMedium | null): void {
+    this._medium = medium?.id ?? null;
     this.changed();
   }
   private forgetPlace(): void {
@@ -214,6 +240,12 @@ export class KioskSession {
   private begin(): void {
     this._attract.stop();
     this.goTo(0);
+  }
+
+  private beginAt({ stop, language }: PhonePlace): void {
+    this.language = this.languages.includes(language) ? language : (this.languages[0] ?? "en");
+    this.idle.touched(); // begins at the first stop
+    this.goTo(Math.min(stop, Math.max(0, this.stops.length - 1)));
   }
 
   /** The initial state: the first stop in the first language; then the tour plays automatically. */
@@ -320,7 +352,7 @@ export class KioskSession {
       this.show = this.makeShow(self.model);
       this.show.open();
     }
-    this.show.setRoom(kRoom);
+    this.show.setRoom(roomOf(self.tour.theme));
     await this.readViews();
   }
 
@@ -355,7 +387,9 @@ export class KioskSession {
     this.stops = stopsOf(self.tour, this._views);
     this.ready = true;
     this.index = Math.min(this.index, Math.max(0, this.stops.length - 1));
-    if (!wasReady) this.rest();
+    const { phone } = this._options;
+    if (!wasReady && phone) this.beginAt(phone);
+    else if (!wasReady) this.rest();
     else this.showAgain();
   }
 

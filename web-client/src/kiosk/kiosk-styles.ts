@@ -40,6 +40,13 @@ export const kioskStyles = css`
     overscroll-behavior: none;
     color-scheme: light;
   }
+  :host([data-mode="dark"]) {
+    color-scheme: dark;
+    --surface: color-mix(in srgb, var(--room) 92%, #fff);
+    --raised: color-mix(in srgb, var(--room) 84%, #fff);
+    --line: color-mix(in srgb, var(--ink) 26%, var(--surface));
+    --shade: rgb(0 0 0 / 0.4);
+  }
   @media (pointer: coarse) {
     :host {
       --target: max(68px, 5vmin);
@@ -110,6 +117,38 @@ export const kioskStyles = css`
   strata-kiosk-stage {
     grid-area: 1 / 1;
   }
+  .logo {
+    grid-area: 1 / 1;
+    z-index: 1;
+    place-self: start;
+    max-width: min(38%, 26em);
+    height: clamp(44px, 6vmin, 130px);
+    margin: var(--rim);
+    object-fit: contain;
+    object-position: left top;
+    pointer-events: none;
+  }
+  .phone {
+    grid-area: 1 / 1;
+    z-index: 1;
+    place-self: end;
+    width: clamp(96px, 12vmin, 240px);
+    margin: var(--rim);
+    padding: 0.3em;
+    border-radius: calc(var(--round) / 2);
+    background: #fff;
+    color: #10181a;
+    font: 600 clamp(12px, 1.4vmin, 26px) / 1.2 var(--sans);
+    text-align: center;
+    pointer-events: none;
+  }
+  .phone svg {
+    display: block;
+    width: 100%;
+    height: auto;
+    fill: #000;
+    stroke: none;
+  }
   .sign {
     grid-area: 1 / 1;
     justify-self: center;
@@ -122,6 +161,11 @@ export const kioskStyles = css`
     font-size: 0.85em;
     text-align: center;
     pointer-events: none;
+  }
+  .phone ~ .sign {
+    justify-self: start; /* the code is at the end */
+    max-width: calc(100% - clamp(96px, 12vmin, 240px) - 4 * var(--rim));
+    border-radius: var(--round);
   }
   .sign.away {
     align-self: start;
@@ -317,6 +361,24 @@ export const kioskStyles = css`
     object-fit: cover;
     pointer-events: none;
   }
+  .row.media button {
+    min-height: clamp(72px, 9vmin, 190px);
+  }
+  .row.media img {
+    display: block;
+    height: clamp(72px, 9vmin, 190px);
+  }
+  .row.media :is(.sound, .video) {
+    display: inline-flex;
+    align-items: center;
+    gap: 0.6em;
+    padding: 0 1.2em;
+    line-height: 1.2;
+  }
+  .row.media span {
+    overflow: hidden;
+    text-overflow: ellipsis;
+  }
   .ends {
     justify-content: flex-end;
   }
@@ -463,7 +525,8 @@ export const kioskStyles = css`
       --words: 58;
       --gap: 8px;
     }
-    .row.scrolls > .label {
+    .row.scrolls > .label,
+    .phone {
       display: none;
     }
     .steps {
@@ -495,6 +558,7 @@ export const kioskStyles = css`
     }
     strata-kiosk-stage,
     .place-of-tap,
+    .phone,
     .sign {
       grid-area: 1 / 2;
     }

@@ -6,6 +6,7 @@ import { kioskFetch } from "./as-kiosk";
 import { keepOnPage, stayAwake } from "./guard";
 import "./kiosk-page";
 import { KioskSession } from "./kiosk-session";
+import { phonePlaceOf } from "./phone";
 import { KioskStore, openBrowserCache, startWorker } from "./store";
 
 /** The part after /kiosk/; null: none. */
@@ -23,7 +24,9 @@ export function startKiosk(): void {
     unreadable_detail: (what) => what,
   });
   const secret = secretOf(location.pathname) ?? "";
+  const phone = phonePlaceOf(location.hash);
   const session = new KioskSession({
+    phone,
     api: new Api(kioskFetch),
     secret,
     store: new KioskStore({ openCache: openBrowserCache, secret }),
@@ -32,7 +35,7 @@ export function startKiosk(): void {
   const page = document.createElement("strata-kiosk");
   page.session = session;
   document.querySelector("strata-app")?.replaceWith(page);
-  keepOnPage();
+  if (!phone) keepOnPage(); // on their own phones visitors may leave
   void stayAwake();
   void startWorker();
   document.addEventListener("visibilitychange", () => {

@@ -3,7 +3,7 @@
 
 import { labelOf } from "../domain/cells";
 import { formatNumber } from "../domain/measure";
-import type { Picked } from "../core/protocol.gen";
+import type { Picked, TourClassName } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 
 export interface TappedPlace {
@@ -38,11 +38,14 @@ export function wordsOfPlace(
   layer: Layer,
   value: number,
   language: string,
+  names: readonly TourClassName[] = [], // of the tour
 ): { title: string; about: string } {
   const about = nameOfLayer(layer, language);
   const { mode, points } = layer.palette;
   if (mode !== "categorical")
     return { title: `${formatNumber(value, 3)}${layer.unit ? ` ${layer.unit}` : ""}`, about };
-  const title = points.find(({ at }) => at === value)?.label ?? "";
+  const title =
+    names.find((each) => each.value === value)?.names[language] ||
+    (points.find(({ at }) => at === value)?.label ?? "");
   return title === "" || title === about ? { title: title || about, about: "" } : { title, about };
 }

@@ -5,9 +5,10 @@
 
 import { Api, type Fetch } from "../net/api";
 import { ApiError } from "../net/api-error";
-import type { KioskSelf } from "../core/protocol.gen";
+import type { KioskSelf, TourFile } from "../core/protocol.gen";
 import { asKiosk, patientFetch, pictureOfView } from "./as-kiosk";
 import { cardOf } from "./cards";
+import { addressOfFile, thumbnailOfFile } from "./media";
 
 /** The used parts of the browser's CacheStorage and Cache. */
 export interface KioskCache {
@@ -29,6 +30,9 @@ export interface StoreOptions {
 const kCache = "strata-kiosk";
 /** Key of the stored page, the same for every secret, and scope of the worker. */
 const kPageKey = "/kiosk/";
+const kMediaBytes = 400 * 2 ** 20; // of sounds and videos; the rest plays while the server is there
+const kSlowBytesPerMs = 200;
+const kFilePatienceMs = 30_000;
 const kAgainMs = 6 * 3600_000; // records may have changed without a new version of the tour
 
 export class KioskStore {
@@ -94,8 +98,21 @@ export class KioskStore {
     await put(await this.selfKey(), async () => new Response(JSON.stringify(self)));
     await put(kPageKey, () => get(kPageKey));
     for (const file of (this._options.files ?? filesOfPage)()) await put(file, () => get(file));
+    const putFile = async (key: string, bytes: number): Promise<void> => {
+      if (await cache.match(key))
+        kept.add(key); // the content of an id never changes
+      else
+        await put(key, () =>
+          this._options.fetch
+            ? this._options.fetch(key)
+            : fetch(key, {
+                signal: AbortSignal.timeout(kFilePatienceMs + bytes / kSlowBytesPerMs),
+              }),
+        );
+    };
     try {
       await keepTour(self, get, put);
+      await keepFiles(self, putFile);
     } catch {
       complete = false;
     }
@@ -143,6 +160,25 @@ async function keepTour({ model, tour }: KioskSelf, get: Fetch, put: Put): Promi
           await picture(large);
         }
       }
+}
+
+/** Pictures and subtitles, then as many sounds and videos as the budget permits, in their order. */
+async function keepFiles(
+  self: KioskSelf,
+  put: (key: string, bytes: number) => Promise<void>,
+): Promise<void> {
+  let left = kMediaBytes;
+  const files = self.tour.files ?? [];
+  const plays = ({ kind }: TourFile): boolean => kind === "sound" || kind === "video";
+  for (const file of files.filter((each) => !plays(each))) {
+    await put(addressOfFile(self, file.id), file.bytes);
+    if (file.kind === "picture") await put(thumbnailOfFile(self, file.id), file.bytes);
+  }
+  for (const file of files.filter(plays))
+    if (file.bytes <= left) {
+      left -= file.bytes;
+      await put(addressOfFile(self, file.id), file.bytes);
+    }
 }
 
 async function unlessGone(asked: Promise<unknown>): Promise<void> {

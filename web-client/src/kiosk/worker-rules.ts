@@ -4,9 +4,10 @@
 
 /**
  * page: any kiosk's address; all have the same page. file: immutable, named by its content. data:
- * the server's current answer if it is reachable.
+ * the server's current answer if it is reachable. media: a file of the tour, whose content never
+ * changes, perhaps only a part of it.
  */
-export type Answered = "page" | "file" | "data" | "not";
+export type Answered = "page" | "file" | "media" | "data" | "not";
 
 /** `own`: the worker's scope, which is the path of all kiosks. */
 export function answered(
@@ -22,7 +23,24 @@ export function answered(
     pathname.startsWith("/api/v1/") &&
     pathname !== "/api/v1/kiosk" &&
     searchParams.get("as") === "kiosk";
-  return isData ? "data" : "not";
+  if (!isData) return "not";
+  return /\/tours\/\d+\/files\/\d+$/.test(pathname) ? "media" : "data";
+}
+
+/**
+ * The bytes that a Range header requests of a file of `size` bytes, the last one included. Null: the
+ * whole file, as for any header that is not one range of bytes.
+ */
+export function requestedBytes(
+  header: string | null,
+  size: number,
+): { first: number; last: number } | null {
+  const found = /^bytes=(\d*)-(\d*)$/.exec(header ?? "");
+  if (!found || (found[1] === "" && found[2] === "")) return null;
+  const [from, to] = [found[1]!, found[2]!];
+  const first = from === "" ? Math.max(0, size - Number(to)) : Number(from);
+  const last = from === "" || to === "" ? size - 1 : Math.min(Number(to), size - 1);
+  return first <= last ? { first, last } : null;
 }
 
 /** The answer comes from a proxy and not from the server. */

@@ -1,7 +1,7 @@
 // The service worker of the kiosk page: while the server is unreachable, it answers with stored
 // items. Other pages are out of its scope.
 
-import { answered, saysAway } from "./worker-rules";
+import { answered, requestedBytes, saysAway } from "./worker-rules";
 
 interface WorkerEvent extends Event {
   waitUntil(done: Promise<unknown>): void;
@@ -31,6 +31,10 @@ scope.addEventListener("fetch", (event) => {
       return event.respondWith(newest(request, own)); // the same page for every secret
     case "file":
       return event.respondWith(stored(request.url).then((found) => found ?? fetch(request)));
+    case "media":
+      return event.respondWith(
+        stored(request.url).then((found) => (found ? partOf(found, request) : fetch(request))),
+      );
     case "data":
       return event.respondWith(newest(request, request.url));
     case "not":
@@ -39,6 +43,19 @@ scope.addEventListener("fetch", (event) => {
 
 const stored = (key: string): Promise<Response | undefined> =>
   caches.match(key, { ignoreVary: true });
+
+/** Players read sounds and videos in parts. */
+async function partOf(whole: Response, request: Request): Promise<Response> {
+  const header = request.headers.get("Range");
+  if (header === null) return whole;
+  const content = await whole.blob();
+  const part = requestedBytes(header, content.size);
+  if (!part) return new Response(content, { headers: whole.headers });
+  const headers = new Headers(whole.headers);
+  headers.set("Content-Range", `bytes ${part.first}-${part.last}/${content.size}`);
+  headers.set("Content-Length", String(part.last - part.first + 1));
+  return new Response(content.slice(part.first, part.last + 1), { status: 206, headers });
+}
 
 /** The server's answer, or the stored one if the server does not answer within kPatienceMs. */
 async function newest(request: Request, key: string): Promise<Response> {

@@ -277,7 +277,8 @@ export interface paths {
         delete: operations["revoke_kiosk"];
         options?: never;
         head?: never;
-        patch?: never;
+        /** Change a kiosk link */
+        patch: operations["change_kiosk"];
         trace?: never;
     };
     "/kiosks/{kiosk}/reload": {
@@ -1384,6 +1385,47 @@ export interface paths {
         patch: operations["change_tour"];
         trace?: never;
     };
+    "/models/{model}/tours/{tour}/files": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+                tour: components["parameters"]["tour"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Add a file to a tour */
+        post: operations["create_tour_file"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/tours/{tour}/files/{file}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                file: components["parameters"]["tour_file"];
+                model: components["parameters"]["model"];
+                tour: components["parameters"]["tour"];
+            };
+            cookie?: never;
+        };
+        /** Download a file of a tour */
+        get: operations["get_tour_file"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/tours/{tour}/kiosks": {
         parameters: {
             query?: never;
@@ -2445,6 +2487,8 @@ export interface components {
         KioskLogin: wire.KioskLogin;
         /** A new kiosk link, which is shown only now */
         KioskMade: wire.KioskMade;
+        /** Changes to a kiosk link */
+        KioskPatch: wire.KioskPatch;
         /** A kiosk's own data */
         KioskSelf: wire.KioskSelf;
         /** Names by language */
@@ -2796,16 +2840,41 @@ export interface components {
         ToolShape: wire.ToolShape;
         /** Tour of a model */
         Tour: wire.Tour;
+        /** Caption by language */
+        TourCaption: wire.TourCaption;
+        /** Names of the classes of a layer in the languages of a tour */
+        TourClasses: wire.TourClasses;
+        /** Names of a class by language */
+        TourClassName: wire.TourClassName;
         /** Column on the card of a record */
         TourColumn: wire.TourColumn;
         /** New tour */
         TourCreate: wire.TourCreate;
         /** Tour in a list */
         TourEntry: wire.TourEntry;
+        /** File of a tour */
+        TourFile: wire.TourFile;
+        /**
+         * Kind of a file of a tour
+         * @enum {string}
+         */
+        TourFileKind: wire.TourFileKind;
+        /**
+         * Font of headings
+         * @enum {string}
+         */
+        TourFont: wire.TourFont;
         /** Language of a tour */
         TourLanguage: wire.TourLanguage;
         /** Tours of a model, in the order of their creation */
         TourList: wire.TourList;
+        /** Picture, sound or video at a stop */
+        TourMedium: wire.TourMedium;
+        /**
+         * Light or dark pages
+         * @enum {string}
+         */
+        TourMode: wire.TourMode;
         /** Changes to a tour */
         TourPatch: wire.TourPatch;
         /** Records of a table at a stop */
@@ -2814,8 +2883,12 @@ export interface components {
         TourStop: wire.TourStop;
         /** Stop of a tour */
         TourStopCreate: wire.TourStopCreate;
+        /** Subtitles of a video by language */
+        TourSubtitles: wire.TourSubtitles;
         /** Text by language */
         TourText: wire.TourText;
+        /** Design of the kiosks that show a tour */
+        TourTheme: wire.TourTheme;
         /**
          * Transition to a stop
          * @enum {string}
@@ -3060,6 +3133,7 @@ export interface components {
         table: string;
         tool: string;
         tour: string;
+        tour_file: number;
         user: string;
         view: string;
     };
@@ -3639,6 +3713,31 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+        };
+    };
+    change_kiosk: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                kiosk: components["parameters"]["kiosk"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["KioskPatch"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Kiosk"];
+                };
             };
         };
     };
@@ -5770,6 +5869,73 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Tour"];
+                };
+            };
+        };
+    };
+    create_tour_file: {
+        parameters: {
+            query?: {
+                name?: string;
+            };
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                tour: components["parameters"]["tour"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": string;
+            };
+        };
+        responses: {
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TourFile"];
+                };
+            };
+        };
+    };
+    get_tour_file: {
+        parameters: {
+            query?: {
+                thumbnail?: 64 | 128 | 256 | 512 | 1024;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+                "If-Range"?: string;
+                Range?: string;
+            };
+            path: {
+                file: components["parameters"]["tour_file"];
+                model: components["parameters"]["model"];
+                tour: components["parameters"]["tour"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "*/*": string;
+                };
+            };
+            206: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "*/*": string;
                 };
             };
         };

@@ -2021,6 +2021,37 @@ export const texts = {
     column_add: "Spalte hinzufügen",
     column_label: (column, language) => `Bezeichnung von ${column} auf der Infokarte, ${language}`,
     column_label_hint: (language, name) => `${language}: ${name}`,
+    design: "Gestaltung der Bildschirme",
+    mode: "Raum",
+    modes: { light: "Hell", dark: "Dunkler Raum" },
+    background: "Hintergrund",
+    accent: "Schaltflächen",
+    color_default: "Standardfarbe",
+    background_wrong: (now, needed) =>
+      `Text auf diesem Hintergrund hat einen Kontrast von ${now}:1 und braucht ${needed}:1. Wählen Sie einen anderen Hintergrund oder den anderen Raum.`,
+    accent_wrong: (now, needed) =>
+      `Schaltflächen auf diesem Hintergrund haben einen Kontrast von ${now}:1 und brauchen ${needed}:1. Wählen Sie eine andere Farbe.`,
+    font: "Überschriften",
+    fonts: { serif: "Mit Serifen", sans: "Ohne Serifen" },
+    logo: "Logo",
+    logo_add: "Logo: PNG, WebP oder JPEG",
+    logo_alt: "Name des Museums (für Bildschirmleser)",
+    design_preview: "Vorschau der Gestaltung",
+    preview_button: "Zum Starten berühren",
+    media: "Bilder, Ton und Video",
+    media_hint:
+      "Besucher öffnen sie durch Berühren. Nichts wird von selbst abgespielt. JPEG, PNG, WebP; MP3, M4A, WAV, FLAC, Ogg; MP4, WebM.",
+    media_add: "Bilder, Töne oder Videos hinzufügen",
+    media_gone: "Gelöschte Datei",
+    file_kinds: { picture: "Bild", sound: "Ton", video: "Video", subtitles: "Untertitel" },
+    files_after_save: "Speichern Sie die Führung einmal, bevor Sie Dateien hinzufügen.",
+    sending: (name, percent) => `${name} wird hochgeladen: ${percent} %`,
+    caption: "Bildunterschrift",
+    alt: "Beschreibung für Bildschirmleser",
+    in_language: (label, language) => `${label}, ${language}`,
+    subtitles: (language) => `Untertitel (WebVTT), ${language}`,
+    class_names: (layer) => `Namen der Klassen von ${layer}`,
+    class_name: (name, language) => `${name} auf ${language}`,
     wrong: {
       name_missing: "Geben Sie einen Namen ein.",
       language_missing: "Eine Führung braucht mindestens eine Sprache.",
@@ -2069,6 +2100,10 @@ export const texts = {
     days_lead: "Ohne Angabe gilt der Link, bis Sie ihn widerrufen.",
     days_wrong: (least, most) =>
       `Geben Sie eine ganze Zahl von ${formatCount(least)} bis ${formatCount(most)} Tagen ein, oder lassen Sie das Feld leer.`,
+    phones: "QR-Code für Telefone der Besucher",
+    phones_hint:
+      "Besucher können die Führung auf ihrem eigenen Telefon öffnen. Sie sehen, was dieser Bildschirm zeigt, bis Sie das abschalten oder den Link widerrufen.",
+    phones_of: (name) => `QR-Code für Telefone auf ${name}`,
     make: "Link erstellen",
     link: (name) => `Link für „${name}“`,
     link_lead:

@@ -1963,6 +1963,37 @@ export const texts = {
     column_label: (column: string, language: string) =>
       `Label of ${column} on the card, ${language}`,
     column_label_hint: (language: string, name: string) => `${language}: ${name}`,
+    design: "Design of the screens",
+    mode: "Room",
+    modes: { light: "Light", dark: "Dark room" },
+    background: "Background",
+    accent: "Buttons",
+    color_default: "Default color",
+    background_wrong: (now: string, needed: string) =>
+      `Text on this background has a contrast of ${now}:1 and needs ${needed}:1. Choose another background, or the other room.`,
+    accent_wrong: (now: string, needed: string) =>
+      `Buttons on this background have a contrast of ${now}:1 and need ${needed}:1. Choose another color.`,
+    font: "Headings",
+    fonts: { serif: "With serifs", sans: "Without serifs" },
+    logo: "Logo",
+    logo_add: "Logo: PNG, WebP or JPEG",
+    logo_alt: "Name of the museum (for screen readers)",
+    design_preview: "Preview of the design",
+    preview_button: "Touch to begin",
+    media: "Pictures, sound and video",
+    media_hint:
+      "Visitors open them by a touch. Nothing plays automatically. JPEG, PNG, WebP; MP3, M4A, WAV, FLAC, Ogg; MP4, WebM.",
+    media_add: "Add pictures, sounds or videos",
+    media_gone: "Deleted file",
+    file_kinds: { picture: "Picture", sound: "Sound", video: "Video", subtitles: "Subtitles" },
+    files_after_save: "Save the tour once before you add files.",
+    sending: (name: string, percent: number) => `Uploading ${name}: ${percent} %`,
+    caption: "Caption",
+    alt: "Description for screen readers",
+    in_language: (label: string, language: string) => `${label}, ${language}`,
+    subtitles: (language: string) => `Subtitles (WebVTT), ${language}`,
+    class_names: (layer: string) => `Names of the classes of ${layer}`,
+    class_name: (name: string, language: string) => `${name} in ${language}`,
     wrong: {
       name_missing: "Enter a name.",
       language_missing: "A tour needs at least one language.",
@@ -2010,6 +2041,10 @@ export const texts = {
     days_lead: "Without a number, the link is valid until you revoke it.",
     days_wrong: (least: number, most: number) =>
       `Enter a whole number of days from ${formatCount(least)} to ${formatCount(most)}, or leave it empty.`,
+    phones: "QR code for visitors' phones",
+    phones_hint:
+      "Visitors can open the tour on their own phones. They see what this screen shows, until you switch this off or revoke the link.",
+    phones_of: (name: string) => `QR code for phones on ${name}`,
     make: "Create link",
     link: (name: string) => `Link for “${name}”`,
     link_lead:

@@ -2014,6 +2014,37 @@ export const texts = {
     column_add: "Añadir una columna",
     column_label: (column, language) => `Nombre de ${column} en la ficha, ${language}`,
     column_label_hint: (language, name) => `${language}: ${name}`,
+    design: "Diseño de las pantallas",
+    mode: "Sala",
+    modes: { light: "Clara", dark: "Sala oscura" },
+    background: "Fondo",
+    accent: "Botones",
+    color_default: "Color predeterminado",
+    background_wrong: (now, needed) =>
+      `El texto sobre este fondo tiene un contraste de ${now}:1 y necesita ${needed}:1. Elija otro fondo o la otra sala.`,
+    accent_wrong: (now, needed) =>
+      `Los botones sobre este fondo tienen un contraste de ${now}:1 y necesitan ${needed}:1. Elija otro color.`,
+    font: "Títulos",
+    fonts: { serif: "Con serifas", sans: "Sin serifas" },
+    logo: "Logotipo",
+    logo_add: "Logotipo: PNG, WebP o JPEG",
+    logo_alt: "Nombre del museo (para lectores de pantalla)",
+    design_preview: "Vista previa del diseño",
+    preview_button: "Toque para empezar",
+    media: "Imágenes, sonido y vídeo",
+    media_hint:
+      "Los visitantes los abren con un toque. Nada se reproduce solo. JPEG, PNG, WebP; MP3, M4A, WAV, FLAC, Ogg; MP4, WebM.",
+    media_add: "Añadir imágenes, sonidos o vídeos",
+    media_gone: "Archivo eliminado",
+    file_kinds: { picture: "Imagen", sound: "Sonido", video: "Vídeo", subtitles: "Subtítulos" },
+    files_after_save: "Guarde el recorrido una vez antes de añadir archivos.",
+    sending: (name, percent) => `Subiendo ${name}: ${percent} %`,
+    caption: "Pie de imagen",
+    alt: "Descripción para lectores de pantalla",
+    in_language: (label, language) => `${label}, ${language}`,
+    subtitles: (language) => `Subtítulos (WebVTT), ${language}`,
+    class_names: (layer) => `Nombres de las clases de ${layer}`,
+    class_name: (name, language) => `${name} en ${language}`,
     wrong: {
       name_missing: "Introduzca un nombre.",
       language_missing: "Un recorrido necesita al menos un idioma.",
@@ -2061,6 +2092,10 @@ export const texts = {
     days_lead: "Sin un número, el enlace es válido hasta que lo revoque.",
     days_wrong: (least, most) =>
       `Introduzca un número entero de días, de ${formatCount(least)} a ${formatCount(most)}, o déjelo vacío.`,
+    phones: "Código QR para los teléfonos de los visitantes",
+    phones_hint:
+      "Los visitantes pueden abrir el recorrido en su propio teléfono. Ven lo que muestra esta pantalla, hasta que usted lo desactive o revoque el enlace.",
+    phones_of: (name) => `Código QR para teléfonos en ${name}`,
     make: "Crear enlace",
     link: (name) => `Enlace para «${name}»`,
     link_lead:

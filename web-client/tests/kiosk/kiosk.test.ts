@@ -19,7 +19,8 @@ import {
   type Stop,
 } from "../../src/kiosk/stops";
 import { textsIn } from "../../src/kiosk/texts";
-import { answered, saysAway } from "../../src/kiosk/worker-rules";
+import { phoneAddress, phonePlaceOf } from "../../src/kiosk/phone";
+import { answered, requestedBytes, saysAway } from "../../src/kiosk/worker-rules";
 
 beforeEach(() => void vi.useFakeTimers());
 afterEach(() => void vi.useRealTimers());
@@ -378,5 +379,32 @@ describe("the kiosk's service worker", () => {
   it("tells a server that is away from one that refuses", () => {
     expect([502, 503, 504].every(saysAway)).toBe(true);
     expect([200, 304, 401, 403, 404, 500].some(saysAway)).toBe(false);
+  });
+});
+
+describe("a part of a stored sound or video", () => {
+  it("is the range that a player requests", () => {
+    expect(requestedBytes("bytes=4-7", 100)).toEqual({ first: 4, last: 7 });
+    expect(requestedBytes("bytes=90-", 100)).toEqual({ first: 90, last: 99 });
+    expect(requestedBytes("bytes=-10", 100)).toEqual({ first: 90, last: 99 });
+    expect(requestedBytes("bytes=0-999", 100)).toEqual({ first: 0, last: 99 });
+  });
+  it("is the whole file for anything else", () => {
+    for (const header of [null, "", "bytes=-", "bytes=7-4", "bytes=0-1,4-5", "lines=1-2"])
+      expect(requestedBytes(header, 100)).toBeNull();
+    expect(requestedBytes("bytes=100-", 100)).toBeNull();
+  });
+});
+
+describe("the code for phones", () => {
+  it("leads to the stop and language of the screen, without a word to the server", () => {
+    const address = phoneAddress("https://strata.example", "/kiosk/abc", {
+      stop: 2,
+      language: "de",
+    });
+    expect(address).toBe("https://strata.example/kiosk/abc#stop=3&language=de");
+    expect(phonePlaceOf(new URL(address).hash)).toEqual({ stop: 2, language: "de" });
+    for (const hash of ["", "#", "#stop=0", "#stop=x", "#stop=1.5", "#stop=99999"])
+      expect(phonePlaceOf(hash)).toBeNull();
   });
 });

@@ -169,6 +169,58 @@ void read(const nlohmann::json& json, TourTransition& value) {
 
 nlohmann::json to_json(const TourTransition& value) { return name(value); }
 
+std::string_view name(TourFileKind value) {
+  switch (value) {
+    case TourFileKind::picture: return "picture";
+    case TourFileKind::sound: return "sound";
+    case TourFileKind::video: return "video";
+    case TourFileKind::subtitles: return "subtitles";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, TourFileKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "picture") value = TourFileKind::picture;
+  if (text == "sound") value = TourFileKind::sound;
+  if (text == "video") value = TourFileKind::video;
+  if (text == "subtitles") value = TourFileKind::subtitles;
+}
+
+nlohmann::json to_json(const TourFileKind& value) { return name(value); }
+
+std::string_view name(TourMode value) {
+  switch (value) {
+    case TourMode::light: return "light";
+    case TourMode::dark: return "dark";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, TourMode& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "light") value = TourMode::light;
+  if (text == "dark") value = TourMode::dark;
+}
+
+nlohmann::json to_json(const TourMode& value) { return name(value); }
+
+std::string_view name(TourFont value) {
+  switch (value) {
+    case TourFont::serif: return "serif";
+    case TourFont::sans: return "sans";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, TourFont& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "serif") value = TourFont::serif;
+  if (text == "sans") value = TourFont::sans;
+}
+
+nlohmann::json to_json(const TourFont& value) { return name(value); }
+
 std::string_view name(ScaleReason value) {
   switch (value) {
     case ScaleReason::given: return "given";
@@ -1076,6 +1128,66 @@ nlohmann::json to_json(const TourRecords& value) {
   write_member(json, "table", value.table);
   write_member(json, "keys", value.keys);
   write_member(json, "columns", value.columns);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourMedium& value) {
+  read_member(json, "file", value.file);
+  read_optional_member(json, "alt", value.alt);
+  read_optional_member(json, "caption", value.caption);
+  read_optional_member(json, "subtitles", value.subtitles);
+}
+
+nlohmann::json to_json(const TourMedium& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "file", value.file);
+  write_optional_member(json, "alt", value.alt);
+  write_optional_member(json, "caption", value.caption);
+  write_optional_member(json, "subtitles", value.subtitles);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourTheme& value) {
+  read_optional_member(json, "mode", value.mode);
+  read_optional_member(json, "accent", value.accent);
+  read_optional_member(json, "background", value.background);
+  read_optional_member(json, "font", value.font);
+  read_optional_member(json, "logo", value.logo);
+  read_optional_member(json, "logo_alt", value.logo_alt);
+}
+
+nlohmann::json to_json(const TourTheme& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "mode", value.mode);
+  write_optional_member(json, "accent", value.accent);
+  write_optional_member(json, "background", value.background);
+  write_optional_member(json, "font", value.font);
+  write_optional_member(json, "logo", value.logo);
+  write_optional_member(json, "logo_alt", value.logo_alt);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourClassName& value) {
+  read_member(json, "value", value.value);
+  read_member(json, "names", value.names);
+}
+
+nlohmann::json to_json(const TourClassName& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "value", value.value);
+  write_member(json, "names", value.names);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourClasses& value) {
+  read_member(json, "layer", value.layer);
+  read_member(json, "classes", value.classes);
+}
+
+nlohmann::json to_json(const TourClasses& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layer", value.layer);
+  write_member(json, "classes", value.classes);
   return json;
 }
 
@@ -2659,6 +2771,7 @@ void read(const nlohmann::json& json, TourStopCreate& value) {
   read_optional_member(json, "transition_s", value.transition_s);
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "records", value.records);
+  read_optional_member(json, "media", value.media);
 }
 
 nlohmann::json to_json(const TourStopCreate& value) {
@@ -2671,6 +2784,7 @@ nlohmann::json to_json(const TourStopCreate& value) {
   write_member(json, "transition_s", value.transition_s);
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "records", value.records);
+  write_optional_member(json, "media", value.media);
   return json;
 }
 
@@ -2679,6 +2793,8 @@ void read(const nlohmann::json& json, TourCreate& value) {
   read_optional_member(json, "text", value.text);
   read_member(json, "languages", value.languages);
   read_optional_member(json, "idle_s", value.idle_s);
+  read_optional_member(json, "theme", value.theme);
+  read_optional_member(json, "classes", value.classes);
   read_member(json, "stops", value.stops);
 }
 
@@ -2688,6 +2804,8 @@ nlohmann::json to_json(const TourCreate& value) {
   write_optional_member(json, "text", value.text);
   write_member(json, "languages", value.languages);
   write_member(json, "idle_s", value.idle_s);
+  write_optional_member(json, "theme", value.theme);
+  write_optional_member(json, "classes", value.classes);
   write_member(json, "stops", value.stops);
   return json;
 }
@@ -2697,6 +2815,8 @@ void read(const nlohmann::json& json, TourPatch& value) {
   read_optional_member(json, "text", value.text);
   read_optional_member(json, "languages", value.languages);
   read_optional_member(json, "idle_s", value.idle_s);
+  read_optional_member(json, "theme", value.theme);
+  read_optional_member(json, "classes", value.classes);
   read_optional_member(json, "stops", value.stops);
 }
 
@@ -2706,6 +2826,8 @@ nlohmann::json to_json(const TourPatch& value) {
   write_optional_member(json, "text", value.text);
   write_optional_member(json, "languages", value.languages);
   write_optional_member(json, "idle_s", value.idle_s);
+  write_optional_member(json, "theme", value.theme);
+  write_optional_member(json, "classes", value.classes);
   write_optional_member(json, "stops", value.stops);
   return json;
 }
@@ -2713,12 +2835,24 @@ nlohmann::json to_json(const TourPatch& value) {
 void read(const nlohmann::json& json, KioskCreate& value) {
   read_member(json, "name", value.name);
   read_optional_member(json, "days", value.days);
+  read_optional_member(json, "phones", value.phones);
 }
 
 nlohmann::json to_json(const KioskCreate& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "name", value.name);
   write_optional_member(json, "days", value.days);
+  write_member(json, "phones", value.phones);
+  return json;
+}
+
+void read(const nlohmann::json& json, KioskPatch& value) {
+  read_member(json, "phones", value.phones);
+}
+
+nlohmann::json to_json(const KioskPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "phones", value.phones);
   return json;
 }
 

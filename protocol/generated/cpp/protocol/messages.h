@@ -90,6 +90,16 @@ enum class Schema {
   TourText,
   TourColumn,
   TourRecords,
+  TourCaption,
+  TourSubtitles,
+  TourMedium,
+  TourFileKind,
+  TourFile,
+  TourMode,
+  TourFont,
+  TourTheme,
+  TourClassName,
+  TourClasses,
   TourStop,
   Tour,
   Unit,
@@ -268,6 +278,7 @@ enum class Schema {
   Kiosk,
   KioskList,
   KioskCreate,
+  KioskPatch,
   KioskMade,
   KioskLogin,
   KioskSelf,
@@ -331,7 +342,7 @@ enum class Schema {
   Readiness,
   ServerVersion,
 };
-constexpr int kSchemaCount = 305;
+constexpr int kSchemaCount = 316;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -630,6 +641,81 @@ void read(const nlohmann::json& json, TourRecords& value);
 nlohmann::json to_json(const TourRecords& value);
 template <>
 inline constexpr Schema kSchemaOf<TourRecords> = Schema::TourRecords;
+
+// Caption by language. Plain text; keys are languages of the tour.
+using TourCaption = std::map<std::string, std::string>;
+
+// Subtitles of a video by language. Ids of WebVTT files of the tour; keys are languages of the tour.
+using TourSubtitles = std::map<std::string, std::int64_t>;
+
+// Picture, sound or video at a stop.
+struct TourMedium {
+  std::int64_t file = 0;  // Id of a file of the tour.
+  std::optional<TourWords> alt;  // For people who cannot see or hear it.
+  std::optional<TourCaption> caption;
+  std::optional<TourSubtitles> subtitles;
+  bool operator==(const TourMedium&) const = default;
+};
+void read(const nlohmann::json& json, TourMedium& value);
+nlohmann::json to_json(const TourMedium& value);
+template <>
+inline constexpr Schema kSchemaOf<TourMedium> = Schema::TourMedium;
+
+// Kind of a file of a tour.
+enum class TourFileKind { picture, sound, video, subtitles };
+std::string_view name(TourFileKind value);
+void read(const nlohmann::json& json, TourFileKind& value);
+nlohmann::json to_json(const TourFileKind& value);
+
+// Light or dark pages. `dark` is for dark rooms.
+enum class TourMode { light, dark };
+std::string_view name(TourMode value);
+void read(const nlohmann::json& json, TourMode& value);
+nlohmann::json to_json(const TourMode& value);
+
+// Font of headings.
+enum class TourFont { serif, sans };
+std::string_view name(TourFont value);
+void read(const nlohmann::json& json, TourFont& value);
+nlohmann::json to_json(const TourFont& value);
+
+// Design of the kiosks that show a tour. The text has a contrast of at least 4.5:1 with the background, and the accent color one of at least 3:1 (WCAG 2.2).
+struct TourTheme {
+  std::optional<TourMode> mode;  // Absent: `light`.
+  std::optional<std::string> accent;  // Color of buttons. Absent: that of the mode.
+  // Color of the page and around the object. Absent: that of the mode.
+  std::optional<std::string> background;
+  std::optional<TourFont> font;  // Absent: `serif`.
+  std::optional<std::int64_t> logo;  // Id of a picture of the tour. Absent: no logo.
+  std::optional<std::string> logo_alt;  // Name of the museum, for people who cannot see the logo.
+  bool operator==(const TourTheme&) const = default;
+};
+void read(const nlohmann::json& json, TourTheme& value);
+nlohmann::json to_json(const TourTheme& value);
+template <>
+inline constexpr Schema kSchemaOf<TourTheme> = Schema::TourTheme;
+
+// Names of a class by language.
+struct TourClassName {
+  double value = 0;  // Value of the class in the layer.
+  TourWords names;
+  bool operator==(const TourClassName&) const = default;
+};
+void read(const nlohmann::json& json, TourClassName& value);
+nlohmann::json to_json(const TourClassName& value);
+template <>
+inline constexpr Schema kSchemaOf<TourClassName> = Schema::TourClassName;
+
+// Names of the classes of a layer in the languages of a tour.
+struct TourClasses {
+  std::string layer;  // Its slug; in requests also its id.
+  std::vector<TourClassName> classes;  // Each value once.
+  bool operator==(const TourClasses&) const = default;
+};
+void read(const nlohmann::json& json, TourClasses& value);
+nlohmann::json to_json(const TourClasses& value);
+template <>
+inline constexpr Schema kSchemaOf<TourClasses> = Schema::TourClasses;
 
 using Unit = strata::Unit;
 
@@ -2066,6 +2152,8 @@ struct TourStopCreate {
   // Slugs or ids of the layers to swipe between, in this order. Each layer once.
   std::optional<std::vector<std::string>> layers;
   std::optional<std::vector<TourRecords>> records;  // Each entry has another table of the project.
+  // Pictures, sounds and videos of the tour, in this order. Each file once.
+  std::optional<std::vector<TourMedium>> media;
   bool operator==(const TourStopCreate&) const = default;
 };
 void read(const nlohmann::json& json, TourStopCreate& value);
@@ -2081,6 +2169,8 @@ struct TourCreate {
   // The first one is the default language; every stop has a title in it. Each language once.
   std::vector<std::string> languages;
   int idle_s = 60;  // Seconds after the last touch until the tour restarts and plays by itself.
+  std::optional<TourTheme> theme;
+  std::optional<std::vector<TourClasses>> classes;  // Other names of classes. Each layer once.
   std::vector<TourStopCreate> stops;
   bool operator==(const TourCreate&) const = default;
 };
@@ -2097,6 +2187,8 @@ struct TourPatch {
   // The first one is the default language; every stop has a title in it. Each language once.
   std::optional<std::vector<std::string>> languages;
   std::optional<int> idle_s;
+  std::optional<TourTheme> theme;
+  std::optional<std::vector<TourClasses>> classes;  // Other names of classes. Each layer once.
   std::optional<std::vector<TourStopCreate>> stops;
   bool operator==(const TourPatch&) const = default;
 };
@@ -2109,12 +2201,26 @@ inline constexpr Schema kSchemaOf<TourPatch> = Schema::TourPatch;
 struct KioskCreate {
   std::string name;  // Location of the screen.
   std::optional<int> days;  // Days until the link expires. Absent: never.
+  // The screen shows a QR code, with which visitors open the tour on their phones.
+  bool phones = false;
   bool operator==(const KioskCreate&) const = default;
 };
 void read(const nlohmann::json& json, KioskCreate& value);
 nlohmann::json to_json(const KioskCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<KioskCreate> = Schema::KioskCreate;
+
+// Changes to a kiosk link.
+struct KioskPatch {
+  // false: the QR code disappears, and the links that phones opened by it become invalid. true: a
+  // new code.
+  bool phones = false;
+  bool operator==(const KioskPatch&) const = default;
+};
+void read(const nlohmann::json& json, KioskPatch& value);
+nlohmann::json to_json(const KioskPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<KioskPatch> = Schema::KioskPatch;
 
 // Link of a kiosk.
 struct KioskLogin {

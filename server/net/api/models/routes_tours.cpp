@@ -9,9 +9,11 @@
 #include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/serialization/tour_serialization.h"
+#include "net/serialization/tour_theme.h"
 #include "store/content/named_parts.h"
 #include "store/people/kiosks.h"
 #include "store/store.h"
+#include "store/tables/attachments.h"
 
 namespace strata::net {
 namespace {
@@ -31,6 +33,38 @@ Result<Found> find_to_change(const RouteContext& context, const Request& request
   auto found = STRATA_TRY(find_tour(context, request));
   STRATA_TRY(check_if_match(request, found.tour.version));
   return found;
+}
+
+constexpr std::chrono::hours kUnusedFor{24};  // an open editor may still use a younger file
+
+Result<TourFilesById> files_of(const RouteContext& context, NamedPartId tour_id) {
+  TourFilesById files;
+  const auto all = STRATA_TRY(context.store.tour_files().of_tour(tour_id));
+  for (const store::TourFile& file : all) files[file.id] = file;
+  return files;
+}
+
+// Takes over the members of a request that tours did not always have. An empty theme or list
+// removes the stored one.
+template <class Body>
+Result<void> take_design(const RouteContext& context, const Request& request, const Model& model,
+                         const Body& body, const TourFilesById& files, nlohmann::json& content) {
+  const auto put = [&](const char* member, nlohmann::json value) {
+    if (value.empty())
+      content.erase(member);
+    else
+      content[member] = std::move(value);
+  };
+  if (body.theme) {
+    STRATA_TRY(check_theme_colors(*body.theme));
+    STRATA_TRY(check_logo(*body.theme, files));
+    put("theme", protocol::to_json(*body.theme));
+  }
+  if (body.classes) {
+    auto classes = STRATA_TRY(stored_classes(context, model, request.role(), *body.classes));
+    put("classes", std::move(classes));
+  }
+  return {};
 }
 
 // The answer is made within the transaction that stores the tour, so `tour_json` with the names is
@@ -67,7 +101,7 @@ Result<Response> get_tour(const RouteContext& context, const Request& request) {
 Result<Response> create_tour(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::TourCreate>(request));
   const auto model = STRATA_TRY(stored_model(context, request));
-  auto stops = STRATA_TRY(stored_stops(context, model, request.role(), body.stops));
+  auto stops = STRATA_TRY(stored_stops(context, model, request.role(), body.stops, {}));
   NamedPart tour;
   tour.model_id = model.id;
   tour.name = body.name;
@@ -75,6 +109,7 @@ Result<Response> create_tour(const RouteContext& context, const Request& request
   tour.content = {
       {"languages", body.languages}, {"idle_s", body.idle_s}, {"stops", std::move(stops)}};
   tour.user = request.user();
+  STRATA_TRY(take_design(context, request, model, body, {}, tour.content));
   STRATA_TRY(check_languages(tour.content, true));
   const auto tour_json = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
   const auto answer = [&](const NamedPart& made) {
@@ -94,8 +129,10 @@ Result<Response> change_tour(const RouteContext& context, const Request& request
   if (body.text) tour.text = *body.text;
   if (body.languages) tour.content["languages"] = *body.languages;
   if (body.idle_s) tour.content["idle_s"] = *body.idle_s;
+  const auto files = STRATA_TRY(files_of(context, tour.id));
+  STRATA_TRY(take_design(context, request, found.model, body, files, tour.content));
   if (body.stops) {
-    auto stops = STRATA_TRY(stored_stops(context, found.model, request.role(), *body.stops));
+    auto stops = STRATA_TRY(stored_stops(context, found.model, request.role(), *body.stops, files));
     tour.content["stops"] = std::move(stops);
   }
   STRATA_TRY(check_languages(tour.content, body.stops.has_value()));
@@ -103,6 +140,8 @@ Result<Response> change_tour(const RouteContext& context, const Request& request
   const auto answer = [&](const NamedPart& now) { return answer_of(tour_json, now, 200); };
   const auto changed = STRATA_TRY(
       context.store.tours().update(tour, idempotent_response<NamedPart>(request, answer)));
+  // If it fails, the next change deletes them.
+  (void)context.store.tour_files().drop_unused(tour.id, files_in(changed.content), kUnusedFor);
   return answer(changed);
 }
 
@@ -110,7 +149,9 @@ Result<Response> delete_tour(const RouteContext& context, const Request& request
   const auto found = STRATA_TRY(find_to_change(context, request));
   const auto kiosks = STRATA_TRY(context.store.kiosks().of_tour(found.tour.id));
   const auto answer = [] { return empty_response(204); };
+  const auto files = STRATA_TRY(files_of(context, found.tour.id));
   STRATA_TRY(context.store.tours().remove(found.tour, idempotent_response<>(request, answer)));
+  if (!files.empty()) (void)context.store.attachments().drop_orphans();  // else the next start does
   end_kiosks(context, kiosks, "the tour was deleted");
   return answer();
 }

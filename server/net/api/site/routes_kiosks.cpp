@@ -1,6 +1,7 @@
 // Links for kiosks: the requests of curators, and those of a kiosk.
 #include <memory>
 
+#include "core/no_such.h"
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "net/api/addressed.h"
@@ -41,7 +42,8 @@ nlohmann::json to_json(const Kiosk& kiosk) {
                       {"tour_name", kiosk.tour_name},
                       {"user", kiosk.user},
                       {"created", utc_text(kiosk.created)},
-                      {"wants_reload", kiosk.wants_reload}};
+                      {"wants_reload", kiosk.wants_reload},
+                      {"phones", !kiosk.phone.empty()}};
   if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
   if (kiosk.last_seen) json["last_seen"] = utc_text(*kiosk.last_seen);
   if (kiosk.revoked) json["revoked"] = utc_text(*kiosk.revoked);
@@ -74,8 +76,8 @@ Result<Response> create_kiosk(const RouteContext& context, const Request& reques
   const auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
   std::optional<std::chrono::seconds> lifetime;
   if (body.days) lifetime = std::chrono::hours(24 * *body.days);
-  const auto made =
-      STRATA_TRY(context.store.kiosks().create(tour.id, body.name, request.user(), lifetime));
+  const auto made = STRATA_TRY(
+      context.store.kiosks().create(tour.id, body.name, request.user(), lifetime, body.phones));
   return json_response({{"path", "/kiosk/" + made.secret}, {"kiosk", to_json(made.kiosk)}}, 201)
       .with("Location", "/api/v1/kiosks/" + to_string(made.kiosk.id))
       .with("Cache-Control", "no-store");
@@ -94,9 +96,19 @@ Result<Response> reload_kiosk(const RouteContext& context, const Request& reques
   return json_response(to_json(kiosk));
 }
 
+Result<Response> change_kiosk(const RouteContext& context, const Request& request) {
+  const auto body = STRATA_TRY(body_of<protocol::KioskPatch>(request));
+  const auto id = STRATA_TRY(id_of<KioskId>(request, "kiosk"));
+  const auto kiosk = STRATA_TRY(context.store.kiosks().allow_phones(id, body.phones));
+  // The screen has the same name as its phones; it connects again.
+  if (!body.phones) end_kiosks(context, {id}, "the link for phones is switched off");
+  return json_response(to_json(kiosk));
+}
+
 // --- requests of kiosks
 
-Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool wants_reload) {
+Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool is_phone,
+                      bool wants_reload) {
   const auto tour =
       STRATA_TRY(context.store.tours().find(kiosk.model_id, to_string(kiosk.tour_id)));
   auto tour_json = STRATA_TRY(to_json(context, tour, Role::viewer, {}));
@@ -104,6 +116,8 @@ Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool want
       {"id", kiosk.id},       {"name", kiosk.name},           {"project", kiosk.project},
       {"model", kiosk.model}, {"tour", std::move(tour_json)}, {"wants_reload", wants_reload}};
   if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
+  if (is_phone) json["is_phone"] = true;
+  if (!is_phone && !kiosk.phone.empty()) json["phone_path"] = "/kiosk/" + kiosk.phone;
   return json_response(json).with("Cache-Control", "no-store");
 }
 
@@ -116,8 +130,8 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
     return fail(ErrorCode::unauthenticated, "Link is not valid",
                 "This link is unknown, expired or revoked. Ask a curator for a new link.", "link");
   gate.was_right(address, {});
-  STRATA_TRY(context.store.kiosks().seen(kiosk->id, true));
-  auto response = self(context, *kiosk, false);
+  if (!kiosk->is_phone) STRATA_TRY(context.store.kiosks().seen(kiosk->id, true));
+  auto response = self(context, *kiosk, kiosk->is_phone, false);
   if (response)
     response->with("Set-Cookie",
                    Authenticator::set_kiosk_cookie(body.link, needs_secure_cookie(request)));
@@ -129,10 +143,12 @@ Result<Response> kiosk_self(const RouteContext& context, const Request& request)
     return fail(ErrorCode::forbidden, "Not a kiosk",
                 "Only kiosks can read this. Send the cookie of a kiosk with `as=kiosk`, or its "
                 "bearer token.");
-  const auto kiosk = STRATA_TRY(context.store.kiosks().kiosk(request.principal->kiosk->id));
+  // By its secret, which says whether it is the screen or a phone.
+  const auto found = STRATA_TRY(context.store.kiosks().find(Authenticator::secret_of(request)));
+  if (!found) return no_such("kiosk", to_string(request.principal->kiosk->id));
   // Only records the visit, so a kiosk gets its answer even while the database refuses writes.
-  (void)context.store.kiosks().seen(kiosk.id, false);
-  return self(context, kiosk, kiosk.wants_reload);
+  if (!found->is_phone) (void)context.store.kiosks().seen(found->id, false);
+  return self(context, *found, found->is_phone, !found->is_phone && found->wants_reload);
 }
 
 }  // namespace
@@ -159,6 +175,12 @@ void add_kiosk_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/kiosks/{kiosk}",
               .handler = answer_by(revoke_kiosk),
               .role = Role::curator});
+  router.add({.method = Method::patch,
+              .pattern = "/api/v1/kiosks/{kiosk}",
+              .handler = answer_by(change_kiosk),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
   router.add({.method = Method::post,
               .pattern = "/api/v1/kiosks/{kiosk}/reload",
               .handler = answer_by(reload_kiosk),

@@ -1,20 +1,13 @@
 #include <algorithm>
-#include <array>
-#include <fstream>
-#include <mutex>
 
 #include "app/change_notifier.h"
 #include "core/no_such.h"
-#include "core/text/filename.h"
-#include "core/text/percent.h"
 #include "domain/people/role.h"
 #include "domain/tables/attachment.h"
 #include "domain/tables/table.h"
 #include "media/media_type.h"
-#include "media/picture.h"
-#include "media/thumbnail.h"
+#include "net/api/stored_file.h"
 #include "net/auth/project_authorization.h"
-#include "net/http/byte_range.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/upload.h"
 #include "net/live/live_sockets.h"
@@ -36,58 +29,22 @@ using NewAttachment = store::NewAttachment;
 constexpr const char* kAccepted =
     "Send the file as the body, with its `name` in the address, or send one or several files in a "
     "multipart/form-data form.";
-// holds all metadata before a picture's pixels, such as color profiles
-constexpr std::size_t kHeadBytes = 1u << 20;
-constexpr std::uint64_t kAtOnceBytes = 4u << 20;  // larger answers are streamed
-constexpr std::uint64_t kThumbnailFileBytes = 128u << 20;
-
-// No file can run scripts in the server's origin, even if a browser treats it as a page.
-constexpr const char* kSandbox = "sandbox; default-src 'none'";
 
 bool is_shown_in_place(std::string_view media_type) {
   return is_raster_picture(media_type) || media_type == "application/pdf";
 }
 
-std::vector<std::uint8_t> head_of(const std::filesystem::path& file) {
-  std::vector<std::uint8_t> head(kHeadBytes);
-  std::ifstream in(file, std::ios::binary);
-  in.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-  return head;
-}
-
 NewAttachment inspected(const Upload& upload, const std::string& requested_name) {
+  const InspectedFile found =
+      inspect_file(upload.file, requested_name.empty() ? upload.filename : requested_name);
   NewAttachment file;
   file.file = upload.file;
-  file.name = base_filename(requested_name.empty() ? upload.filename : requested_name);
-  if (file.name.empty()) file.name = "unnamed";
-  const auto head = head_of(upload.file);
-  file.media_type = sniff_media_type(head, file.name);
-  // Stores a picture of unknown size, too: it is the user's file.
-  const bool is_picture = is_raster_picture(file.media_type);
-  if (const auto info = inspect_picture(head, 1 << 16); is_picture && info) {
-    file.width = info->width;
-    file.height = info->height;
-  }
+  file.name = found.name;
+  file.media_type = found.media_type;
+  file.width = found.width;
+  file.height = found.height;
   return file;
 }
-
-// Holds the extracted parts of a form until the answer is sent.
-class CutOut {
- public:
-  CutOut(const std::vector<Upload>& uploads, const std::filesystem::path& body)
-      : uploads_(uploads), body_(body) {}
-  CutOut(const CutOut&) = delete;
-  ~CutOut() {
-    std::error_code gone_already;
-    for (const Upload& upload : uploads_)
-      if (upload.file != body_) std::filesystem::remove(upload.file, gone_already);
-  }
-
- private:
-  const std::vector<Upload>& uploads_;
-  const std::filesystem::path& body_;
-};
 
 nlohmann::json list_json(const std::vector<Attachment>& attachments) {
   nlohmann::json list = nlohmann::json::array();
@@ -109,7 +66,7 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   }
   auto version = STRATA_TRY(expected_record_version(context, request, place.table, key));
   auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir, kAccepted));
-  const CutOut cut_out(uploads, request.body_file);
+  const UploadedFiles cut_out(uploads, request.body_file);
   const std::string name = request.query_or("name", {});
   if (!name.empty() && uploads.size() > 1)
     return fail(ErrorCode::invalid, "Name for several files",
@@ -180,117 +137,12 @@ Result<AttachmentId> attachment_id(const Request& request) {
   return id_of<AttachmentId>(request, "attachment");
 }
 
-Result<int> thumbnail_side(const Request& request) {
-  static constexpr std::array kSides = {64, 128, 256, 512, 1024};
-  const std::string& text = request.query.at("thumbnail");
-  for (const int side : kSides)
-    if (text == std::to_string(side)) return side;
-  return fail(ErrorCode::invalid, "Invalid thumbnail size",
-              "`thumbnail` must be 64, 128, 256, 512 or 1024.", "thumbnail");
-}
-
-Result<Response> thumbnail(const RouteContext& context, const Attachment& attachment, int side) {
-  // Decoded pictures are large: decoding one at a time bounds the memory.
-  static std::mutex decoding;
-  auto stored = STRATA_TRY(context.store.attachments().thumbnail(attachment, side));
-  if (stored) return bytes_response(std::move(*stored), "image/jpeg");
-  constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff",
-                                                   "image/webp", "image/bmp"};
-  if (std::find(kTypes.begin(), kTypes.end(), attachment.media_type) == kTypes.end())
-    return fail(ErrorCode::unsupported, "No thumbnail",
-                "The server makes thumbnails of JPEG, PNG, TIFF, WebP and BMP pictures only. "
-                "This file is " +
-                    attachment.media_type + ".",
-                "thumbnail");
-  if (attachment.bytes > kThumbnailFileBytes)
-    return fail(ErrorCode::invalid, "Picture too large",
-                "The server makes thumbnails of files of at most " +
-                    std::to_string(kThumbnailFileBytes >> 20) + " MiB.",
-                "thumbnail");
-  const std::lock_guard lock(decoding);
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(attachment.bytes);
-  STRATA_TRY(context.store.attachments().read(
-      attachment, 0, attachment.bytes, [&](std::span<const std::uint8_t> piece) {
-        bytes.insert(bytes.end(), piece.begin(), piece.end());
-        return true;
-      }));
-  auto picture = make_thumbnail(bytes, side);
-  if (!picture) {
-    picture.error().field = "thumbnail";
-    return tl::unexpected(picture.error());
-  }
-  // If it cannot be stored (disk full, database busy), the next request makes it again.
-  (void)context.store.attachments().keep_thumbnail(attachment, side, *picture);
-  return bytes_response(std::move(*picture), "image/jpeg");
-}
-
-Result<Response> content(const RouteContext& context, const Attachment& attachment,
-                         const RequestedRange& requested) {
-  Response response;
-  response.status = requested.is_part ? 206 : 200;
-  response.with("Content-Type", attachment.media_type);
-  if (requested.is_part)
-    response.with("Content-Range", "bytes " + std::to_string(requested.range.begin) + "-" +
-                                       std::to_string(requested.range.end - 1) + "/" +
-                                       std::to_string(attachment.bytes));
-  const std::uint64_t length = requested.range.end - requested.range.begin;
-  if (length > kAtOnceBytes) {
-    response.stream = Response::Stream{
-        length,
-        [&store = context.store, attachment, range = requested.range](const Response::Sink& sink) {
-          return store.attachments().read(attachment, range.begin, range.end, sink).has_value();
-        }};
-    return response;
-  }
-  response.bytes.reserve(length);
-  STRATA_TRY(context.store.attachments().read(
-      attachment, requested.range.begin, requested.range.end,
-      [&](std::span<const std::uint8_t> piece) {
-        response.bytes.insert(response.bytes.end(), piece.begin(), piece.end());
-        return true;
-      }));
-  return response;
-}
-
 Result<Response> read_attachment(const RouteContext& context, const Request& request) {
   auto id = STRATA_TRY(attachment_id(request));
   auto attachment = STRATA_TRY(context.store.attachments().find(id, request.author()));
-  const bool small = request.query.contains("thumbnail");
-  int side = 0;
-  if (small) {
-    auto requested = STRATA_TRY(thumbnail_side(request));
-    side = requested;
-  }
-  const std::string etag =
-      "\"" + attachment.sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
-  if (names_tag(request.header("if-none-match"), etag))
-    return empty_response(304).with("ETag", etag);
-  Result<Response> response;
-  if (small) {
-    response = thumbnail(context, attachment, side);
-    if (!response) return response;
-  } else {
-    const auto if_range = request.header("if-range");
-    const auto range =
-        if_range.empty() || if_range == etag ? request.header("range") : std::string_view();
-    const auto requested = requested_range(range, attachment.bytes);
-    if (!requested) {
-      Response refusal = problem_response(
-          {ErrorCode::range_not_satisfied, "Range not available",
-           "The file has " + std::to_string(attachment.bytes) + " bytes.", "Range"});
-      return refusal.with("Content-Range", "bytes */" + std::to_string(attachment.bytes));
-    }
-    response = content(context, attachment, *requested);
-    if (!response) return response;
-    const char* way = is_shown_in_place(attachment.media_type) ? "inline" : "attachment";
-    response
-        ->with("Content-Disposition",
-               way + ("; filename*=UTF-8''" + percent_encode(attachment.name)))
-        .with("Accept-Ranges", "bytes");
-  }
-  response->with("ETag", etag).with("Content-Security-Policy", kSandbox);
-  return response;
+  return stored_file_response(context, request,
+                              {attachment.name, attachment.media_type, attachment.sha256,
+                               attachment.bytes, is_shown_in_place(attachment.media_type)});
 }
 
 Result<Response> change_attachment(const RouteContext& context, const Request& request) {

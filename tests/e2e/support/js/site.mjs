@@ -206,6 +206,7 @@ export class Site {
     await server.json("POST", `/comments/${id}/replies`, { text: "Since 2019." });
     await this.#view("West");
     await this.#tour("Round");
+    await this.#post("/models/wall/tours/round/files?name=north.png", "picture.png");
     const { path } = await this.#kiosk("Hall");
     this.kiosk_link = path.split("/").pop();
     for (const [layer, value, where] of [

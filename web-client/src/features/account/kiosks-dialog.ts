@@ -140,7 +140,8 @@ export class StrataKiosksDialog extends LitElement {
         <span class="hint">${this.told(kiosk)}</span>`,
       tools: ended
         ? undefined
-        : html`<button ?disabled=${kiosk.wants_reload} aria-label=${words.reload_of(kiosk.name)} @click=${() => void this.reload(kiosk)}>${icon("redo")}${words.reload}</button>
+        : html`<label class="check" title=${words.phones_hint}><input type="checkbox" aria-label=${words.phones_of(kiosk.name)} .checked=${kiosk.phones ?? false} @change=${(event: Event) => void this.allowPhones(kiosk, (event.target as HTMLInputElement).checked)} /> <span>QR</span></label>
+            <button ?disabled=${kiosk.wants_reload} aria-label=${words.reload_of(kiosk.name)} @click=${() => void this.reload(kiosk)}>${icon("redo")}${words.reload}</button>
             <button aria-label=${words.revoke_of(kiosk.name)} @click=${() => void this.revoke(kiosk)}>${words.revoke}</button>`,
       note: this._note?.id === kiosk.id ? this._note : null,
     };
@@ -178,6 +179,8 @@ export class StrataKiosksDialog extends LitElement {
         </label>
       </div>
       ${this._wrong ? html`<p class="error" role="alert">${this._wrong.text}</p>` : html`<p class="hint">${words.days_lead}</p>`}
+      <label class="check"><input type="checkbox" name="phones" /> <span>${words.phones}</span></label>
+      <p class="hint">${words.phones_hint}</p>
       <div class="row">
         <button class="primary" ?disabled=${this._busy}>${words.make}</button>
         <button type="button" class="quiet" @click=${() => (this._making = false)}>${texts.cancel}</button>
@@ -228,6 +231,8 @@ export class StrataKiosksDialog extends LitElement {
         body: {
           name,
           ...(this._days.trim() === "" ? {} : { days }),
+          phones:
+            this.renderRoot.querySelector<HTMLInputElement>("input[name=phones]")?.checked === true,
         },
       });
       this._making = false;
@@ -243,6 +248,17 @@ export class StrataKiosksDialog extends LitElement {
       this._kiosks = (this._kiosks ?? []).map((each) => (each.id === now.id ? now : each));
       this._note = { id: kiosk.id, kind: "done", text: words.reload_asked };
     });
+  }
+
+  private async allowPhones(kiosk: Kiosk, phones: boolean): Promise<void> {
+    await this.change(kiosk, async () => {
+      const now = await this.api.json("PATCH /kiosks/{kiosk}", {
+        path: { kiosk: kiosk.id },
+        body: { phones },
+      });
+      this._kiosks = (this._kiosks ?? []).map((each) => (each.id === now.id ? now : each));
+    });
+    this.requestUpdate(); // after a refusal the box shows the stored state
   }
 
   private async revoke(kiosk: Kiosk): Promise<void> {

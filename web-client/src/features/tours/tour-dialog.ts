@@ -8,7 +8,7 @@ import { ApiError } from "../../net/api-error";
 import { newId } from "../../core/ids";
 import { languageInWords } from "../../core/languages";
 import { pageLocale } from "../../core/locale";
-import type { Tour, TourEntry } from "../../core/protocol.gen";
+import type { Tour, TourClasses, TourEntry, TourFile, TourTheme } from "../../core/protocol.gen";
 import {
   bodyOf,
   differs,
@@ -35,6 +35,7 @@ import { numberInput } from "../../ui/number-input";
 import { holdPage } from "../../ui/routes";
 import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
+import "./tour-design";
 import "./tour-languages";
 import "./tour-stop-fields";
 import type { StrataTourStopFields } from "./tour-stop-fields";
@@ -141,6 +142,7 @@ export class StrataTourDialog extends LitElement {
         }
         .stops > .stop.unchosen,
         .in-stop .about,
+        .in-stop .design,
         .in-stop strata-tour-stops {
           display: none;
         }
@@ -251,8 +253,19 @@ export class StrataTourDialog extends LitElement {
     const stop = draft.stops[index];
     const place = placeOf(this._problem?.field ?? "");
     const refused = place.stop !== null && place.stop === index;
-    return html`<div class="editor ${this._chosen === null ? "" : "in-stop"}">
+    const tour = this._base?.id ?? null; // null: files have no place yet
+    return html`<div class="editor ${this._chosen === null ? "" : "in-stop"}" @file=${({ detail }: CustomEvent<TourFile>) => this.put({ files: [...this._draft!.files, detail] })}>
       ${this.about(draft)}
+      <strata-tour-design
+        class="design"
+        .session=${this.session}
+        .tour=${tour}
+        .theme=${draft.theme}
+        .files=${draft.files}
+        heading=${draft.stops[0]?.title[draft.languages[0] ?? ""] ?? draft.name}
+        problem=${this.refusal("theme")}
+        @changed=${({ detail }: CustomEvent<TourTheme>) => this.put({ theme: detail })}
+      ></strata-tour-design>
       <div class="stops">
         <strata-tour-stops
           .session=${this.session}
@@ -273,12 +286,16 @@ export class StrataTourDialog extends LitElement {
                 <strata-tour-stop-fields
                   .session=${this.session}
                   .stop=${stop}
+                  .tour=${tour}
+                  .files=${draft.files}
+                  .classes=${draft.classes}
+                  @classes=${({ detail }: CustomEvent<TourClasses[]>) => this.put({ classes: detail })}
                   .languages=${draft.languages}
                   .language=${this._language}
                   wrong=${refused ? place.within : ""}
                   problem=${refused ? (this._problem?.text ?? "") : ""}
                   @language=${({ detail }: CustomEvent<string>) => (this._language = detail)}
-                  @changed=${({ detail }: CustomEvent<StopDraft>) => this.put({ stops: draft.stops.map((each) => (each.id === detail.id ? detail : each)) })}
+                  @changed=${({ detail }: CustomEvent<StopDraft>) => this.put({ stops: this._draft!.stops.map((each) => (each.id === detail.id ? detail : each)) })}
                   @try=${() => this.tryStop(index)}
                 ></strata-tour-stop-fields>`
               : html`<p class="hint">${words.stops_lead}</p>`
@@ -352,7 +369,9 @@ export class StrataTourDialog extends LitElement {
   private general(field: string): boolean {
     const { stop } = placeOf(field);
     if (stop !== null) return this._draft?.stops[stop] === undefined;
-    return !["name", "idle_s", "text", "languages", "stops"].some((each) => isAbout(field, each));
+    return !["name", "idle_s", "text", "languages", "stops", "theme"].some((each) =>
+      isAbout(field, each),
+    );
   }
 
   // ── changes ────────────────────────────────────────────────────────────────────────────────────
@@ -469,4 +488,8 @@ export class StrataTourDialog extends LitElement {
 }
 
 const told = ({ wrong, range }: DraftProblem): string =>
-  wrong === "seconds" ? words.wrong_seconds(...(range ?? [0, 0])) : words.wrong[wrong];
+  wrong === "seconds"
+    ? words.wrong_seconds(...(range ?? [0, 0]))
+    : wrong === "contrast"
+      ? "" // <strata-tour-design> says it with the numbers
+      : words.wrong[wrong];

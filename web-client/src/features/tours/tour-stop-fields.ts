@@ -14,7 +14,7 @@ import {
   untranslated,
   type StopDraft,
 } from "../../domain/tours";
-import type { TourTransition } from "../../core/protocol.gen";
+import type { TourClasses, TourFile, TourTransition } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
@@ -25,16 +25,23 @@ import "../../ui/ordered-choice";
 import { radioGroup } from "../../ui/radio-group";
 import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
+import "./tour-media";
 import "./tour-records";
 import { visibilityBadge } from "../../ui/visibility";
 
 const words = texts.tours;
+const kMostClasses = 256;
 const kTransitions: readonly TourTransition[] = ["move", "cut"];
 
 @customElement("strata-tour-stop-fields")
 export class StrataTourStopFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) stop!: StopDraft;
+  /** Id; null: not saved yet. */
+  @property({ attribute: false }) tour: number | null = null;
+  @property({ attribute: false }) files: readonly TourFile[] = [];
+  /** Names of classes, of the whole tour. */
+  @property({ attribute: false }) classes: readonly TourClasses[] = [];
   @property({ attribute: false }) languages: readonly string[] = [];
   /** The language that is edited next to the first one. */
   @property() language = "";
@@ -110,6 +117,12 @@ export class StrataTourStopFields extends LitElement {
         display: flex;
         justify-self: stretch;
       }
+      details[open] > summary {
+        margin-bottom: 0.5rem;
+      }
+      summary {
+        cursor: pointer;
+      }
       .lacks {
         color: var(--warn);
       }
@@ -161,6 +174,20 @@ export class StrataTourStopFields extends LitElement {
         ${this.refusal("layers")} ${this.layerNames()}
       </div>
       <div class="part">
+        <span class="caption">${words.media}</span>
+        <p class="hint">${words.media_hint}</p>
+        <strata-tour-media
+          .session=${session}
+          .tour=${this.tour}
+          .media=${stop.media}
+          .files=${this.files}
+          .languages=${this.written}
+          wrong=${this.wrong.startsWith("media") ? this.wrong : ""}
+          @changed=${(event: CustomEvent<StopDraft["media"]>) => this.change({ media: event.detail })}
+        ></strata-tour-media>
+        ${this.refusal("media")}
+      </div>
+      <div class="part">
         <span class="caption">${words.records}</span>
         <p class="hint">${words.records_hint}</p>
         <strata-tour-records
@@ -202,7 +229,46 @@ export class StrataTourStopFields extends LitElement {
               </label>`,
           ),
         )}
-      </div>`;
+      </div>
+      ${layers.filter(({ palette }) => palette.mode === "categorical").map((layer) => this.classNames(layer))}`;
+  }
+
+  /** The names of classes at a tapped place. They belong to the tour. */
+  private classNames(layer: Layer): TemplateResult | typeof nothing {
+    const { points } = layer.palette;
+    const own = this.classes.find((each) => each.layer === layer.slug)?.classes ?? [];
+    const others = this.written.slice(1);
+    if (points.length === 0 || points.length > kMostClasses) return nothing;
+    return html`<details>
+      <summary>${words.class_names(labelOf(layer))}</summary>
+      <div class="layer-names">
+        ${points.map(({ at, label }) =>
+          others.map(
+            (language) =>
+              html`<label class="field">
+                <span>${words.class_name(label || String(at), languageInWords(language))}</span>
+                <input
+                  type="text"
+                  maxlength="200"
+                  lang=${language}
+                  .value=${own.find(({ value }) => value === at)?.names[language] ?? ""}
+                  @input=${(event: Event) => this.nameClass(layer.slug, at, language, (event.target as HTMLInputElement).value)}
+                />
+              </label>`,
+          ),
+        )}
+      </div>
+    </details>`;
+  }
+
+  private nameClass(layer: string, value: number, language: string, name: string): void {
+    const own = this.classes.find((each) => each.layer === layer)?.classes ?? [];
+    const names = { ...own.find((each) => each.value === value)?.names, [language]: name };
+    const classes = [...own.filter((each) => each.value !== value), { value, names }].sort(
+      (a, b) => a.value - b.value,
+    );
+    const all = [...this.classes.filter((each) => each.layer !== layer), { layer, classes }];
+    this.dispatchEvent(new CustomEvent<TourClasses[]>("classes", { detail: all }));
   }
 
   private async nameLayer(layer: Layer, language: string, typed: string): Promise<void> {

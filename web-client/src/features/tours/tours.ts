@@ -3,7 +3,8 @@
 
 import { ApiError } from "../../net/api-error";
 import { type Api, ifVersion } from "../../net/api";
-import type { Tour, TourCreate, TourEntry } from "../../core/protocol.gen";
+import type { Progress, Upload } from "../../net/upload";
+import type { Tour, TourCreate, TourEntry, TourFile } from "../../core/protocol.gen";
 import { KnownItems } from "../../net/known-items";
 
 export class Tours {
@@ -76,6 +77,20 @@ export class Tours {
       }),
     );
   }
+  /** Adds a picture, sound, video or subtitles; the tour uses it when it is saved with it. */
+  addFile(tour: number, file: File, progress: Progress): Upload<TourFile> {
+    return this._api.upload(
+      "POST /models/{model}/tours/{tour}/files",
+      { path: { model: this._modelId, tour }, query: { name: file.name.slice(0, 255) } },
+      [{ file, path: file.name }],
+      progress,
+    );
+  }
+  /** The address of a file, or of a small picture of it. */
+  addressOf(tour: number, file: number, thumbnail?: 256): string {
+    const address = `/api/v1/models/${this._modelId}/tours/${tour}/files/${file}`;
+    return thumbnail ? `${address}?thumbnail=${thumbnail}` : address;
+  }
   /** Deletes under the same condition. */
   async remove({ id, version }: TourEntry): Promise<void> {
     try {
@@ -91,7 +106,7 @@ export class Tours {
   }
 
   private put(tour: Tour): Tour {
-    const { stops, idle_s: _, ...entry } = tour;
+    const { stops, idle_s: _, theme: __, classes: ___, files: ____, ...entry } = tour;
     if (this._known.put({ ...entry, stop_count: stops.length })) this._changed();
     return tour;
   }

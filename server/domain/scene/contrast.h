@@ -1,0 +1,10 @@
+#pragma once
+
+#include "domain/layers/palette.h"
+
+namespace strata {
+
+// The contrast of two opaque colors, 1 to 21, as WCAG 2.2 defines it (relative luminance in sRGB).
+double contrast(const Rgba& a, const Rgba& b);
+
+}  // namespace strata
