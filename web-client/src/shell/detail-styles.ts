@@ -33,6 +33,7 @@ export const detailStyles = css`
   .keys > div {
     display: grid;
     grid-template-columns: minmax(6.875rem, 44%) 1fr;
+    align-items: baseline;
     gap: var(--space-4);
     padding-bottom: var(--space-2);
     break-inside: avoid;

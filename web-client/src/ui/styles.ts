@@ -390,6 +390,10 @@ export const choicesStyles = css`
     gap: var(--space-3);
     align-items: start;
   }
+  .choices label {
+    display: grid;
+    gap: var(--space-1);
+  }
   .choices .full {
     grid-column: 1 / -1;
   }
