@@ -19,6 +19,9 @@ export const kLeastAccentContrast = 3;
 /** How much lighter the upper end of the background is. */
 const kLighterTop: Record<TourMode, number> = { light: 0.45, dark: 0.07 };
 
+/** And how much lighter the sheet with the texts is. */
+const kLighterSurface: Record<TourMode, number> = { light: 0.78, dark: 0.08 };
+
 const channels = (color: string): number[] =>
   [1, 3, 5].map((at) => Number.parseInt(color.slice(at, at + 2), 16));
 
@@ -65,6 +68,7 @@ export function propertiesOf(theme: TourTheme | undefined): Record<string, strin
     "--ink": ink,
     "--room": bottom,
     "--room-top": top,
+    "--surface": mixed(bottom, "#ffffff", kLighterSurface[modeOf(theme)]),
     "--accent": accent,
     "--accent-ink": contrast(accent, "#ffffff") >= contrast(accent, dark) ? "#ffffff" : dark,
     "--heading": theme?.font === "sans" ? "var(--sans)" : "var(--serif)",

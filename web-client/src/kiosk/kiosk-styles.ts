@@ -42,7 +42,6 @@ export const kioskStyles = css`
   }
   :host([data-mode="dark"]) {
     color-scheme: dark;
-    --surface: color-mix(in srgb, var(--room) 92%, #fff);
     --raised: color-mix(in srgb, var(--room) 84%, #fff);
     --line: color-mix(in srgb, var(--ink) 26%, var(--surface));
     --shade: rgb(0 0 0 / 0.4);

@@ -32,36 +32,36 @@ export class StrataTourDesign extends LitElement {
     sharedStyles,
     css`
       summary {
-        padding: 0.375rem 0;
+        padding: var(--space-2) 0;
         font-weight: 600;
         cursor: pointer;
       }
       .parts {
         display: grid;
         grid-template-columns: minmax(0, 1fr) minmax(12rem, 16rem);
-        gap: 1rem 1.5rem;
-        padding: 0.5rem 0 0.25rem;
+        gap: var(--space-4) var(--space-6);
+        padding: var(--space-2) 0 var(--space-1);
       }
       .fields {
         display: grid;
         align-content: start;
-        gap: 0.75rem;
+        gap: var(--space-3);
         min-width: 0;
       }
       .pair {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(11rem, 1fr));
-        gap: 0.75rem;
+        gap: var(--space-3);
       }
       .color {
         display: flex;
         align-items: center;
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       input[type="color"] {
         width: 3rem;
         height: 2.375rem;
-        padding: 2px;
+        padding: var(--space-half);
       }
       .segments {
         justify-self: start;
@@ -78,7 +78,7 @@ export class StrataTourDesign extends LitElement {
         color: var(--ink);
       }
       .preview .stage {
-        padding: 0.75rem;
+        padding: var(--space-3);
       }
       .preview img {
         max-width: 60%;
@@ -86,22 +86,22 @@ export class StrataTourDesign extends LitElement {
       }
       .preview .sheet {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
         justify-items: start;
-        padding: 0.875rem;
-        border-radius: 0.875rem 0.875rem 0 0;
-        background: color-mix(in srgb, var(--room) 22%, #fff);
-      }
-      .preview.dark .sheet {
-        background: color-mix(in srgb, var(--room) 92%, #fff);
+        padding: var(--space-4);
+        border-radius: var(--radius-large) var(--radius-large) 0 0;
+        background: var(--surface);
       }
       .preview b {
-        font: 600 1.35rem/1.15 var(--heading);
+        font-family: var(--heading);
+        font-size: var(--text-title-2);
+        font-weight: 600;
+        line-height: 1.15;
         overflow-wrap: anywhere;
       }
       .preview i {
-        padding: 0.375rem 0.875rem;
-        border-radius: 99px;
+        padding: var(--space-2) var(--space-4);
+        border-radius: var(--radius-round);
         background: var(--accent);
         color: var(--accent-ink);
         font-style: normal;
@@ -155,7 +155,7 @@ export class StrataTourDesign extends LitElement {
               : html`<strata-tour-file-add .session=${session} .tour=${tour} label=${words.logo_add} accept=".png,.webp,.jpg,.jpeg" @added=${({ detail }: CustomEvent<TourFile>) => this.takeLogo(detail)}></strata-tour-file-add>`
           }
         </div>
-        <div class="preview ${modeOf(theme)}" role="img" aria-label=${words.design_preview} ${styled(propertiesOf(theme))}>
+        <div class="preview" role="img" aria-label=${words.design_preview} ${styled(propertiesOf(theme))}>
           <div class="stage">${logo && tour !== null ? html`<img src=${session.tours.addressOf(tour, logo.id)} alt="" />` : nothing}</div>
           <div class="sheet"><b>${this.heading || words.name_hint}</b><i>${words.preview_button}</i></div>
         </div>

@@ -28,7 +28,7 @@ export class StrataTourFileAdd extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 0.375rem;
+        gap: var(--space-2);
       }
     `,
   ];

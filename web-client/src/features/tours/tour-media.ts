@@ -36,13 +36,13 @@ export class StrataTourMedia extends LitElement {
       .subtitles {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       .medium {
         display: grid;
         grid-template-columns: 6rem minmax(0, 1fr);
-        gap: 0.75rem;
-        padding: 0.75rem;
+        gap: var(--space-3);
+        padding: var(--space-3);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
       }
@@ -72,7 +72,7 @@ export class StrataTourMedia extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 0.25rem 0.5rem;
+        gap: var(--space-1) var(--space-2);
       }
       .head b {
         flex: 1 1 8rem;
@@ -82,7 +82,7 @@ export class StrataTourMedia extends LitElement {
       .pair {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(min(100%, 12rem), 1fr));
-        gap: 0.5rem;
+        gap: var(--space-2);
       }
       @media (max-width: 560px) {
         .medium {

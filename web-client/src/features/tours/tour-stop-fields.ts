@@ -118,7 +118,7 @@ export class StrataTourStopFields extends LitElement {
         justify-self: stretch;
       }
       details[open] > summary {
-        margin-bottom: 0.5rem;
+        margin-bottom: var(--space-2);
       }
       summary {
         cursor: pointer;
