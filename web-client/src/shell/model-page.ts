@@ -17,8 +17,6 @@ import "../features/painting/brush-panel";
 import "../features/comments/comment-card";
 import "../features/comments/comment-panel";
 import "../features/comments/comment-pins";
-import "../features/activity/activity-panel";
-import "../features/review/review-panel";
 import { modalIsOpen } from "../ui/dialog";
 import { icon, logo } from "../ui/icons";
 import { handleKey } from "./keyboard";
@@ -29,10 +27,6 @@ import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
 import { modelStyles } from "./model-styles";
-import "../features/measuring/measure-panel";
-import "../features/past/past-bar";
-import "../features/past/past-overlay";
-import "../features/past/past-since";
 import type { OpenDialog } from "./open-dialog";
 import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
@@ -55,7 +49,6 @@ import type { StrataStage } from "./stage";
 import { styled } from "../ui/styled";
 import { sharedStyles } from "../ui/styles";
 import type { TablePanelRequest } from "../session/requests";
-import "../features/tables/table-panel";
 import "../features/tours/tour-list";
 import "../features/views/view-list";
 import type { TableView } from "../features/tables/table-view";
@@ -132,6 +125,10 @@ export class StrataModelPage extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     loadPartLater("model_dialogs");
+    loadPartLater("table");
+    loadPartLater("measuring");
+    loadPartLater("activity");
+    loadPartLater("past");
     addEventListener("keydown", this.onKeyDown);
     addEventListener("keyup", this.onKeyUp);
     addEventListener("blur", this.onBlur);
@@ -335,7 +332,7 @@ export class StrataModelPage extends LitElement {
         </section>
         <main>
           <strata-stage .session=${session}></strata-stage>
-          <strata-past-overlay .session=${session}></strata-past-overlay>
+          ${session.past.isOpen && hasPart("past", this) ? html`<strata-past-overlay .session=${session}></strata-past-overlay>` : nothing}
           <strata-together-bar .session=${session}></strata-together-bar>
           <strata-comment-pins .session=${session}></strata-comment-pins>
           ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
@@ -353,8 +350,7 @@ export class StrataModelPage extends LitElement {
             <strata-value-readout .session=${session}></strata-value-readout>
           </div>
           <strata-hover-card .session=${session}></strata-hover-card>
-          ${session.visits.news && !session.past.isOpen ? html`<strata-past-since .session=${session}></strata-past-since>` : nothing}
-          ${session.past.isOpen ? html`<strata-past-bar .session=${session}></strata-past-bar>` : nothing}
+          ${this.history(session)}
         </main>
         ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this._panelShown ? this.panel(session) : nothing}
       </div>
@@ -425,6 +421,14 @@ export class StrataModelPage extends LitElement {
     </header>`;
   }
 
+  private history(session: OpenModelSession): TemplateResult | typeof nothing {
+    const { past, visits } = session;
+    if ((!past.isOpen && !visits.news) || !hasPart("past", this)) return nothing;
+    return past.isOpen
+      ? html`<strata-past-bar .session=${session}></strata-past-bar>`
+      : html`<strata-past-since .session=${session}></strata-past-since>`;
+  }
+
   private panel(session: OpenModelSession): TemplateResult {
     const { chosen } = this._tabs;
     return html`<aside aria-label=${texts.model.panel}>
@@ -455,6 +459,7 @@ export class StrataModelPage extends LitElement {
       case "comments":
         return html`<section><strata-comment-panel .session=${session}></strata-comment-panel></section>`;
       case "activity":
+        if (!hasPart("activity", this)) return html``;
         return html`${session.canPaint && session.reviews.isUsed ? html`<section><strata-review-panel .session=${session}></strata-review-panel></section>` : nothing}
           <section><strata-activity-panel .session=${session}></strata-activity-panel></section>`;
     }
@@ -466,7 +471,7 @@ export class StrataModelPage extends LitElement {
     const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
       this._dialog = event.detail;
     };
-    return html`${active === "measure" ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
+    return html`${active === "measure" && hasPart("measuring", this) ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
       ${paints(active) ? html`<section class="options"><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
       <section><strata-layer-panel .session=${session} @request=${request}></strata-layer-panel></section>`;
   }
@@ -474,15 +479,19 @@ export class StrataModelPage extends LitElement {
   private table(session: OpenModelSession, view: TableView): TemplateResult {
     return html`<section class="table" aria-label=${texts.tables.panel}>
       ${this._tableSplitter.render()}
-      ${keyed(
-        view,
-        html`<strata-table-panel
-          .session=${session}
-          .view=${view}
-          @request=${(event: CustomEvent<TablePanelRequest>) => (this._dialog = event.detail)}
-          @drop-column=${(event: CustomEvent<Column>) => void dropColumn(session, view.tableId, event.detail)}
-        ></strata-table-panel>`,
-      )}
+      ${
+        hasPart("table", this)
+          ? keyed(
+              view,
+              html`<strata-table-panel
+                .session=${session}
+                .view=${view}
+                @request=${(event: CustomEvent<TablePanelRequest>) => (this._dialog = event.detail)}
+                @drop-column=${(event: CustomEvent<Column>) => void dropColumn(session, view.tableId, event.detail)}
+              ></strata-table-panel>`,
+            )
+          : nothing
+      }
     </section>`;
   }
 

@@ -43,6 +43,14 @@ setPartLoads({
   home: () => import("../features/home/home-page"),
   model: () => import("./model-page"),
   model_dialogs: () => import("./model-dialogs"),
+  table: () => import("../features/tables/table-panel"),
+  measuring: () => import("../features/measuring/measure-panel"),
+  activity: () =>
+    Promise.all([
+      import("../features/activity/activity-panel"),
+      import("../features/review/review-panel"),
+    ]),
+  past: () => import("../features/past/elements"),
   join: () => import("../features/account/join-page"),
   sign_in: () => import("../features/account/sign-in"),
   account: () => import("../features/account/account-dialog"),
