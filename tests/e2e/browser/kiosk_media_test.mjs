@@ -46,7 +46,10 @@ function sound() {
 const file = async (name, body) => {
   const answer = await fetch(`${server.url}/api/v1${kTour}/files?name=${name}`, {
     method: "POST",
-    headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" },
+    headers: {
+      Authorization: `Bearer ${server.token}`,
+      "Content-Type": "application/octet-stream",
+    },
     body,
   });
   assert.equal(answer.status, 201, await answer.clone().text());
@@ -142,7 +145,10 @@ test("a class has its name in the visitor's language", async () => {
   await live();
   const { x, y, width, height } = await page.locator("strata-kiosk-stage").boundingBox();
   await page.touchscreen.tap(x + width / 2, y + height / 2);
-  await page.locator(".place-of-tap").getByText(/^Scherbe \d+$/).waitFor();
+  await page
+    .locator(".place-of-tap")
+    .getByText(/^Scherbe \d+$/)
+    .waitFor();
   await shot("class");
 });
 
