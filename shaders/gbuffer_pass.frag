@@ -3,8 +3,8 @@
 #include "shared/museum_light.h"
 // Texture coordinate (16 bits each, floor of uv * 65536, which maps exactly to texels of a
 // power-of-two resolution) and lit base color. The alpha is the light, by which layers are lit
-// later. HEADLIGHT, RAKING_LIGHT or UNLIT replace the museum light; LOOKS is the number of pictures
-// over the colors of the vertices.
+// later. HEADLIGHT, RAKING_LIGHT or UNLIT replace the museum light; EXPOSED makes the picture brighter
+// or darker; LOOKS is the number of pictures over the colors of the vertices.
 layout(location = 0) in vec2 surface_uv;
 #ifndef LIT_VERTICES
 layout(location = 1) in vec4 surface_normal;
@@ -52,13 +52,11 @@ void main() {
   }
 #endif
   float light = light_here();
-  float exposure = mesh.rim_light.w;
-  color *= light * exposure;
-#if defined(HEADLIGHT) || defined(RAKING_LIGHT) || defined(UNLIT)
-  if (exposure != 1.0)  // otherwise no color is too bright: what a scan stores is shown as it is
+  color *= light;
+#ifdef EXPOSED  // otherwise no color is too bright: what a scan stores is shown as it is
+  color = tone_mapped(color * mesh.rim_light.w);
 #endif
-    color = tone_mapped(color);
-  lit = vec4(color, min(light, 1.0));
+  lit = vec4(color, light);  // the format ends at 1
 #ifdef SECTION
   bool inside = !gl_FrontFacing && mesh.eye_is_cut_away != 0u;
   gl_FragDepth = marked_depth(gl_FragCoord.z, inside);

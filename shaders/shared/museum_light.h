@@ -6,13 +6,15 @@
 
 // The default light: a key from the upper left, a fill from the right and a rim from behind, all
 // soft, and a sky that is brighter at the top. 0.97 on a plane that faces the eye: layers then have
-// the colors of their legends. `openness` is the share of the sky that reaches the surface.
+// the colors of their legends. More light than that counts a third, so that bright stone keeps its
+// detail. `openness` is the share of the sky that reaches the surface.
 float museum_light(vec3 normal, float openness, MeshUniforms mesh) {
   float key = max(0.0, dot(normal, mesh.key_light.xyz) * 0.83 + 0.17);
   float fill = max(0.0, dot(normal, mesh.fill_light.xyz) * 0.71 + 0.29);
   float rim = max(0.0, dot(normal, mesh.rim_light.xyz));
   float sky = 0.5 + 0.5 * dot(normal, mesh.up.xyz);
-  return sqrt(0.73 * key + 0.26 * rim + openness * (0.26 * fill + 0.12 + 0.19 * sky));
+  float light = sqrt(0.73 * key + 0.26 * rim + openness * (0.26 * fill + 0.12 + 0.19 * sky));
+  return min(light, 0.65 + 0.33 * light);
 }
 
 // Rolls off what is brighter than a picture can show, and keeps the hue.

@@ -61,6 +61,7 @@ Result<const gl::Program*> MeshPass::program(const MeshView& view, bool lit_at_v
   if (kind_ == Kind::gbuffer) {
     if (const char* light = light_define(view.light)) defines.emplace_back(light);
     if (lit_at_vertices) defines.emplace_back("LIT_VERTICES");
+    if (view.is_exposed) defines.emplace_back("EXPOSED");
     defines.push_back("LOOKS " + std::to_string(view.images.size()));
   }
   if (const auto built = programs_.find(defines); built != programs_.end()) return &built->second;
@@ -166,6 +167,7 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
         static_cast<float>(std::min(kRakingOnPlane / std::max(towards.z, 1e-3), kMaxRaking));
   }
   view.light = light.mode;
+  view.is_exposed = light.exposure_ev != 0;
   uniforms.fill_light = direction({0.80, 0.05, 0.45});
   uniforms.fill_light.w = static_cast<float>(light.fill);
   uniforms.rim_light = direction({0.35, 0.75, -0.45});

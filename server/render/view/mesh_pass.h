@@ -26,6 +26,7 @@ struct MeshView {
   bool is_mirrored = false;
   // For the g-buffer.
   LightMode light = LightMode::museum;
+  bool is_exposed = false;  // brighter or darker than the colors as they are stored
   // bottom to top, at most kMaxSurfaceImages, with their opacity in the uniforms
   std::vector<const gl::Texture*> images;
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <set>
 
@@ -178,8 +179,9 @@ TEST_F(RoomAreas, outlines_are_combined_as_the_sets_of_what_each_of_them_paints)
       ASSERT_TRUE(answer) << answer.error().detail;
       const TileMap combined = tiles("marks");
       std::set<TileAddress> addresses;
-      for (const TileMap* each : {&alone[0], &alone[1], &alone[2], &combined})
-        for (const auto& [address, tile] : *each) addresses.insert(address);
+      for (const auto& each :
+           {std::cref(alone[0]), std::cref(alone[1]), std::cref(alone[2]), std::cref(combined)})
+        for (const auto& [address, tile] : each.get()) addresses.insert(address);
       std::uint64_t wrong = 0, right = 0;
       for (const TileAddress address : addresses)
         for (int texel = 0; texel < kTexelsPerTile; ++texel) {
