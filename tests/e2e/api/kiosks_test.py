@@ -8,7 +8,6 @@ import pytest
 from support.browsers import Browser, join
 from support.kiosk_site import (
     ALL,
-    PNG,
     STOP,
     TOUR,
     M,
@@ -227,7 +226,6 @@ def test_links(server, tokens, story):
 
 def test_a_kiosk_opens_the_doors_of_its_tour_alone(server, site, story):
     _, files, thread = site
-    files["tour"] = server.ok("POST", story.tour + "/files?name=west.png", PNG).json()["id"]
     _, story.sweep_secret = make_kiosk(server, story.tour, "Sweep")
     answered, refused = sweep(server, story.sweep_secret, story.tour, files, thread)
     others_closed(server, story.sweep_secret, files)

@@ -85,6 +85,7 @@ def make_site(server):
             "stops": [{"view": "west", "title": {"en": "West"}}],
         },
     )
+    picture = server.ok("POST", M + "/tours/round/files?name=west.png", plain(64)).json()["id"]
     comment = server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()[
         "id"
     ]
@@ -95,7 +96,13 @@ def make_site(server):
     ).json()["id"]
     server.wait_for_job(job)
     OF_PATH.update(
-        {"attachment": str(file), "comment": str(comment), "group": str(group), "job": str(job)}
+        {
+            "attachment": str(file),
+            "file": str(picture),
+            "comment": str(comment),
+            "group": str(group),
+            "job": str(job),
+        }
     )
     server.add_person("ada", "annotator")
     return camera

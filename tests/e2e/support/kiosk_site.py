@@ -151,6 +151,7 @@ def is_open(path):
 def sweep(server, secret, tour, files, thread):
     """Makes every call of the contract: changes are refused, and reads return only content of the
     one model. Returns how many operations were open, and how many closed."""
+    shown = server.ok("POST", query(tour + "/files", name="west.png"), PNG).json()["id"]
     words = {
         "model": "sheet",
         "layer": "finds",
@@ -160,7 +161,7 @@ def sweep(server, secret, tour, files, thread):
         "table": "finds",
         "key": "1",
         "attachment": str(files["public"]),
-        "file": str(files["tour"]),
+        "file": str(shown),
         "column": "name",
         "project": "default",
         "comment": str(thread),

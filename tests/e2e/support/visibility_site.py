@@ -139,6 +139,7 @@ def make_site(server):
         ],
     }
     server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [stop]})
+    server.ok("POST", query(M + "/tours/round/files", name="plan.png"), PNG)
     server.ok("POST", M + "/tours/round/kiosks", {"name": "Hall"})
     assert hidden["visibility"] == "private" and public["visibility"] == "public"
     return camera, before, public, hidden, thread
@@ -161,6 +162,7 @@ def words(server, public):
         "comment": ["1"],
         "view": ["plan"],
         "tour": ["round"],
+        "file": ["1"],
         "kiosk": ["1"],
         "name": ["sheet.ply"],
         "format": ["npy", "png", "tif"],
@@ -229,6 +231,8 @@ def reading_bodies(camera):
     line = {"places": [[5, 5, 0], [95, 95, 0]], "step_mm": 5}
     return {
         "positions": [{"points": [[50, 50, 0]]}],
+        "layer_difference": [{"from": 1}, {"from": 1, "to": 2}],
+        "measure_section": [{"section": [[0, 0, -1, 0.0005]]}],
         "pick": [{"camera": camera, "x": 300, "y": 200}],
         "profile": [line],
         "select": [{"where": "cracks > 0", "layers": ["cracks", "finds"]}],

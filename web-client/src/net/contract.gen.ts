@@ -1260,7 +1260,7 @@ export interface paths {
         get?: never;
         put?: never;
         /** Measure a section */
-        post: operations["measureSection"];
+        post: operations["measure_section"];
         delete?: never;
         options?: never;
         head?: never;
@@ -5613,7 +5613,7 @@ export interface operations {
             };
         };
     };
-    measureSection: {
+    measure_section: {
         parameters: {
             query?: never;
             header?: never;

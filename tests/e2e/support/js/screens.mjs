@@ -646,6 +646,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     {
       name: "new tour",
       start: async () => {
+        await open_tab(page, w, w.view.title);
         await open(button(w.tours.new));
         const languages = page.locator("strata-tour-languages");
         await page
@@ -706,6 +707,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     {
       name: "tours",
       start: async () => {
+        await open_tab(page, w, w.view.title);
         await page.locator("strata-tour-list").getByRole("listitem").waitFor();
         await page.locator("strata-tour-list").evaluate((list) => list.scrollIntoView());
       },

@@ -179,7 +179,8 @@ export const query_words = {
   attribute: one("zone", "nothing"),
   names: one("zone"),
   link: one("(the owner's link)", "3q2-7wAAqrs"),
-  to: one("2", "3"),
+  from: one("2001-05-04T12:00:00Z", "2030-01-01", "yesterday"),
+  to: one("2", "3", "2030-01-01T00:00:00Z"),
 };
 
 const file = (...names) => one(...names.map((name) => ({ file: name })));
