@@ -172,7 +172,8 @@ test("for ever is asked before, and is for ever", async () => {
 });
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
-  for (const who of Object.values(everybody)) who.assert_no_complaints();
+  // the picture of a card, while the model goes into the Trash
+  for (const who of Object.values(everybody)) who.assert_no_complaints(["/frame)"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 });

@@ -405,6 +405,7 @@ test("pins let paint through, and can be hidden", async () => {
   const pin_of_paint = pins(ada).first();
   assert.equal(await pin_of_paint.evaluate((each) => getComputedStyle(each).pointerEvents), "none");
   await ada.page.keyboard.press("v");
+  await open_tab(ada.page, words, words.comments.title);
   await panel(ada).getByRole("button", { name: words.comments.hide_pins }).click();
   await wait_for(async () => (await pins(ada).count()) === 0, "the pins to go");
 });

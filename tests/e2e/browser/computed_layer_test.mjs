@@ -43,7 +43,10 @@ test("names are completed, and what the expression holds for is told", async ({ 
   const expression = expression_of(page);
   await expression.fill("");
   await expression.pressSequentially("if(valid(cra");
-  await page.getByRole("option", { name: /^cracks/ }).waitFor();
+  await page
+    .getByRole("option", { name: /^cracks/ })
+    .first()
+    .waitFor();
   await shot(page, "completion");
   await expression.press("Enter");
   await expression.pressSequentially("), 2, 1)");

@@ -297,7 +297,7 @@ test("a PDF is made, saved under its name, and listed no more", async () => {
   assert.match(pdf.name, /^[\w.-]+\.pdf$/);
   assert.equal(pdf.bytes.subarray(0, 5).toString("latin1"), "%PDF-");
   await dialog(ada).getByText(`Saved as ${pdf.name}.`).waitFor();
-  assert.equal(await ada.page.locator("strata-layer-panel .job").count(), 0);
+  assert.equal(await ada.page.locator("strata-job-list .job").count(), 0);
   await shot(ada, "saved");
 });
 
@@ -341,7 +341,7 @@ test("one whose dialog is closed goes on, and is offered", async () => {
   await bar(ada).waitFor();
   await ada.page.keyboard.press("Escape");
   await closed(ada);
-  const row = ada.page.locator("strata-layer-panel .job");
+  const row = ada.page.locator("strata-job-list .job");
   await row.getByText(words.figures.job("Pot of Agathe")).waitFor();
   release();
   await notice(ada, words.figures.ready).waitFor();

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -184,7 +185,7 @@ test("playing ends at now", async () => {
 
 test("a line of the activity shows the model as it was then", async () => {
   const panel = ada.page.locator("strata-activity-panel");
-  await panel.getByRole("button", { name: words.activity.title }).click();
+  await open_tab(ada.page, words, words.activity.title);
   await panel
     .getByRole("button", { name: /Show the model as it was/ })
     .first()

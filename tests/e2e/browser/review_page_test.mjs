@@ -91,7 +91,9 @@ test("what she paints is hatched for both, and the curator's list has it", async
     async () => (await listed(cleo).count()) === 2,
     "both strokes in the curator's list",
   );
+  await open_tab(cleo.page, words, words.layers.title);
   await cleo.page.locator("strata-layer-panel").getByText(words.review.waiting(2)).waitFor();
+  await open_tab(cleo.page, words, words.activity.title);
   await open_tab(ada.page, words, words.activity.title);
   await wait_for(async () => (await listed(ada).count()) === 2, "both strokes in her own list");
   assert.equal(

@@ -162,11 +162,21 @@ test("a box keeps what is inside, and sides do not pass each other", async () =>
 test("the cube shows the side that is seen; a face, an arrow key or a drag turns the model", async () => {
   const cube = page.getByRole("radiogroup", { name: words.picture_bar.cube });
   const face = (name) => cube.getByRole("radio", { name, exact: true });
-  const chosen = (name) => face(name).getAttribute("aria-checked");
+  // once the camera has arrived
+  const chosen = (name, what = name) =>
+    wait_for(
+      async () => (await face(name).getAttribute("aria-checked")) === "true",
+      `${what} to be chosen`,
+    );
+  const none_chosen = () =>
+    wait_for(
+      async () => (await cube.getByRole("radio", { checked: true }).count()) === 0,
+      "no side to be chosen",
+    );
   await page.getByRole("button", { name: words.views.first, exact: true }).click();
-  assert.equal(await cube.getByRole("radio", { checked: true }).count(), 0);
+  await none_chosen();
   await face(words.views.top).click();
-  assert.equal(await chosen(words.views.top), "true");
+  await chosen(words.views.top);
   await face(words.views.top).focus();
   for (const [key, name] of [
     ["ArrowDown", words.views.front],
@@ -177,17 +187,18 @@ test("the cube shows the side that is seen; a face, an arrow key or a drag turns
     ["ArrowUp", words.views.front],
   ]) {
     await page.keyboard.press(key);
-    assert.equal(await chosen(name), "true", `after ${key}`);
+    await chosen(name, `${name}, after ${key},`);
   }
   await page.keyboard.press("6");
-  assert.equal(await chosen(words.views.bottom), "true");
+  await chosen(words.views.bottom);
   await page.keyboard.press("1");
+  await chosen(words.views.front);
   const box = await cube.boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width / 2 + 20, box.y + box.height / 2, { steps: 4 });
   await page.mouse.up();
-  assert.equal(await cube.getByRole("radio", { checked: true }).count(), 0);
+  await none_chosen();
   await page.keyboard.press("Shift+Home");
 });
 

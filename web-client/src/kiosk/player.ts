@@ -71,7 +71,7 @@ export class StrataKioskPlayer extends LitElement {
       overflow-wrap: anywhere;
     }
     .title {
-      font: 600 1.9em/1.15 var(--heading);
+      font: 600 1.9em/1.4 var(--heading); /* a lower line would scroll */
     }
     .controls {
       flex: none;

@@ -23,6 +23,7 @@ import { handleKey } from "./keyboard";
 import { isForField } from "../ui/keyboard";
 import { growing, growth } from "../ui/growth";
 import "../features/records/hover-card";
+import "../features/layers/job-list";
 import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
@@ -433,6 +434,7 @@ export class StrataModelPage extends LitElement {
     const { chosen } = this._tabs;
     return html`<aside aria-label=${texts.model.panel}>
       ${this._panelSplitter.render()} ${this._tabs.render(session, "panel")}
+      <strata-job-list .session=${session}></strata-job-list>
       <div class="scroll" id="panel" role="tabpanel" aria-labelledby=${tabId(chosen)}>${cache(this.tab(session, chosen))}</div>
     </aside>`;
   }

@@ -156,9 +156,9 @@ export const modelStyles = css`
     justify-items: end;
     pointer-events: none;
     position: absolute;
-    right: 0.875rem;
+    right: 4.75rem; /* beside the bar on the picture, which tall cards reach */
     bottom: calc(0.875rem + var(--past-height, 0px));
-    max-width: min(21.25rem, calc(100% - 13.75rem));
+    max-width: min(21.25rem, calc(100% - 17.625rem));
   }
   .splitter {
     position: absolute;
@@ -187,9 +187,10 @@ export const modelStyles = css`
   }
   aside {
     display: grid;
-    grid-template: auto minmax(0, 1fr) / minmax(0, 1fr);
+    grid-template: auto auto minmax(0, 1fr) / minmax(0, 1fr);
   }
   .scroll {
+    grid-row: 3; /* below the jobs, if there are any */
     position: relative; /* visually hidden content would lengthen the page otherwise */
     overflow: hidden auto;
     padding: 0 var(--space-3) var(--space-6);
@@ -263,6 +264,7 @@ export const modelStyles = css`
       font-size: var(--text-large);
     }
     .readings {
+      z-index: 3; /* above the bar on the picture */
       right: 0.625rem;
       bottom: calc(0.625rem + var(--past-height, 0px));
       max-width: calc(100% - 1.25rem);

@@ -16,7 +16,7 @@ const kHeight = 480;
 const kSmallWidth = 240; // also for screens with two device pixels per CSS pixel
 const kSmallHeight = 180;
 const kViewSide = 256;
-const kSamples = 16; // of each pixel, for smooth edges
+const kSamples = 4; // of each pixel: smooth edges at this size
 // one picture at a time, so that a gallery does not slow down other users
 let busy: Promise<void> = Promise.resolve();
 

@@ -15,7 +15,6 @@ import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import { unlockLabel } from "../../session/layer-lock";
 import { layerPanelStyles } from "./layer-panel-styles";
-import { layerJobRow, layerJobStyles } from "./layer-job-row";
 import { canBeColored } from "./color-dialog";
 import { layerChip, legend, legendStyles } from "./legend";
 import "../../ui/panel/empty-state";
@@ -49,14 +48,13 @@ export class StrataLayerPanel extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "layers", "jobs", "tables", "reviews");
+    followSession(this, "layers", "tables", "reviews");
   }
 
   static override styles = [
     sharedStyles,
     panelHeadingStyles,
     legendStyles,
-    layerJobStyles,
     dragStyles,
     layerPanelStyles,
   ];
@@ -91,7 +89,6 @@ export class StrataLayerPanel extends LitElement {
             : nothing
         }
       </div>
-      ${session.jobs.entries.map((entry) => layerJobRow(session, entry))}
       ${
         shown.length === 0
           ? html`<div class="empty">

@@ -1,76 +1,109 @@
-// A row above the layers: a job that makes layers or a file, with its progress and result.
+// <strata-job-list>: the jobs of this model that make layers or files, with progress and result,
+// above every tab of the side panel.
 
-import { css, html, nothing, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
 import { formatArea, formatBytes } from "../../domain/measure";
 import type { TransferReport } from "../../core/types";
 import { icon } from "../../ui/icons";
 import { isBusy, type LayerJob } from "../../session/layer-jobs";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { styled } from "../../ui/styled";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import { shareText } from "./transfer-dialog";
 
-export const layerJobStyles = css`
-  .job {
-    display: grid;
-    gap: var(--space-2);
-    margin-bottom: var(--space-2);
-    padding: var(--space-2) var(--space-2) var(--space-3) var(--space-3);
-    border: var(--edge) solid var(--line);
-    border-radius: var(--radius);
-    background: var(--raised);
-    font-size: var(--text-small);
-  }
-  .job .head {
-    display: flex;
-    align-items: center;
-    gap: var(--space-2);
-  }
-  .job .head b {
-    flex: 1;
-    min-width: 0;
-  }
-  .job.failed .said {
-    color: var(--danger);
-  }
-  .job .bar {
-    height: 5px;
-    margin-right: var(--space-2);
-    border-radius: var(--radius-tiny);
-    overflow: hidden;
-    background: var(--line);
-  }
-  .job .bar i {
-    display: block;
-    height: 100%;
-    background: var(--accent);
-  }
-  .job table {
-    border-collapse: collapse;
-    margin-right: var(--space-2);
-  }
-  .job th {
-    padding: 0 0 var(--space-1) var(--space-2);
-    font-weight: normal;
-    color: var(--ink-soft);
-  }
-  .job td {
-    padding: var(--space-1) 0 var(--space-1) var(--space-2);
-    border-top: var(--edge) solid var(--line);
-    text-align: right;
-    white-space: nowrap;
-  }
-  .job th:first-child,
-  .job td:first-child {
-    padding-left: 0;
-    text-align: left;
-    white-space: normal;
-    overflow-wrap: anywhere;
-  }
-`;
+@customElement("strata-job-list")
+export class StrataJobList extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
 
-export function layerJobRow(session: ModelSession, entry: LayerJob): TemplateResult {
+  constructor() {
+    super();
+    followSession(this, "jobs");
+  }
+
+  static override styles = [
+    sharedStyles,
+    css`
+      :host {
+        display: grid;
+        gap: var(--space-2);
+        padding: var(--space-3) var(--space-3) 0;
+      }
+      :host([hidden]) {
+        display: none;
+      }
+      .job {
+        display: grid;
+        gap: var(--space-2);
+        padding: var(--space-2) var(--space-2) var(--space-3) var(--space-3);
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+        font-size: var(--text-small);
+      }
+      .job .head {
+        display: flex;
+        align-items: center;
+        gap: var(--space-2);
+      }
+      .job .head b {
+        flex: 1;
+        min-width: 0;
+      }
+      .job.failed .said {
+        color: var(--danger);
+      }
+      .job .bar {
+        height: 5px;
+        margin-right: var(--space-2);
+        border-radius: var(--radius-tiny);
+        overflow: hidden;
+        background: var(--line);
+      }
+      .job .bar i {
+        display: block;
+        height: 100%;
+        background: var(--accent);
+      }
+      .job table {
+        border-collapse: collapse;
+        margin-right: var(--space-2);
+      }
+      .job th {
+        padding: 0 0 var(--space-1) var(--space-2);
+        font-weight: normal;
+        color: var(--ink-soft);
+      }
+      .job td {
+        padding: var(--space-1) 0 var(--space-1) var(--space-2);
+        border-top: var(--edge) solid var(--line);
+        text-align: right;
+        white-space: nowrap;
+      }
+      .job th:first-child,
+      .job td:first-child {
+        padding-left: 0;
+        text-align: left;
+        white-space: normal;
+        overflow-wrap: anywhere;
+      }
+    `,
+  ];
+
+  override updated(): void {
+    this.hidden = this.session.jobs.entries.length === 0;
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    return html`${session.jobs.entries.map((entry) => jobRow(session, entry))}`;
+  }
+}
+
+function jobRow(session: ModelSession, entry: LayerJob): TemplateResult {
   const words = texts.layer_jobs;
   const { job, problem, report } = entry;
   const busy = isBusy(entry);
