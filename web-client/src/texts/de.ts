@@ -1976,6 +1976,7 @@ export const texts = {
       "Noch keine gespeicherten Ansichten. Schließen Sie diesen Dialog, stellen Sie das Modell so ein, wie das Publikum es sehen soll, und wählen Sie „Ansicht speichern …“.",
     add_view: "Ansicht der neuen Station",
     add: "Station hinzufügen",
+    add_all: (views: number) => `Alle ${views} Ansichten ohne Station hinzufügen`,
     remove: "Station entfernen",
     removed: (title) => `„${title}“ entfernt.`,
     undo: "Rückgängig",

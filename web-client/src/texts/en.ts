@@ -1921,6 +1921,7 @@ export const texts = {
       "No saved views yet. Close this dialog, arrange the model as visitors should see it, and choose “Save view…”.",
     add_view: "View of the new stop",
     add: "Add stop",
+    add_all: (views: number) => `Add all ${views} views that have no stop yet`,
     remove: "Remove stop",
     removed: (title: string) => `“${title}” removed.`,
     undo: "Undo",

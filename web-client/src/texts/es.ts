@@ -1971,6 +1971,7 @@ export const texts = {
       "Todavía no hay vistas guardadas. Cierre este diálogo, prepare el modelo como deben verlo los visitantes y elija «Guardar vista…».",
     add_view: "Vista de la nueva parada",
     add: "Añadir parada",
+    add_all: (views: number) => `Añadir las ${views} vistas que aún no tienen parada`,
     remove: "Quitar parada",
     removed: (title) => `Se ha quitado «${title}».`,
     undo: "Deshacer",

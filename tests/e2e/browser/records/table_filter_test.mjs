@@ -189,6 +189,8 @@ test("values of a column are chosen with how many records have them", async () =
   assert.deepEqual(await findings(page), []);
   await shot("column-filter-values");
   await sheet.getByRole("checkbox", { name: /^clay/ }).check();
+  await shown([2, 3]); // at once
+  assert.ok(await sheet.getByRole("dialog").isVisible());
   await apply();
   await shown([2, 3]);
   assert.equal(await filter.inputValue(), "soil = 'clay'");

@@ -262,11 +262,17 @@ export class StrataColumnFilter extends LitElement {
     const all = this.lines();
     const wanted = this._search.trim().toLocaleLowerCase();
     const found = all.filter(({ text }) => text.toLocaleLowerCase().includes(wanted));
+    // The rows follow at once, and the sheet stays.
     const choose = (value: FilterValue) => (event: Event) => {
       const chosen = new Set(this._values);
       if ((event.target as HTMLInputElement).checked) chosen.add(value);
       else chosen.delete(value);
       this._values = chosen;
+      this.tell({ is: "one_of", values: [...chosen], empty: this._empty });
+    };
+    const chooseEmpty = (event: Event): void => {
+      this._empty = (event.target as HTMLInputElement).checked;
+      this.tell({ is: "one_of", values: [...this._values], empty: this._empty });
     };
     return html`${
       all.length > kSearched
@@ -284,7 +290,7 @@ export class StrataColumnFilter extends LitElement {
           counts.empty > 0 || this._empty
             ? html`<li>
               <label
-                ><input type="checkbox" .checked=${this._empty} @change=${(event: Event) => (this._empty = (event.target as HTMLInputElement).checked)} /><span><i>${words.no_value}</i></span
+                ><input type="checkbox" .checked=${this._empty} @change=${chooseEmpty} /><span><i>${words.no_value}</i></span
                 ><span class="count">${formatCount(counts.empty)}</span></label
               >
             </li>`
@@ -361,10 +367,14 @@ export class StrataColumnFilter extends LitElement {
     else this._problem = texts.tables.bad_number;
   };
 
-  private apply(choice: ColumnFilter | null): void {
+  private tell(choice: ColumnFilter | null): void {
     this.dispatchEvent(
       new CustomEvent("filter", { detail: withChoice(this.filter, this.column, choice) }),
     );
+  }
+
+  private apply(choice: ColumnFilter | null): void {
+    this.tell(choice);
     this._sheet.hidePopover();
   }
 

@@ -217,7 +217,9 @@ export class StrataTourStops extends LitElement {
     const { all } = this.session.views;
     if (this.lacksViews) return html`<p class="hint">${words.no_views}</p>`;
     const used = new Set(this.stops.map(({ view }) => view));
-    const next = all.find(({ slug }) => !used.has(slug)) ?? all[0];
+    const unused = all.filter(({ slug }) => !used.has(slug));
+    const next = unused[0] ?? all[0];
+    const room = kMostStops - this.stops.length;
     return html`<div class="add">
       <select aria-label=${words.add_view}>
         ${repeat(
@@ -228,7 +230,17 @@ export class StrataTourStops extends LitElement {
         )}
       </select>
       <button type="button" @click=${() => void this.add()}>${icon("plus")}${words.add}</button>
+      ${
+        unused.length > 1 && unused.length <= room
+          ? html`<button type="button" class="quiet" @click=${() => this.addAll(unused)}>${words.add_all(unused.length)}</button>`
+          : nothing
+      }
     </div>`;
+  }
+
+  private addAll(views: readonly View[]): void {
+    const added = views.map((view) => newStop(view, this.languages[0] ?? ""));
+    this.put([...this.stops, ...added], added[0]!.id);
   }
 
   private async add(): Promise<void> {
