@@ -41,8 +41,9 @@ float light_here() {
 }
 
 void main() {
-  uvec2 q = uvec2(clamp(surface_uv, 0.0, 1.0) * 65536.0);
-  packed_uv = min(q.x, 65535u) | (min(q.y, 65534u) << 16);  // never kBackground
+  // 65534 in y: never kBackground. Signed numbers, which processors convert in one step.
+  ivec2 q = ivec2(clamp(surface_uv * 65536.0, vec2(0.0), vec2(65535.0, 65534.0)));
+  packed_uv = uint(q.x | q.y << 16);
 
   vec3 color = surface_color.rgb;
 #if LOOKS > 0

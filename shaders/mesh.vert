@@ -18,18 +18,20 @@ layout(location = 0) out vec2 surface_uv;
 #ifndef LIT_VERTICES
 layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye
 #endif
-// a: the share of the sky that reaches the surface; LIT_VERTICES: the light
+// a: the light from all around; LIT_VERTICES: all light
 layout(location = 2) out vec4 surface_color;
 
 void main() {
   gl_Position = mesh.clip_from_model * vec4(position, 1.0);
   surface_uv = uv;
-  float to_eye = dot(normal.xyz, normalize(mesh.eye.xyz - position * mesh.eye.w));
-  surface_color = color;
+  vec3 to_eye = mesh.eye.xyz - position * mesh.eye.w;
 #ifdef LIT_VERTICES
-  surface_color.a = museum_light(is_seen_from_behind(to_eye) ? -normal.xyz : normal.xyz, color.a, mesh);
+  vec3 facing = is_seen_from_behind(normal.xyz, to_eye) ? -normal.xyz : normal.xyz;
+  surface_color = vec4(color.rgb, museum_light(facing, light_from_around(facing, color.a, mesh), mesh));
 #else
-  surface_normal = vec4(normal.xyz, to_eye);
+  surface_normal = vec4(normal.xyz, dot(normal.xyz, normalize(to_eye)));
+  vec3 facing = is_seen_from_behind(surface_normal.w) ? -normal.xyz : normal.xyz;
+  surface_color = vec4(color.rgb, light_from_around(facing, color.a, mesh));
 #endif
 #ifdef SECTION
   for (uint i = 0u; i < kSectionPlanes; ++i) gl_ClipDistance[i] = dot(mesh.section[i].xyz, position) + mesh.section[i].w;

@@ -7,13 +7,18 @@
 // The default light: a key from the upper left, a fill from the right and a rim from behind, all
 // soft, and a sky that is brighter at the top. 0.97 on a plane that faces the eye: layers then have
 // the colors of their legends. More light than that counts a third, so that bright stone keeps its
-// detail. `openness` is the share of the sky that reaches the surface.
-float museum_light(vec3 normal, float openness, MeshUniforms mesh) {
-  float key = max(0.0, dot(normal, mesh.key_light.xyz) * 0.83 + 0.17);
+// detail. The light from all around changes slowly over a surface and is computed at its vertices;
+// `openness` is the share of the sky that reaches them.
+float light_from_around(vec3 normal, float openness, MeshUniforms mesh) {
   float fill = max(0.0, dot(normal, mesh.fill_light.xyz) * 0.71 + 0.29);
-  float rim = max(0.0, dot(normal, mesh.rim_light.xyz));
   float sky = 0.5 + 0.5 * dot(normal, mesh.up.xyz);
-  float light = sqrt(0.73 * key + 0.26 * rim + openness * (0.26 * fill + 0.12 + 0.19 * sky));
+  return openness * (0.26 * fill + 0.12 + 0.19 * sky);
+}
+
+float museum_light(vec3 normal, float from_around, MeshUniforms mesh) {
+  float key = max(0.0, dot(normal, mesh.key_light.xyz) * 0.83 + 0.17);
+  float rim = max(0.0, dot(normal, mesh.rim_light.xyz));
+  float light = sqrt(0.73 * key + 0.26 * rim + from_around);
   return min(light, 0.65 + 0.33 * light);
 }
 
@@ -28,5 +33,11 @@ vec3 tone_mapped(vec3 color) {
 // Two-sided: scans are open and their windings are not always right. At silhouettes smooth normals
 // point away although the surface is not seen from behind, so only normals that clearly point away
 // are reversed.
-bool is_seen_from_behind(float cosine_to_eye) { return cosine_to_eye < -0.3; }
+const float kFromBehind = -0.3;  // cosine
+bool is_seen_from_behind(float cosine_to_eye) { return cosine_to_eye < kFromBehind; }
+// The same for a direction of any length, without its square root.
+bool is_seen_from_behind(vec3 normal, vec3 to_eye) {
+  float along = dot(normal, to_eye);
+  return along < 0.0 && along * along > kFromBehind * kFromBehind * dot(to_eye, to_eye);
+}
 #endif

@@ -8,6 +8,7 @@ namespace strata::bench {
 using Command = std::function<int()>;
 Command add_atlas(CLI::App& app);
 Command add_edit(CLI::App& app);
+Command add_frames(CLI::App& app);
 Command add_import(CLI::App& app);
 Command add_memory(CLI::App& app);
 Command add_nearest(CLI::App& app);

@@ -13,28 +13,21 @@
 #include "net/http/accept.h"
 
 namespace strata::net {
-namespace {
 
-constexpr std::size_t kMinBytes = 1024;  // less fits into one packet anyway
 // middle levels, not the strongest: clients wait for the result
 constexpr int kGzipLevel = 5;
 constexpr int kBrotliQuality = 4;
 
-bool is_text(std::string_view content_type) {
-  const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));
-  return type.starts_with("text/") || type == "application/json" || type.ends_with("+json") ||
-         type.ends_with("+xml") || type == "application/xml" || type == "application/javascript";
-}
-
-struct Gzip {
-  Gzip() {
+// Named: a member of a class must not have a type of an unnamed namespace.
+struct GzipStream {
+  GzipStream() {
     constexpr int kGzipWindow = 15 + 16;  // zlib's code for the gzip format
     if (deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY) != Z_OK)
       throw std::bad_alloc();
   }
-  ~Gzip() { deflateEnd(&stream); }
-  Gzip(const Gzip&) = delete;
-  Gzip& operator=(const Gzip&) = delete;
+  ~GzipStream() { deflateEnd(&stream); }
+  GzipStream(const GzipStream&) = delete;
+  GzipStream& operator=(const GzipStream&) = delete;
 
   void add(std::span<const std::uint8_t> bytes, bool last, std::vector<std::uint8_t>& out) {
     std::array<std::uint8_t, 16384> piece;
@@ -58,17 +51,17 @@ struct Gzip {
   z_stream stream{};
 };
 
-struct Brotli {
-  Brotli() : encoder(BrotliEncoderCreateInstance(nullptr, nullptr, nullptr)) {
+struct BrotliStream {
+  BrotliStream() : encoder(BrotliEncoderCreateInstance(nullptr, nullptr, nullptr)) {
     if (!encoder) throw std::bad_alloc();
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_QUALITY, kBrotliQuality);
     // 256 KiB per stream instead of the default of 4 MiB
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_LGWIN, 18);
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_MODE, BROTLI_MODE_TEXT);
   }
-  ~Brotli() { BrotliEncoderDestroyInstance(encoder); }
-  Brotli(const Brotli&) = delete;
-  Brotli& operator=(const Brotli&) = delete;
+  ~BrotliStream() { BrotliEncoderDestroyInstance(encoder); }
+  BrotliStream(const BrotliStream&) = delete;
+  BrotliStream& operator=(const BrotliStream&) = delete;
 
   void add(std::span<const std::uint8_t> bytes, bool last, std::vector<std::uint8_t>& out) {
     const auto operation = last ? BROTLI_OPERATION_FINISH : BROTLI_OPERATION_PROCESS;
@@ -90,6 +83,16 @@ struct Brotli {
 
   BrotliEncoderState* encoder;
 };
+
+namespace {
+
+constexpr std::size_t kMinBytes = 1024;  // less fits into one packet anyway
+
+bool is_text(std::string_view content_type) {
+  const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));
+  return type.starts_with("text/") || type == "application/json" || type.ends_with("+json") ||
+         type.ends_with("+xml") || type == "application/xml" || type == "application/javascript";
+}
 
 // `"v3"` becomes `"v3-br"`; a weak tag stays weak.
 std::string with_coding(std::string_view etag, Coding coding) {
@@ -141,14 +144,14 @@ std::optional<Coding> accepted_coding(std::string_view accept_encoding) {
 }
 
 struct Compressor::State {
-  std::variant<std::monostate, Gzip, Brotli> coder;
+  std::variant<std::monostate, GzipStream, BrotliStream> coder;
 };
 
 Compressor::Compressor(Coding coding) : state_(std::make_unique<State>()) {
   if (coding == Coding::gzip)
-    state_->coder.emplace<Gzip>();
+    state_->coder.emplace<GzipStream>();
   else
-    state_->coder.emplace<Brotli>();
+    state_->coder.emplace<BrotliStream>();
 }
 Compressor::~Compressor() = default;
 Compressor::Compressor(Compressor&&) noexcept = default;
@@ -156,8 +159,8 @@ Compressor& Compressor::operator=(Compressor&&) noexcept = default;
 
 std::vector<std::uint8_t> Compressor::add(std::span<const std::uint8_t> bytes, bool last) {
   std::vector<std::uint8_t> out;
-  if (auto* gzip = std::get_if<Gzip>(&state_->coder)) gzip->add(bytes, last, out);
-  if (auto* brotli = std::get_if<Brotli>(&state_->coder)) brotli->add(bytes, last, out);
+  if (auto* gzip = std::get_if<GzipStream>(&state_->coder)) gzip->add(bytes, last, out);
+  if (auto* brotli = std::get_if<BrotliStream>(&state_->coder)) brotli->add(bytes, last, out);
   return out;
 }
 

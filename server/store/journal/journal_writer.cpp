@@ -12,6 +12,14 @@
 #include "store/store_impl.h"
 
 namespace strata::store {
+
+// Named: a member of a class must not have a type of an unnamed namespace.
+struct WaitingEntry {
+  JournalEntry entry;
+  JournalWriter::Done done;
+  std::size_t bytes;
+};
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -19,12 +27,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kGroupEntries = 256;
 constexpr std::size_t kGroupBytes = 16u << 20;
 constexpr std::chrono::milliseconds kRetryPause{100};
-
-struct Waiting {
-  JournalEntry entry;
-  JournalWriter::Done done;
-  std::size_t bytes;
-};
 
 std::size_t bytes_of(const nlohmann::json& json) {
   if (!json.is_structured())
@@ -37,13 +39,13 @@ std::size_t bytes_of(const nlohmann::json& json) {
 
 std::size_t bytes_of(const JournalEntry& entry) {
   std::size_t bytes =
-      sizeof(Waiting) + entry.user.size() + bytes_of(entry.record) + bytes_of(entry.answer);
+      sizeof(WaitingEntry) + entry.user.size() + bytes_of(entry.record) + bytes_of(entry.answer);
   for (const auto& revision : entry.revisions)
     bytes += sizeof(revision) + revision.difference.size() + revision.key_tile.size();
   return bytes;
 }
 
-std::vector<const JournalEntry*> pointers(const std::deque<Waiting>& group) {
+std::vector<const JournalEntry*> pointers(const std::deque<WaitingEntry>& group) {
   std::vector<const JournalEntry*> entries;
   for (const auto& waiting : group) entries.push_back(&waiting.entry);
   return entries;
@@ -59,7 +61,7 @@ struct JournalWriter::Impl {
 
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::deque<Waiting> queue;
+  std::deque<WaitingEntry> queue;
   std::size_t waiting_bytes = 0;  // in the queue and in the current group
   std::uint64_t submitted = 0;
   std::uint64_t answered = 0;
@@ -72,16 +74,16 @@ struct JournalWriter::Impl {
 
   void run() {
     for (;;) {
-      std::deque<Waiting> group = take_group();
+      std::deque<WaitingEntry> group = take_group();
       if (group.empty()) return;
       write(group);
     }
   }
 
-  std::deque<Waiting> take_group() {
+  std::deque<WaitingEntry> take_group() {
     std::unique_lock lock(mutex);
     changed.wait(lock, [&] { return closing || !queue.empty(); });
-    std::deque<Waiting> group;
+    std::deque<WaitingEntry> group;
     std::size_t bytes = 0;
     while (!queue.empty() && group.size() < kGroupEntries && bytes < kGroupBytes) {
       bytes += queue.front().bytes;
@@ -91,10 +93,10 @@ struct JournalWriter::Impl {
     return group;
   }
 
-  void answer_front(std::deque<Waiting>& group, const Result<void>& result) {
+  void answer_front(std::deque<WaitingEntry>& group, const Result<void>& result) {
     std::size_t bytes = 0;
     {
-      Waiting waiting = std::move(group.front());
+      WaitingEntry waiting = std::move(group.front());
       group.pop_front();
       waiting.done(result);
       bytes = waiting.bytes;
@@ -113,7 +115,7 @@ struct JournalWriter::Impl {
   }
 
   // Retries until the group is answered.
-  void write(std::deque<Waiting>& group) {
+  void write(std::deque<WaitingEntry>& group) {
     const auto started = Clock::now();
     bool failed_before = false;
     while (!group.empty()) {
@@ -155,14 +157,14 @@ struct JournalWriter::Impl {
 
   // Answers the entries at the front that an earlier attempt committed although its answer was
   // lost. A transaction is atomic: the saved entries are the front of the group.
-  tl::expected<void, CommitFailure> skip_saved(PgConnection& to, std::deque<Waiting>& group) {
+  tl::expected<void, CommitFailure> skip_saved(PgConnection& to, std::deque<WaitingEntry>& group) {
     const auto saved = find_saved(to, pointers(group));
     if (!saved) return tl::unexpected(CommitFailure{saved.error(), true});
     for (std::size_t i = 0; i < saved->size() && (*saved)[i]; ++i) answer_front(group, {});
     return {};
   }
 
-  tl::expected<void, CommitFailure> attempt(std::deque<Waiting>& group, bool retry) {
+  tl::expected<void, CommitFailure> attempt(std::deque<WaitingEntry>& group, bool retry) {
     auto to = STRATA_TRY(connected());
     if (retry) STRATA_TRY(skip_saved(*to, group));
     return group.empty() ? tl::expected<void, CommitFailure>{}
@@ -172,7 +174,7 @@ struct JournalWriter::Impl {
   // Commits each entry in a separate transaction, because one of the group can never be written.
   // Later entries of the same model fail too, since they were made on top of it. (A lower sequence
   // means that the model's owner started again.)
-  tl::expected<void, CommitFailure> one_by_one(std::deque<Waiting>& group) {
+  tl::expected<void, CommitFailure> one_by_one(std::deque<WaitingEntry>& group) {
     struct Broken {
       std::int64_t sequence;
       Error problem;
@@ -209,9 +211,9 @@ struct JournalWriter::Impl {
     return {};
   }
 
-  void give_up(std::deque<Waiting>& group, const Error& problem) {
+  void give_up(std::deque<WaitingEntry>& group, const Error& problem) {
     log::error("journal: commits kept failing, waiting edits are not saved: " + problem.detail);
-    std::deque<Waiting> waiting;
+    std::deque<WaitingEntry> waiting;
     {
       std::lock_guard lock(mutex);
       waiting.swap(queue);

@@ -1,0 +1,169 @@
+// Measures the processor time of frames of a moving camera with two or more folders of shaders, one
+// frame of each after the other: other programs on the machine change all of them alike.
+#include <cmath>
+#include <ctime>
+#include <iostream>
+
+#include "bench/bench_commands.h"
+#include "bench/bench_mesh.h"
+#include "bench/harness.h"
+#include "mesh/surface/detail_levels.h"
+#include "support/shader_dirs.h"
+
+namespace strata::bench {
+namespace {
+
+struct Options {
+  std::vector<std::string> models{"pot"}, shaders;
+  std::string cache = "build/bench", json;
+  int frames = 200, layers = 0;
+};
+
+// Of all threads, also those of a driver that draws on the CPU.
+double processor_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) / 1e6;
+}
+
+class Drawer {
+ public:
+  Drawer(const std::string& shaders, const render::ModelGeometry& geometry, int layers) {
+    render::RendererOptions options;
+    options.shader_dir = shaders;
+    renderer_ = must(render::Renderer::start(options));
+    model_ = await<render::ModelHandle>(
+        [&](auto done) { renderer_->add_model(geometry, std::move(done)); });
+    view_ =
+        await<render::ViewHandle>([&](auto done) { renderer_->add_view(model_, std::move(done)); });
+    for (int i = 0; i < layers; ++i) add_filled_layer(i);
+  }
+
+  double frame_ms(const Camera& camera, bool moving) {
+    render::FrameRequest request;
+    request.view = view_;
+    request.camera = camera;
+    request.width = camera.width;
+    request.height = camera.height;
+    request.moving = moving;
+    request.style = style_;
+    const double start = processor_ms();
+    await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    return processor_ms() - start;
+  }
+  auto info() const { return renderer_->info(); }
+
+ private:
+  void add_filled_layer(int number) {
+    constexpr int kResolution = 1024;
+    const auto layer = await<render::LayerHandle>([&](auto done) {
+      renderer_->add_layer(model_, ValueType::u8, kResolution, std::move(done));
+    });
+    auto tile = std::make_shared<TileData>(ValueType::u8);
+    for (int i = 0; i < kTexelsPerTile; ++i)
+      tile->write(i, static_cast<std::uint32_t>(10 + 20 * number));
+    std::vector<render::TileUpload> tiles;
+    for (std::uint16_t y = 0; y < kResolution / kTileSize; ++y)
+      for (std::uint16_t x = 0; x < kResolution / kTileSize; ++x) tiles.push_back({{x, y}, tile});
+    await<void>(
+        [&](auto done) { renderer_->write_tiles(layer, std::move(tiles), std::move(done)); });
+    const auto palette = std::make_shared<Palette>(default_palette(ValueType::u8, false));
+    style_.layers.push_back({.layer = layer, .palette = palette, .opacity = 0.6F});
+  }
+
+  std::unique_ptr<render::Renderer> renderer_;
+  render::ModelHandle model_ = 0;
+  render::ViewHandle view_ = 0;
+  render::ViewStyle style_;
+};
+
+nlohmann::json measure(const std::string& name, const Options& options, nlohmann::json& on) {
+  Progress progress;
+  auto loaded = must(load_bench_mesh(name, {options.cache}));
+  render::ModelGeometry geometry;
+  geometry.full = loaded.geometry;
+  for (auto& level : must(mesh::make_detail_levels(*loaded.geometry, progress)))
+    geometry.coarser.push_back(std::make_shared<const mesh::Geometry>(std::move(level)));
+  std::vector<std::unique_ptr<Drawer>> drawers;
+  for (const auto& shaders : options.shaders)
+    drawers.push_back(std::make_unique<Drawer>(shaders, geometry, options.layers));
+  const auto gpu = drawers.front()->info();
+  on = machine(&gpu);
+
+  const std::size_t count = drawers.size();
+  std::vector<Samples> times(count), ratios(count);
+  constexpr int kWarm = 6;
+  for (int i = 0; i < options.frames + kWarm; ++i) {
+    const double angle = 0.3 + i * 0.031;
+    const auto camera = look_at(*geometry.full, {std::cos(angle), std::sin(angle), 0.4}, 1280, 720);
+    std::vector<double> here(count);
+    // A B, then B A; the first of a pair finds the model's data in no cache.
+    for (std::size_t turn = 0; turn < count; ++turn) {
+      const std::size_t at = i % 2 == 0 ? turn : count - 1 - turn;
+      here[at] = drawers[at]->frame_ms(camera, true);
+    }
+    if (i < kWarm) continue;
+    for (std::size_t at = 0; at < count; ++at) {
+      times[at].add(here[at]);
+      ratios[at].add(here[at] / here[0]);
+    }
+  }
+  nlohmann::json result{{"method", "frames"},
+                        {"model", mesh_title(name)},
+                        {"triangles", geometry.full->triangle_count()},
+                        {"layers", options.layers}};
+  std::printf("%s, %zu triangles, %d layers\n", mesh_title(name).c_str(),
+              geometry.full->triangle_count(), options.layers);
+  for (std::size_t at = 0; at < count; ++at) {
+    std::printf(
+        "  %s: %.2f ms of processor time a frame (p25 %.2f, p75 %.2f); / first: %.4f (p25 %.4f, p75 %.4f)\n",
+        options.shaders[at].c_str(), times[at].median(), times[at].quantile(0.25),
+        times[at].quantile(0.75), ratios[at].median(), ratios[at].quantile(0.25),
+        ratios[at].quantile(0.75));
+    result["shaders"].push_back({{"folder", options.shaders[at]},
+                                 {"processor_ms", times[at].median()},
+                                 {"processor_ms_p25", times[at].quantile(0.25)},
+                                 {"processor_ms_p75", times[at].quantile(0.75)},
+                                 {"ratio_to_first", ratios[at].median()},
+                                 {"ratio_p25", ratios[at].quantile(0.25)},
+                                 {"ratio_p75", ratios[at].quantile(0.75)}});
+  }
+  std::fflush(stdout);
+  return result;
+}
+
+int run(Options options) {
+  if (options.shaders.empty()) options.shaders.push_back(test::shader_dir().string());
+  nlohmann::json on, results = nlohmann::json::array();
+  for (const auto& name : options.models) results.push_back(measure(name, options, on));
+  write_result(options.json, on, results);
+  return 0;
+}
+
+}  // namespace
+
+Command add_frames(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "frames", "Processor time of frames of a moving camera, with several folders of shaders");
+  auto options = std::make_shared<Options>();
+  command
+      ->add_option("--model", options->models,
+                   "pot[:TRIANGLES], vessel, excavation, amazon, thai, or files")
+      ->capture_default_str();
+  command
+      ->add_option("--shaders", options->shaders,
+                   "Folders of shaders; the first is what the others are compared with")
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--layers", options->layers, "Filled layers shown")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  command->add_option("--frames", options->frames)
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")
+      ->capture_default_str();
+  command->add_option("--json", options->json, "Write the results here");
+  return [options] { return run(*options); };
+}
+
+}  // namespace strata::bench
