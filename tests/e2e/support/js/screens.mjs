@@ -804,6 +804,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       name: "shape of the brush",
       start: async () => {
         await tool("b");
+        await open_tab(page, w, w.layers.title);
         await page
           .locator("strata-shape-picker input[type=file]")
           .setInputFiles(file_of("leaf.png", "image/png", kPhoto));

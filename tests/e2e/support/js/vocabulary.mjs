@@ -326,7 +326,6 @@ export const particulars = {
     content: { "application/octet-stream": file("letter.txt", "picture.png") },
   },
   get_tour_file: { path: { model: one("wall"), tour: one("round"), file: mostly("1") } },
-  change_kiosk: { path: spare("kiosk", "1") },
   create_kiosk: { path: { model: one("wall"), tour: mostly("round") } },
   reload_kiosk: { path: spare("kiosk", "1") },
   revoke_kiosk: { path: spare("kiosk") },

@@ -46,8 +46,10 @@ export class StrataViewCube extends LitElement {
         width: var(--side);
         height: var(--side);
         transform-style: preserve-3d;
+        pointer-events: none; /* its own plane is between the faces */
       }
       button {
+        pointer-events: auto;
         position: absolute;
         inset: 0;
         min-height: 0;
@@ -163,8 +165,8 @@ export class StrataViewCube extends LitElement {
     else setTimeout(() => (this._drag = null));
   }
 
-  private onClick(event: Event): void {
-    if (this._drag?.moved) event.stopPropagation();
+  private readonly onClick = (event: Event): void => {
+    if (this._drag?.moved) event.stopPropagation(); // it turned the model
     this._drag = null;
-  }
+  };
 }
