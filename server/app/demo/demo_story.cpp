@@ -16,6 +16,7 @@
 
 #include "app/demo/story_brush.h"
 #include "app/demo/story_photo.h"
+#include "app/demo/story_places.h"
 #include "core/temporary_file.h"
 #include "core/text/timestamp.h"
 #include "core/uuid.h"
@@ -46,7 +47,7 @@ namespace strata::app {
 namespace {
 
 using Time = std::chrono::system_clock::time_point;
-using Place = StoryBrush::Place;
+using Place = StoryPlaces::Place;
 using Stroke = StoryBrush::Stroke;
 using namespace std::chrono_literals;
 
@@ -92,7 +93,9 @@ class Story {
     const auto geometry = STRATA_TRY(mesh::decode_geometry(stored));
     const auto map =
         STRATA_TRY(mesh::bake_surface_map(geometry, pot.default_resolution, progress_));
-    const StoryBrush brush(geometry, map);
+    const StoryPlaces places(geometry);
+    places_ = &places;
+    const StoryBrush brush(places, map);
     brush_ = &brush;
     store::JournalWriter writer(store_, {});
     writer_ = &writer;
@@ -240,10 +243,10 @@ class Story {
   }
 
   nlohmann::json line_of(const std::vector<Place>& path) const {
-    return to_json(std::vector<SurfaceFeature>{{model_.id, brush_->line(path)}});
+    return to_json(std::vector<SurfaceFeature>{{model_.id, places_->line(path)}});
   }
   nlohmann::json point_of(const Place& place) const {
-    return to_json(std::vector<SurfaceFeature>{{model_.id, {brush_->place(place)}}});
+    return to_json(std::vector<SurfaceFeature>{{model_.id, {places_->place(place)}}});
   }
 
   // Writes a record by slugs of columns, and returns its key.
@@ -355,7 +358,7 @@ class Story {
     fresh.text = text;
     fresh.thread = thread;
     if (!thread) {
-      fresh.place = {brush_->place(place), brush_->outward(place)};
+      fresh.place = {places_->place(place), places_->outward(place)};
       fresh.layer_id = layers_.at(layer).id;
     }
     return store_.comments().create(fresh);
@@ -389,12 +392,12 @@ class Story {
   Result<store::NamedPart> view(const std::string& name, const std::string& text, double angle,
                                 double height, double distance_mm, LightMode light,
                                 const std::vector<const char*>& shown) {
-    const glm::dvec3 target = brush_->place({angle, .45}) * glm::dvec3(0, 0, 1) +
+    const glm::dvec3 target = places_->place({angle, .45}) * glm::dvec3(0, 0, 1) +
                               glm::dvec3(model_.origin.x, model_.origin.y, 0);
     Camera camera;
     camera.width = 1280;
     camera.height = 800;
-    const glm::dvec3 eye = target + distance_mm * glm::normalize(brush_->outward({angle, 0}) +
+    const glm::dvec3 eye = target + distance_mm * glm::normalize(places_->outward({angle, 0}) +
                                                                  glm::dvec3(0, 0, height));
     camera.view = glm::lookAt(eye, target, glm::dvec3(0, 0, 1));
     camera.projection = glm::perspective(glm::radians(30.0), 1.6, 20.0, 1000.0);
@@ -491,6 +494,7 @@ class Story {
   Time begun_;  // of what has no time of the story yet
   Model model_;
   ProjectId project_ = 0;
+  const StoryPlaces* places_ = nullptr;
   const StoryBrush* brush_ = nullptr;
   store::JournalWriter* writer_ = nullptr;
   std::map<std::string, Table> tables_;                  // by slug

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "domain/layers/revision.h"
 #include "mesh/demo/demo_pot_noise.h"
 
 namespace strata::app {
 namespace {
-
-constexpr int kDegrees = 360;
-constexpr double kWall_mm = 2.2;  // less than the thickness of the pot's wall
 
 double distance_to_path(const std::vector<glm::dvec3>& path, const glm::dvec3& p) {
   if (path.size() == 1) return glm::distance(path.front(), p);
@@ -26,78 +22,18 @@ double distance_to_path(const std::vector<glm::dvec3>& path, const glm::dvec3& p
   return nearest;
 }
 
-int degree_of(double angle) {
-  const int degree = static_cast<int>(std::floor(angle)) % kDegrees;
-  return degree < 0 ? degree + kDegrees : degree;
-}
-
 }  // namespace
-
-StoryBrush::StoryBrush(const mesh::Geometry& geometry, const mesh::SurfaceMap& map)
-    : map_(map), origin_(geometry.origin) {
-  axis_ = glm::dvec2(geometry.box_min + geometry.box_max) / 2.0;
-  bottom_ = geometry.box_min.z;
-  height_ = std::max(1e-3, double(geometry.box_max.z) - bottom_);
-  const int rows = static_cast<int>(std::ceil(height_)) + 1;
-  outer_.assign(std::size_t(rows) * kDegrees, 0.f);
-  for (const mesh::Vertex& vertex : geometry.vertices) {
-    const glm::dvec2 from_axis = glm::dvec2(vertex.position) - axis_;
-    const int degree = degree_of(std::atan2(from_axis.y, from_axis.x) * 180 / std::numbers::pi);
-    const int row = static_cast<int>(vertex.position.z - bottom_);
-    float& outer = outer_[std::size_t(std::clamp(row, 0, rows - 1)) * kDegrees + degree];
-    outer = std::max(outer, static_cast<float>(glm::length(from_axis)));
-  }
-}
-
-double StoryBrush::outer_radius(double angle, double z) const {
-  const int rows = static_cast<int>(outer_.size() / kDegrees);
-  const int row = std::clamp(static_cast<int>(z - bottom_), 0, rows - 1);
-  // Coarse meshes have cells without vertices.
-  for (int reach = 1; reach < 12; ++reach) {
-    float outer = 0;
-    for (int dz = -reach; dz <= reach; ++dz)
-      for (int da = -reach; da <= reach; ++da)
-        outer = std::max(outer, outer_[std::size_t(std::clamp(row + dz, 0, rows - 1)) * kDegrees +
-                                       degree_of(angle + da)]);
-    if (outer > 0) return outer;
-  }
-  return 0;
-}
-
-glm::dvec3 StoryBrush::outward(const Place& at) const {
-  const double angle = at.angle * std::numbers::pi / 180;
-  return {std::cos(angle), std::sin(angle), 0};
-}
-
-glm::dvec3 StoryBrush::place(const Place& at) const {
-  const double z = bottom_ + at.height * height_;
-  const glm::dvec3 from_axis = outward(at) * outer_radius(at.angle, z);
-  return glm::dvec3(axis_, z) + from_axis + origin_;
-}
-
-std::vector<glm::dvec3> StoryBrush::line(const std::vector<Place>& path) const {
-  std::vector<glm::dvec3> points;
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    const int steps =
-        std::max(1, static_cast<int>(std::ceil(glm::distance(place(path[i]), place(path[i + 1])))));
-    for (int step = i == 0 ? 0 : 1; step <= steps; ++step) {
-      const double t = double(step) / steps;
-      points.push_back(place({std::lerp(path[i].angle, path[i + 1].angle, t),
-                              std::lerp(path[i].height, path[i + 1].height, t)}));
-    }
-  }
-  return points;
-}
 
 store::JournalEntry StoryBrush::paint(const Layer& layer, Content& content, const Stroke& stroke,
                                       std::optional<std::uint32_t> value,
                                       double metres_per_unit) const {
   std::vector<glm::dvec3> path;
-  for (const Place& at : stroke.path) path.push_back(place(at) - origin_);
+  for (const auto& at : stroke.path) path.push_back(places_.place(at) - places_.origin());
   if (path.size() > 1) {
     // Between two places the line follows the surface, not the chord.
     path.clear();
-    for (const glm::dvec3& point : line(stroke.path)) path.push_back(point - origin_);
+    for (const glm::dvec3& point : places_.line(stroke.path))
+      path.push_back(point - places_.origin());
   }
   glm::dvec3 low = path.front(), high = low;
   for (const glm::dvec3& point : path) {
@@ -133,9 +69,7 @@ store::JournalEntry StoryBrush::paint(const Layer& layer, Content& content, cons
           const glm::dvec3 p(map_.position(slot, i));
           const double ragged = 1 + 0.35 * mesh::fractal_noise(p * 0.22, 3);
           if (distance_to_path(path, p) > stroke.radius_mm * ragged) continue;
-          const glm::dvec2 from_axis = glm::dvec2(p) - axis_;
-          const double angle = std::atan2(from_axis.y, from_axis.x) * 180 / std::numbers::pi;
-          if (glm::length(from_axis) < outer_radius(angle, p.z) - kWall_mm) continue;
+          if (!places_.is_outside(p)) continue;
           const int texel =
               (by * kBlockSize + i / kBlockSize) * kTileSize + bx * kBlockSize + i % kBlockSize;
           if (value)

@@ -1,4 +1,5 @@
 #include "net/api/api.h"
+#include "jobs/demo.h"
 
 #include <exception>
 
@@ -120,7 +121,8 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
                *tools_,
                templates_,
                trash_purger_},
-      recomputer_(context_) {
+      recomputer_(context_),
+      demo_annotators_(store, rooms) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_people_routes(router_, context_);
@@ -186,6 +188,7 @@ Api::~Api() { stop_workers(); }
 
 void Api::stop_workers() {
   recomputer_.stop();
+  demo_annotators_.stop();
   trash_purger_.stop();
   questions_.stop();
   workers_.stop();
@@ -413,6 +416,8 @@ bool Api::is_still_welcome(const std::string& secret, ProjectId project_id, Role
 }
 
 std::shared_ptr<LiveSession> Api::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
+  if (entry.project_slug == jobs::kDemoProject && !entry.principal.kiosk)
+    demo_annotators_.visited(entry.room->model());
   auto session = std::make_shared<LiveSession>(
       shared_, std::move(entry.room), std::move(entry.project_slug), std::move(entry.principal),
       std::move(entry.portrait), std::move(entry.personal_view), socket);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/demo/demo_annotators.h"
 #include "app/layers/recomputer.h"
 #include "app/strokes/brush_shape_cache.h"
 #include "app/template_registry.h"
@@ -105,6 +106,7 @@ class Api {
   const TableEvents table_events_;
   const RouteContext context_;
   app::Recomputer recomputer_;
+  app::DemoAnnotators demo_annotators_;
 };
 
 // The headers of every answer.
