@@ -170,9 +170,10 @@ test("the help speaks of the pointers that there are", async () => {
   for (const who of [desk, phone]) {
     await who.page.getByRole("button", { name: words.model.help, exact: true }).click();
     await who.page.locator("strata-help-sheet dialog[open]").waitFor();
+    await who.page.locator("strata-help-sheet h3", { hasText: "Touch" }).waitFor();
   }
-  assert.deepEqual((await parts(desk)).slice(0, 3), ["Mouse", "Touch", "Keys"]);
-  assert.deepEqual((await parts(phone)).slice(0, 2), ["Touch", "Keys"]);
+  assert.deepEqual((await parts(desk)).slice(0, 3), ["Mouse", "Touch", "Tools"]);
+  assert.deepEqual((await parts(phone)).slice(0, 2), ["Touch", "Tools"]);
   await shoot(phone, "help");
 });
 

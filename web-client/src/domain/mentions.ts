@@ -1,5 +1,6 @@
 // Completion of names after an @ in a comment.
 
+import { plainText } from "../core/search";
 import type { ProjectPerson } from "../core/protocol.gen";
 
 /** The text after the @ before the caret, and the position of the @. */
@@ -22,12 +23,10 @@ export function mentionBegun(text: string, caret: number): MentionBegun | null {
  * name that does, ignoring case and accents.
  */
 export function peopleLike(people: readonly ProjectPerson[], word: string): ProjectPerson[] {
-  const wanted = plain(word);
-  const begins = people.filter(({ user }) => plain(user).startsWith(wanted));
+  const wanted = plainText(word);
+  const begins = people.filter(({ user }) => plainText(user).startsWith(wanted));
   const within = people.filter(({ user, full_name: fullName }) =>
-    `${user} ${fullName}`.split(/[\s._@-]+/).some((part) => plain(part).startsWith(wanted)),
+    `${user} ${fullName}`.split(/[\s._@-]+/).some((part) => plainText(part).startsWith(wanted)),
   );
   return [...new Set([...begins, ...within])].slice(0, kMostPeople);
 }
-
-const plain = (text: string): string => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();

@@ -38,6 +38,14 @@ export const detailStyles = css`
     padding-bottom: var(--space-2);
     break-inside: avoid;
   }
+  .keys.commands {
+    columns: 2;
+    column-gap: var(--space-6);
+  }
+  .keys.commands > div {
+    grid-template-columns: 6.5rem 1fr;
+    gap: var(--space-3);
+  }
   .guides {
     display: flex;
     flex-wrap: wrap;
@@ -60,6 +68,9 @@ export const detailStyles = css`
     }
   }
   @media (max-width: 560px) {
+    .keys.commands {
+      columns: 1;
+    }
     dl,
     .keys > div {
       grid-template-columns: minmax(6.875rem, 40%) 1fr;

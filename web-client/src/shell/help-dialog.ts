@@ -1,15 +1,20 @@
 // <strata-help-sheet>: the keys and gestures of the page, and the release of the server.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, query, state } from "lit/decorators.js";
+import { customElement, property, query, state } from "lit/decorators.js";
 import type { ServerVersion } from "../core/protocol.gen";
 import "../ui/dialog";
 import type { StrataDialog } from "../ui/dialog";
-import { keyCaps } from "../ui/key-caps";
+import { icon } from "../ui/icons";
+import { keyCaps } from "../ui/keys/key-caps";
 import { hasFingersOnly } from "../ui/pointers";
 import { sharedStyles } from "../ui/styles";
-import { texts } from "../texts";
+import { loadHelp, texts } from "../texts";
+import type { HelpTexts } from "../texts/shape";
+import type { Command } from "./command";
+import { keyCommands } from "./commands";
 import { detailStyles } from "./detail-styles";
+import type { PageHost } from "./open-dialog";
 
 @customElement("strata-help-sheet")
 export class StrataHelpDialog extends LitElement {
@@ -17,12 +22,19 @@ export class StrataHelpDialog extends LitElement {
 
   static override styles = [sharedStyles, detailStyles];
 
+  @property({ attribute: false }) host!: PageHost;
   /** The server's version, which is also the page's. Empty until the answer arrives. */
   @state() private _version = "";
+  @state() private _rows: HelpTexts | null = null; // null: not loaded
+  private _next: (() => void) | null = null; // after the help has closed
 
   override connectedCallback(): void {
     super.connectedCallback();
     void this.readVersion();
+    loadHelp().then(
+      (rows) => (this._rows = rows),
+      () => {}, // the keys of the commands are here
+    );
   }
 
   private async readVersion(): Promise<void> {
@@ -36,15 +48,10 @@ export class StrataHelpDialog extends LitElement {
 
   override render(): TemplateResult {
     const words = texts.help;
-    const part = (title: string, rows: readonly (readonly [string, string])[]): TemplateResult =>
-      html`<section>
-        <h3>${title}</h3>
-        <dl class="keys">${rows.map(([keys, does]) => html`<div><dt>${keyCaps(keys, words.key_names)}</dt><dd>${does}</dd></div>`)}</dl>
-      </section>`;
-    return html`<strata-dialog wide prose long heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    const rows = this._rows;
+    return html`<strata-dialog wide prose long heading=${words.title} @closed=${this.onClosed}>
       <div class="parts">
-        ${hasFingersOnly() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
-        ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
+        ${rows ? this.gestures(rows) : nothing} ${this.commands()} ${rows ? this.others(rows) : nothing}
       </div>
       <p class="guides">
         <a href="/guide/" target="_blank">${words.guide}</a>
@@ -53,8 +60,44 @@ export class StrataHelpDialog extends LitElement {
         <a href="/third-party-notices.txt" target="_blank">${words.licenses}</a>
       </p>
       <p class="version">${this._version ? html`Strata ${this._version}<br />` : nothing}${words.fonts}</p>
+      <button slot="actions" @click=${this.showCommands}>${icon("search")}${texts.commands.title}</button>
       <button slot="actions" @click=${this.showTour}>${texts.tour.again}</button>
     </strata-dialog>`;
+  }
+
+  private gestures(rows: HelpTexts): TemplateResult {
+    return html`${hasFingersOnly() ? nothing : part(rows, rows.mouse, rows.mouse_rows)} ${part(rows, rows.touch, rows.touch_rows)}`;
+  }
+
+  private others(rows: HelpTexts): TemplateResult {
+    return html`${part(rows, rows.tool_keys, rows.tool_rows)} ${part(rows, rows.brush, rows.brush_rows)} ${part(rows, rows.terms, rows.terms_rows)}
+    ${part(rows, rows.table, rows.table_rows)} ${part(rows, rows.layers, rows.layer_rows)}`;
+  }
+
+  /** The keys of the commands, by their part of the page. */
+  private commands(): TemplateResult {
+    const groups = new Map<string, Command[]>();
+    for (const command of keyCommands(this.host))
+      groups.set(command.group, [...(groups.get(command.group) ?? []), command]);
+    return html`${[...groups].map(
+      ([title, commands]) =>
+        html`<section>
+          <h3>${title}</h3>
+          <dl class="keys commands">
+            ${commands.map(({ caps = [], title: does }) => html`<div><dt>${caps.map((cap) => html`<kbd>${cap}</kbd> `)}</dt><dd>${does}</dd></div>`)}
+          </dl>
+        </section>`,
+    )}`;
+  }
+
+  private showCommands(): void {
+    this._next = () => this.host.show({ dialog: "commands" });
+    this._dialog.close();
+  }
+
+  private onClosed(): void {
+    this.dispatchEvent(new CustomEvent("closed"));
+    this._next?.();
   }
 
   /** Closes first, so that the tour later returns the focus to the opener of the help. */
@@ -63,3 +106,13 @@ export class StrataHelpDialog extends LitElement {
     this.dispatchEvent(new CustomEvent("tour"));
   }
 }
+
+const part = (
+  { key_names: names }: HelpTexts,
+  title: string,
+  rows: readonly (readonly string[])[],
+): TemplateResult =>
+  html`<section>
+    <h3>${title}</h3>
+    <dl class="keys">${rows.map(([keys = "", does]) => html`<div><dt>${keyCaps(keys, names)}</dt><dd>${does}</dd></div>`)}</dl>
+  </section>`;

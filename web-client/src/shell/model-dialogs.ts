@@ -13,6 +13,7 @@ import "../features/layers/orthophoto-dialog";
 import "../features/records/photos-dialog";
 import "../features/records/record-dialog";
 import "../features/home/scale-dialog";
+import "./command-palette";
 import "./help-dialog";
 import "./model-details";
 import "../features/layers/statistics-dialog";

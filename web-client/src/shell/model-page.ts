@@ -10,7 +10,7 @@ import type { Api } from "../net/api";
 import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Me, Model, Role } from "../core/types";
 import { kPaintingTools, type ToolName } from "../tools/tool";
-import "../ui/account-menu";
+import { askAccount } from "../ui/account-menu";
 import "../ui/status-page";
 import type { WhereRequest } from "../features/painting/brush-panel";
 import "../features/painting/brush-panel";
@@ -19,8 +19,9 @@ import "../features/comments/comment-panel";
 import "../features/comments/comment-pins";
 import { modalIsOpen } from "../ui/dialog";
 import { icon, logo } from "../ui/icons";
-import { handleKey } from "./keyboard";
+import { handleKey, opensCommands } from "./keyboard";
 import { isForField } from "../ui/keyboard";
+import { withKey } from "../ui/keys/command-keys";
 import { growing, growth } from "../ui/growth";
 import "../features/records/hover-card";
 import "../features/layers/job-list";
@@ -28,7 +29,7 @@ import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
 import { modelStyles } from "./model-styles";
-import type { OpenDialog } from "./open-dialog";
+import type { OpenDialog, PageHost } from "./open-dialog";
 import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
 import { hasPart, loadPartLater, partOf } from "./page-parts";
@@ -396,10 +397,18 @@ export class StrataModelPage extends LitElement {
       <strata-people-menu .session=${session}></strata-people-menu>
       ${savingStatus(session)}
       <button
+        class="icon quiet commands"
+        aria-label=${texts.commands.title}
+        title=${withKey(texts.commands.title, "commands")}
+        @click=${() => (this._dialog = { dialog: "commands" })}
+      >
+        ${icon("search")}
+      </button>
+      <button
         class="icon quiet"
         data-tour="share"
         aria-label=${texts.model.help}
-        title="${texts.model.help} (?)"
+        title=${withKey(texts.model.help, "help")}
         @click=${() => (this._dialog = { dialog: "help" })}
       >
         ${icon("help")}
@@ -500,18 +509,23 @@ export class StrataModelPage extends LitElement {
   private dialog(session: OpenModelSession): TemplateResult | typeof nothing {
     if (!this._dialog || !hasPart("model_dialogs", this)) return nothing;
     const { modelDialog } = partOf("model_dialogs") as typeof import("./model-dialogs");
-    return modelDialog(this._dialog, {
+    return modelDialog(this._dialog, this.host(session));
+  }
+
+  private host(session: OpenModelSession): PageHost {
+    return {
       session,
+      me: this.me,
+      seesToKiosks: seesToKiosks(this.me, this.projects),
       show: (dialog) => (this._dialog = dialog),
       aside: () => this.makeRoom(),
+      panel: (tab) => this.showTab(tab),
+      account: (request) => askAccount(this, request),
+      editTour: (tour) => (this._tourEditor ??= { tour }),
       signedOut: () => this.dispatchEvent(new CustomEvent("signed-out")),
       startTour: () => void this._tour?.start(),
       sayWhoDownloads: (who) => void this.sayWhoDownloads(who),
-    });
-  }
-
-  private show(dialog: "help" | "figure"): void {
-    this._dialog = dialog === "figure" ? { dialog, view: null } : { dialog };
+    };
   }
 
   /** Null: shows or hides the panel. */
@@ -531,7 +545,8 @@ export class StrataModelPage extends LitElement {
 
   private readonly onKeyDown = (event: KeyboardEvent): void => {
     const session = this._session;
-    if (!session || modalIsOpen() || event.defaultPrevented || isForField(event)) return;
+    if (!session || modalIsOpen() || event.defaultPrevented) return;
+    if (isForField(event) && !opensCommands(event)) return;
     const onButton = event.composedPath()[0] instanceof HTMLButtonElement;
     if (event.key === "Enter" && onButton) return;
     if (event.key === " ") {
@@ -541,11 +556,7 @@ export class StrataModelPage extends LitElement {
       return;
     }
     const does =
-      handleKey(event, session, {
-        show: (dialog) => this.show(dialog),
-        panel: (tab) => this.showTab(tab),
-      }) ||
-      (event.key === "Escape" && this._tour?.end());
+      handleKey(event, this.host(session)) || (event.key === "Escape" && this._tour?.end());
     if (does) event.preventDefault();
   };
 

@@ -244,6 +244,7 @@ export const modelStyles = css`
       z-index: 3;
     }
     .saving span,
+    .commands, /* the help opens them */
     .scale-chip {
       display: none;
     }

@@ -1,11 +1,14 @@
 // Renders the requested dialog of a model's page. The elements belong to the part `model_dialogs`.
 
 import { html, nothing, type TemplateResult } from "lit";
-import type { Layer, Model } from "../core/types";
+import type { TourEntry } from "../core/protocol.gen";
+import type { Layer, Me, Model } from "../core/types";
 import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import type { WhereRequest } from "../features/painting/brush-panel";
 import type { ModelSession } from "../session/model-session";
 import type { TablePanelRequest, TourRequest, ViewRequest } from "../session/requests";
+import type { AccountRequest } from "../ui/account-menu";
+import type { PanelTab } from "./panel-tabs";
 
 export type OpenDialog =
   | LayerPanelRequest
@@ -13,21 +16,29 @@ export type OpenDialog =
   | ViewRequest
   | WhereRequest
   | Extract<TourRequest, { dialog: "kiosks" }>
-  | { dialog: "scale" | "help" | "about" | "orthophoto" };
+  | { dialog: "scale" | "help" | "about" | "orthophoto" | "commands" };
 
-/** Callbacks of the page. */
-export interface DialogHost {
+/** The page, as its commands and dialogs see it. */
+export interface PageHost {
   session: ModelSession;
+  me: Me;
+  /** Whether the user can manage links for kiosks. */
+  seesToKiosks: boolean;
   /** Replaces the open dialog; null: none. */
   show(dialog: OpenDialog | null): void;
   /** Makes room for the model. */
   aside(): void;
+  /** Shows a tab of the side panel; null: shows or hides the panel. */
+  panel(tab: PanelTab | null): void;
+  account(request: AccountRequest): void;
+  /** Opens the editor of a tour; null: of a new one. */
+  editTour(tour: TourEntry | null): void;
   signedOut(): void;
   startTour(): void;
   sayWhoDownloads(who: Model["source_download"]): void;
 }
 
-export function modelDialog(dialog: OpenDialog, host: DialogHost): TemplateResult | typeof nothing {
+export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult | typeof nothing {
   const { session } = host;
   const closed = (): void => host.show(null);
   switch (dialog.dialog) {
@@ -107,8 +118,10 @@ export function modelDialog(dialog: OpenDialog, host: DialogHost): TemplateResul
       return html`<strata-orthophoto-dialog .session=${session} @closed=${closed}></strata-orthophoto-dialog>`;
     case "scale":
       return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
+    case "commands":
+      return html`<strata-command-palette .host=${host} @closed=${closed}></strata-command-palette>`;
     case "help":
-      return html`<strata-help-sheet @closed=${closed} @tour=${() => host.startTour()}></strata-help-sheet>`;
+      return html`<strata-help-sheet .host=${host} @closed=${closed} @tour=${() => host.startTour()}></strata-help-sheet>`;
     case "about":
       return session.model
         ? html`<strata-about-sheet

@@ -3,22 +3,16 @@
 import { html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 import { formatCount } from "../core/locale";
 import { Kept } from "../core/kept";
+import { keyCapsOf } from "../ui/keys/command-keys";
 import type { IconName } from "../ui/icons";
 import { tabList } from "../ui/panel/tab-list";
 import { texts } from "../texts";
 import type { OpenModelSession } from "./open-model-session";
 
-/** The tabs in their order, with their keys. */
-export const kTabKeys = {
-  layers: "Y",
-  records: "R",
-  view: "W",
-  comments: "J",
-  activity: "U",
-} as const;
-export type PanelTab = keyof typeof kTabKeys;
+/** The tabs in their order. */
+export const kTabs = ["layers", "records", "view", "comments", "activity"] as const;
+export type PanelTab = (typeof kTabs)[number];
 
-const kTabs = Object.keys(kTabKeys) as PanelTab[];
 const kGlyphs: Readonly<Record<PanelTab, IconName>> = {
   layers: "layers",
   records: "table",
@@ -34,6 +28,8 @@ const kTitles: Readonly<Record<PanelTab, string>> = {
   comments: texts.comments.title,
   activity: texts.activity.title,
 };
+
+export const tabTitle = (tab: PanelTab): string => kTitles[tab];
 
 export class PanelTabs {
   private readonly _chosen = new Kept<PanelTab>(() => localStorage, "strata.panel_tab", "layers");
@@ -60,7 +56,7 @@ export class PanelTabs {
         value,
         glyph: kGlyphs[value],
         text: kTitles[value],
-        key: kTabKeys[value],
+        key: keyCapsOf(`tab.${value}`).join(" + "),
         badge: badge(value, session),
       })),
       chosen: this.chosen,

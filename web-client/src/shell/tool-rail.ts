@@ -2,8 +2,9 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { kChangingTools, kToolKeys, type ToolName } from "../tools/tool";
+import { kChangingTools, kRailTools, type ToolName } from "../tools/tool";
 import { followSession } from "../session/follow-session";
+import { withKey } from "../ui/keys/command-keys";
 import { icon } from "../ui/icons";
 import type { OpenModelSession } from "./open-model-session";
 import { ScrollFade } from "../ui/scroll-fade";
@@ -11,7 +12,6 @@ import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
 import type { StepName } from "../features/onboarding/onboarding-steps";
 
-const kTools = Object.entries(kToolKeys) as [keyof typeof kToolKeys, string][];
 /** The steps of the tour for tools. */
 const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "values" };
 
@@ -127,15 +127,15 @@ export class StrataToolRail extends LitElement {
   override render(): TemplateResult {
     const { session } = this;
     const words = texts.model;
-    const shown = kTools.filter(([name]) => this.shows(name));
+    const shown = kRailTools.filter((name) => this.shows(name));
     return html`${shown.map(
-      ([name, key]) =>
+      (name) =>
         html`<button
             class="icon quiet"
             data-tour=${kOfTour[name] ?? nothing}
             aria-pressed=${session.tools.active === name}
             aria-label=${texts.tools[name]}
-            title="${texts.tools[name]} (${key})"
+            title=${withKey(texts.tools[name], `tool.${name}`)}
             @click=${() => session.chooseTool(name)}
           >
             ${icon(name)}
@@ -149,7 +149,7 @@ export class StrataToolRail extends LitElement {
               class="icon quiet"
               data-tour="undo"
               aria-label=${words.undo}
-              title="${words.undo} (Ctrl Z)"
+              title=${withKey(words.undo, "undo")}
               ?disabled=${!session.layers.selected}
               @click=${() => session.undo()}
             >
@@ -158,7 +158,7 @@ export class StrataToolRail extends LitElement {
             <button
               class="icon quiet"
               aria-label=${words.redo}
-              title="${words.redo} (Ctrl Shift Z)"
+              title=${withKey(words.redo, "redo")}
               ?disabled=${!session.layers.selected}
               @click=${() => session.redo()}
             >
@@ -172,7 +172,7 @@ export class StrataToolRail extends LitElement {
         class="icon quiet"
         aria-label=${texts.past.title}
         aria-pressed=${session.past.isOpen}
-        title="${texts.past.title} (Z)"
+        title=${withKey(texts.past.title, "past")}
         @click=${() => session.past.toggle()}
       >
         ${icon("history")}

@@ -434,6 +434,26 @@ export const texts = {
     ready: (name) => `„${name}“ ist bereit.`,
   },
 
+  commands: {
+    title: "Befehle",
+    find: "Befehl, Ebene oder Ansicht suchen",
+    found: (n: number) => count(n, "Befehl", "Befehle"),
+    none: "Keine passenden Befehle.",
+    recent: "Zuletzt verwendet",
+    edit: "Bearbeiten",
+    no_layer: "Wählen Sie zuerst eine Ebene.",
+    no_table: "Die gewählte Ebene hat keine Tabelle.",
+    narrower: "Schmalerer Pinsel",
+    wider: "Breiterer Pinsel",
+    zoom_in: "Vergrößern",
+    zoom_out: "Verkleinern",
+    next_light: "Nächstes Licht",
+    next_section: "Schnitt: nächste Achse, dann aus",
+    next_view: "Nächste gespeicherte Ansicht",
+    previous_view: "Vorherige gespeicherte Ansicht",
+    panel: "Seitenleiste ein- oder ausblenden",
+    leave: "Nicht mehr folgen, Kommentar schließen oder zurück zu jetzt",
+  },
   model: {
     back: "Alle Modelle",
     tools: "Werkzeuge",
@@ -2211,170 +2231,13 @@ export const texts = {
     contract: "HTTP-Schnittstelle",
     licenses: "Lizenzen",
     fonts: "Schriften: Inter und Source Serif 4, unter der SIL Open Font License.",
-    key_names:
-      "Strg · Umschalt · Enter · Esc · Rücktaste · Entf · Tab · Leertaste · Pfeile · Pfeiltasten · Auf · Ab · Links · Rechts · Bild · Pos1 · Ende · F2",
-    mouse: "Maus",
-    touch: "Touch",
-    keys: "Tasten",
-    mouse_rows: [
-      ["Links ziehen", "aktives Werkzeug anwenden"],
-      [
-        "Zeiger ruhen lassen (Drehen, Verschieben)",
-        "Vorschau des Datensatzes an dieser Stelle; Esc schließt sie",
-      ],
-      ["Klicken (Drehen, Verschieben)", "Datensatz an dieser Stelle öffnen"],
-      ["Rechts ziehen oder Leertaste + links", "drehen"],
-      ["Mitte ziehen oder Umschalt + rechts", "verschieben"],
-      ["Mausrad", "am Zeiger zoomen"],
-    ],
-    touch_rows: [
-      ["Ein Finger", "aktives Werkzeug anwenden"],
-      ["Tippen (Drehen, Verschieben)", "Datensatz an dieser Stelle öffnen"],
-      ["Zwei Finger", "ziehen: verschieben; spreizen: zoomen; drehen: im Bild drehen"],
-      ["Tippen mit Messen", "Punkt setzen; ziehen dreht das Modell"],
-      [
-        "Stift",
-        "aktives Werkzeug anwenden; Hand und Finger werden ignoriert, solange der Stift in der Nähe ist",
-      ],
-      ["Ein Finger nach Verwendung eines Stifts", "drehen, auch mit Mal- oder Zeichenwerkzeug"],
-    ],
-    key_rows: [
-      ["B · E · I", "Pinsel · Radierer · Wert aufnehmen"],
-      ["A · L · G", "Polygon · Lasso · zusammenhängend füllen"],
-      ["D · S", "Linie · Punkt zeichnen, für den ausgewählten Datensatz"],
-      ["Enter · Rücktaste · Esc", "Polygon oder Linie beenden · letzte Ecke entfernen · abbrechen"],
-      ["V · H", "drehen · verschieben"],
-      ["C, dann klicken", "dort kommentieren; Enter: in der Mitte der Ansicht"],
-      ["Strg + Enter · Esc", "Kommentar senden · schließen und den Entwurf behalten"],
-      [
-        "M, dann klicken",
-        "Längen, Flächen und Profile messen; erneut M: Punkt in der Mitte; Enter beendet, Esc löscht alle",
-      ],
-      ["[ · ]", "schmalerer · breiterer Pinsel"],
-      [
-        "Strg + Z · Strg + Umschalt + Z",
-        "eigene Striche rückgängig machen · wiederherstellen; mit den Werkzeugen für Linien und Punkte die eigenen Zeichnungen",
-      ],
-      ["Pfeiltasten", "drehen (mit Umschalt: verschieben)"],
-      ["+ · −", "vergrößern · verkleinern"],
-      ["Pos1", "Modell einpassen"],
-      ["Umschalt + Pos1", "erste Ansicht"],
-      ["1 – 6", "vorn, hinten, links, rechts, oben, unten"],
-      ["P · O", "perspektivisch · parallel"],
-      ["K", "nächstes Licht"],
-      ["X", "Schnitt: nächste Achse, dann aus"],
-      ["N · Umschalt + N", "nächste · vorherige gespeicherte Ansicht"],
-      ["Z", "Verlauf: das Modell, wie es war; Esc: zurück zu jetzt"],
-      [
-        "Y · R · W · J · U",
-        "Ebenen · Datensätze · Ansicht · Kommentare · Aktivitäten in der Seitenleiste",
-      ],
-      ["Q", "Seitenleiste ein- oder ausblenden"],
-      ["T", "Tabelle der Ebene öffnen oder schließen"],
-      ["F", "maßstäbliche Abbildung als PDF, SVG, PNG oder TIFF erstellen"],
-      ["Esc", "nicht mehr folgen; auch jede eigene Bewegung der Ansicht beendet es"],
-      [
-        "I, dann klicken",
-        "auf einer Ebene mit Datensätzen: Datensatz an dieser Stelle öffnen und damit malen",
-      ],
-      ["?", "diese Hilfe"],
-    ],
-    table: "In der Tabelle der Datensätze",
-    table_rows: [
-      ["Pfeile · Bild · Pos1 · Ende", "zwischen Zellen wechseln; mit Strg: erste, letzte"],
-      [
-        "Enter, F2 oder erneut klicken",
-        "Zelle bearbeiten; auf dem Schlüssel: Formular des Datensatzes öffnen",
-      ],
-      [
-        "Buchstaben und Ziffern",
-        "schreiben in Textzellen, Ziffern auch in Zahlen, Datum und Uhrzeit; in anderen Zellen sind sie Tastenkürzel der Seite wie T, D und V; nach Esc immer",
-      ],
-      [
-        "Trichter einer Spalte",
-        "nach Werten, Bereich, Text oder fehlenden Werten filtern; das Filterfeld zeigt die Bedingung",
-      ],
-      [
-        "Enter · Tab · Esc",
-        "beim Bearbeiten: nach unten · nächste Zelle · abbrechen; Umschalt + Enter: neue Zeile",
-      ],
-      ["Entf", "Zelle leeren"],
-      [
-        "Leertaste oder Klick auf einen Schlüssel",
-        "Zeile auswählen; mit Strg: weitere, mit Umschalt: einen Bereich",
-      ],
-      [
-        "Strg + Z · Strg + Umschalt + Z",
-        "eigene Tabellenänderungen rückgängig machen · wiederherstellen",
-      ],
-      [
-        "⋯ einer Spalte → Ändern",
-        "umbenennen, auch in anderen Sprachen; alle sehen den Namen in der Sprache ihres Browsers",
-      ],
-      [
-        "CSV ablegen",
-        "Vorschau der Änderungen, dann importieren; auf einer Begriffsliste auch SKOS",
-      ],
-    ],
-    brush: "Pinseloptionen",
-    brush_rows: [
-      [
-        "Form",
-        "rund, quadratisch oder ein Bild: + wählen oder ein PNG oder JPEG neben den Formen ablegen; alle auf dem Server teilen sie",
-      ],
-      [
-        "Schräge Flächen auslassen ab",
-        "lässt Flächen aus, die in flachem Winkel zum Blick liegen; zum Bemalen das Modell drehen",
-      ],
-      ["Auch verdeckte Flächen bemalen", "malt durch das Objekt hindurch bis zur Rückseite"],
-    ],
-    terms: "In einer Begriffsliste",
-    terms_rows: [
-      ["Tippen", "Begriffe nach Namen suchen, in allen Sprachen"],
-      ["Auf · Ab · Bild", "zwischen Begriffen wechseln"],
-      ["Rechts · Links", "aufklappen · zuklappen"],
-      ["Enter", "mit dem Begriff malen"],
-      ["Esc", "ganze Liste anzeigen; noch einmal: zurück zum Modell"],
-    ],
-    layers: "Ebenen ohne Pinsel",
-    layer_rows: [
-      [
-        "Ebenen ⋯ → Aus Vorlage",
-        "Begriffslisten, Tabellen und Ebenen für Stein, Wandmalerei, Grabung und Maßnahmen",
-      ],
-      [
-        "Ebenen ⋯ → Begriffsliste importieren",
-        "CSV oder SKOS (Turtle, RDF/XML) mit Vorschau; Liste aktualisieren und exportieren im ⋯ ihrer Tabelle",
-      ],
-      [
-        "⋯ einer Ebene → Aus Datei malen",
-        "Messwerte, Karten, Shapefiles, GeoTIFF und gescannte Karten; Zahlen für die Eckpunkte des Scans",
-      ],
-      [
-        "Ansicht → Oberflächenbilder → Orthofoto hinzufügen",
-        "ein Bild auf die Oberfläche projizieren",
-      ],
-      [
-        "⋯ einer Ebene → Flächen",
-        "Flächen der Klassen; bei Messwerten ein Histogramm, das den Farbbereich festlegt",
-      ],
-      [
-        "Neue Ebene → Aus einem Ausdruck",
-        "Werte, berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche",
-      ],
-      [
-        "Neue Ebene → Aus der Geometrie",
-        "Werte, berechnet aus dem Netz: Krümmung, Neigung, Abstände",
-      ],
-      [
-        "Ebenen ⋯ → Ebenen übertragen",
-        "Kartierung eines früheren Scans des Objekts, mit einem Bericht über Verluste",
-      ],
-      [
-        "Ansicht → Führungen",
-        "gespeicherte Ansichten mit Texten in mehreren Sprachen, für einen Bildschirm in einer Ausstellung; Kiosk-Links im ⋯ einer Führung",
-      ],
-    ],
+    key_caps: {
+      Ctrl: "Strg",
+      Shift: "Umschalt",
+      Home: "Pos1",
+      Escape: "Esc",
+      Arrows: "Pfeiltasten",
+    },
   },
 
   tour: {

@@ -431,6 +431,26 @@ export const texts = {
     ready: (name) => `«${name}» está listo.`,
   },
 
+  commands: {
+    title: "Órdenes",
+    find: "Buscar una orden, capa o vista",
+    found: (n: number) => count(n, "orden", "órdenes"),
+    none: "No hay órdenes que coincidan.",
+    recent: "Usadas hace poco",
+    edit: "Editar",
+    no_layer: "Seleccione primero una capa.",
+    no_table: "La capa seleccionada no tiene tabla.",
+    narrower: "Pincel más estrecho",
+    wider: "Pincel más ancho",
+    zoom_in: "Acercar",
+    zoom_out: "Alejar",
+    next_light: "Luz siguiente",
+    next_section: "Sección: eje siguiente y, al final, ninguna",
+    next_view: "Vista guardada siguiente",
+    previous_view: "Vista guardada anterior",
+    panel: "Mostrar u ocultar el panel lateral",
+    leave: "Dejar de seguir, cerrar el comentario o volver a ahora",
+  },
   model: {
     back: "Todos los modelos",
     tools: "Herramientas",
@@ -2203,173 +2223,7 @@ export const texts = {
     contract: "Interfaz HTTP",
     licenses: "Licencias",
     fonts: "Fuentes: Inter y Source Serif 4, con la licencia SIL Open Font License.",
-    key_names:
-      "Ctrl · Mayús · Intro · Esc · Retroceso · Supr · Tab · Espacio · Flechas · Arriba · Abajo · Izquierda · Derecha · Re Pág · Av Pág · Inicio · Fin · F2",
-    mouse: "Ratón",
-    touch: "Pantalla táctil",
-    keys: "Teclas",
-    mouse_rows: [
-      ["Arrastrar con el izquierdo", "usar la herramienta activa"],
-      [
-        "Detener el puntero (Girar, Desplazar)",
-        "ver por encima el registro que hay allí; Esc lo cierra",
-      ],
-      ["Clic (Girar, Desplazar)", "abrir el registro que hay allí"],
-      ["Arrastrar con el derecho, o Espacio + izquierdo", "girar"],
-      ["Arrastrar con el central, o Mayús + derecho", "desplazar"],
-      ["Rueda", "acercar o alejar donde está el puntero"],
-    ],
-    touch_rows: [
-      ["Un dedo", "usar la herramienta activa"],
-      ["Tocar (Girar, Desplazar)", "abrir el registro que hay allí"],
-      ["Dos dedos", "arrastrar para desplazar, pellizcar para acercar o alejar, torcer para rotar"],
-      ["Tocar con Medir", "poner un punto; arrastrar para girar"],
-      [
-        "Lápiz",
-        "usar la herramienta activa; se ignoran la mano y los dedos mientras el lápiz está cerca",
-      ],
-      [
-        "Un dedo después de usar un lápiz",
-        "girar, incluso con una herramienta de pintura o dibujo",
-      ],
-    ],
-    key_rows: [
-      ["B · E · I", "pincel · borrador · tomar un valor"],
-      ["A · L · G", "polígono · lazo · rellenar área conectada"],
-      ["D · S", "dibujar una línea · un punto, para el registro seleccionado"],
-      [
-        "Intro · Retroceso · Esc",
-        "terminar el polígono o la línea · quitar el último vértice · cancelar",
-      ],
-      ["V · H", "girar · desplazar"],
-      ["C, y después clic", "comentar allí; Intro: en el centro de la vista"],
-      ["Ctrl + Intro · Esc", "enviar el comentario · cerrarlo y conservarlo sin enviar"],
-      [
-        "M, y después clic",
-        "medir longitudes, áreas y perfiles; M otra vez: un punto en el centro; Intro termina, Esc borra",
-      ],
-      ["[ · ]", "pincel más estrecho · más ancho"],
-      [
-        "Ctrl + Z · Ctrl + Mayús + Z",
-        "deshacer · rehacer sus trazos; con las herramientas de línea y punto, su dibujo",
-      ],
-      ["Flechas", "girar (con Mayús: desplazar)"],
-      ["+ · −", "acercar · alejar"],
-      ["Inicio", "ajustar a la vista"],
-      ["Mayús + Inicio", "primera vista"],
-      ["1 – 6", "frontal, posterior, izquierda, derecha, superior, inferior"],
-      ["P · O", "perspectiva · paralela"],
-      ["K", "luz siguiente"],
-      ["X", "sección: eje siguiente y, al final, ninguna"],
-      ["N · Mayús + N", "vista guardada siguiente · anterior"],
-      ["Z", "historial: el modelo como era; Esc: volver a ahora"],
-      [
-        "Y · R · W · J · U",
-        "capas · registros · vista · comentarios · actividad en el panel lateral",
-      ],
-      ["Q", "mostrar u ocultar el panel lateral"],
-      ["T", "abrir o cerrar la tabla de la capa"],
-      ["F", "crear una figura a escala en PDF, SVG, PNG o TIFF"],
-      ["Esc", "dejar de seguir; mover la vista también lo termina"],
-      [
-        "I, y después clic",
-        "en una capa de registros: abrir el registro que hay allí y pintar con él",
-      ],
-      ["?", "esta ayuda"],
-    ],
-    table: "En la tabla de registros",
-    table_rows: [
-      [
-        "Flechas · Re Pág · Av Pág · Inicio · Fin",
-        "moverse entre celdas; con Ctrl: primera, última",
-      ],
-      ["Intro, F2 u otro clic", "editar la celda; en la clave: abrir el formulario del registro"],
-      [
-        "Letras y cifras",
-        "escribir en celdas de texto; las cifras, también en números, fechas y horas; en las demás celdas son teclas de la página, como T, D y V; después de Esc, siempre",
-      ],
-      [
-        "Embudo de una columna",
-        "filtrar por valores, un intervalo, un texto o valores que faltan; el campo del filtro muestra la condición",
-      ],
-      [
-        "Intro · Tab · Esc",
-        "al editar: abajo · celda siguiente · cancelar; Mayús + Intro: línea nueva",
-      ],
-      ["Supr", "vaciar la celda"],
-      [
-        "Espacio, o clic en una clave",
-        "seleccionar la fila; con Ctrl: más filas, con Mayús: un intervalo",
-      ],
-      ["Ctrl + Z · Ctrl + Mayús + Z", "deshacer · rehacer sus cambios en la tabla"],
-      [
-        "⋯ de una columna → Cambiar",
-        "cambiar su nombre, también en otros idiomas; cada usuario ve el idioma de su navegador",
-      ],
-      [
-        "Soltar un CSV",
-        "ver los cambios antes de importarlos; en una lista de términos, también SKOS",
-      ],
-    ],
-    brush: "Opciones del pincel",
-    brush_rows: [
-      [
-        "Forma",
-        "redonda, cuadrada o una imagen: elija + o suelte un PNG o JPEG junto a las formas; todas las personas del servidor las comparten",
-      ],
-      [
-        "Omitir superficies inclinadas más de",
-        "omite las superficies que se ven muy de lado; gire para pintarlas",
-      ],
-      ["Pintar a través del objeto", "pinta también las superficies ocultas"],
-    ],
-    terms: "En una lista de términos",
-    terms_rows: [
-      ["Escribir", "buscar términos por nombre, en todos los idiomas"],
-      ["Arriba · Abajo · Re Pág · Av Pág", "moverse entre términos"],
-      ["Derecha · Izquierda", "desplegar · contraer"],
-      ["Intro", "pintar con el término"],
-      ["Esc", "mostrar la lista entera; otra vez: volver al modelo"],
-    ],
-    layers: "Capas sin pincel",
-    layer_rows: [
-      [
-        "Capas ⋯ → A partir de una plantilla",
-        "listas de términos, tablas y capas para piedra, pintura mural, excavación y tratamiento",
-      ],
-      [
-        "Capas ⋯ → Importar una lista de términos",
-        "CSV o SKOS (Turtle, RDF/XML), con vista previa; actualice y exporte una lista en el ⋯ de su tabla",
-      ],
-      [
-        "⋯ de una capa → Pintar desde un archivo",
-        "valores medidos, mapas, shapefiles, GeoTIFF y mapas escaneados; números para los vértices del escaneo",
-      ],
-      [
-        "Vista → Imágenes de la superficie → Añadir una ortofoto",
-        "proyectar una imagen sobre la superficie",
-      ],
-      [
-        "⋯ de una capa → Áreas",
-        "áreas de las clases; en mediciones, un histograma que fija el intervalo de los colores",
-      ],
-      [
-        "Nueva capa → A partir de una expresión",
-        "valores calculados a partir de otras capas, sus registros y la superficie",
-      ],
-      [
-        "Nueva capa → A partir de la geometría",
-        "valores calculados a partir de la malla: curvatura, pendiente, distancias",
-      ],
-      [
-        "Capas ⋯ → Transferir capas",
-        "lo pintado en un escaneo anterior del objeto, con un informe de lo perdido",
-      ],
-      [
-        "Vista → Recorridos",
-        "vistas guardadas con textos en varios idiomas, para una pantalla de una exposición; enlaces para quioscos en el ⋯ de un recorrido",
-      ],
-    ],
+    key_caps: { Ctrl: "Ctrl", Shift: "Mayús", Home: "Inicio", Escape: "Esc", Arrows: "Flechas" },
   },
 
   tour: {

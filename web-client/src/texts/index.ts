@@ -6,7 +6,7 @@
 
 import { setLocale, type PageLanguage } from "../core/locale";
 import { sayOwnProblemsIn } from "../core/problems";
-import type { Texts } from "./shape";
+import type { HelpTexts, Texts } from "./shape";
 
 /**
  * The number of arguments of each text. TypeScript allows a function to omit arguments; a
@@ -29,6 +29,16 @@ const loads: Record<PageLanguage, () => Promise<{ texts: Texts }>> = {
   es: loadEs,
 };
 
+const helpLoads: Record<PageLanguage, () => Promise<{ help: HelpTexts }>> = {
+  en: () => import("./help-en"),
+  de: () => import("./help-de"),
+  es: () => import("./help-es"),
+};
+let loadedLanguage: PageLanguage = "en";
+
+/** The rows of the help, which are not loaded with the page. */
+export const loadHelp = async (): Promise<HelpTexts> => (await helpLoads[loadedLanguage]()).help;
+
 /** Set by loadTexts(), which runs before the import of all modules that show texts. */
 export let texts: Texts;
 
@@ -39,6 +49,7 @@ export async function loadTexts(
   browser: readonly string[],
 ): Promise<void> {
   setLocale(language, chosen, browser);
+  loadedLanguage = language;
   texts = (await loads[language]()).texts;
   sayOwnProblemsIn(texts.calls);
 }

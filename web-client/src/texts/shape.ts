@@ -12,4 +12,6 @@ type Shape<T> = T extends string
       ? (...args: Arguments) => string
       : { readonly [Key in keyof T]: Shape<T[Key]> };
 
+export type HelpTexts = Shape<typeof import("./help-en").help>;
+
 export type Texts = Shape<typeof import("./en").texts>;

@@ -19,21 +19,21 @@ export type ToolName =
   | "face"
   | "part";
 
-/** The tools of the tool rail, in its order, with their keys. */
-export const kToolKeys: Readonly<Record<Exclude<ToolName, "face" | "part">, string>> = {
-  orbit: "V",
-  pan: "H",
-  brush: "B",
-  eraser: "E",
-  polygon: "A",
-  lasso: "L",
-  bucket: "G",
-  line: "D",
-  point: "S",
-  pick: "I",
-  measure: "M",
-  comment: "C",
-};
+/** The tools of the tool rail, in its order. */
+export const kRailTools: readonly Exclude<ToolName, "face" | "part">[] = [
+  "orbit",
+  "pan",
+  "brush",
+  "eraser",
+  "polygon",
+  "lasso",
+  "bucket",
+  "line",
+  "point",
+  "pick",
+  "measure",
+  "comment",
+];
 /** Tools that add to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
 /** Tools during which a selected area stays: those that select, and those that look. */

@@ -44,6 +44,8 @@ export class StrataDialog extends LitElement {
    * at the model.
    */
   @property({ type: Boolean, reflect: true }) docked = false;
+  /** Stays near the top of the window while its content changes height. */
+  @property({ type: Boolean, reflect: true }) top = false;
   /**
    * Called before a person closes the dialog by Escape, its cross or a click outside; null: it
    * closes. close() does not call it.
@@ -107,6 +109,9 @@ export class StrataDialog extends LitElement {
         margin: 0;
         z-index: 30;
       }
+      :host([top]) dialog {
+        margin-top: min(4.125rem, 8dvh);
+      }
       .head {
         display: flex;
         align-items: flex-start;
@@ -162,6 +167,10 @@ export class StrataDialog extends LitElement {
         }
         :host([aside]) dialog {
           margin: auto 0 0;
+        }
+        :host([top]) dialog {
+          margin: 0 0 auto; /* above the on-screen keyboard */
+          border-radius: 0 0 var(--radius-large) var(--radius-large);
         }
         :host([docked]) dialog {
           inset: auto 0 0 0;

@@ -2,6 +2,7 @@ import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { textsIn } from "../../src/kiosk/texts";
 import { texts } from "../../src/texts/en";
+import { help } from "../../src/texts/help-en";
 
 interface Phrase {
   avoid: string;
@@ -66,6 +67,7 @@ describe("The English of the page and the kiosk", () => {
   it("has none of the phrases that the guide to style avoids", () => {
     expect([...sentences(texts, "")].length).toBeGreaterThan(1300);
     expect(awkward(texts)).toEqual([]);
+    expect(awkward(help)).toEqual([]);
     expect(awkward(textsIn("en", ["en"]))).toEqual([]);
   });
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { keyPieces } from "../../src/ui/key-caps";
+import { keyPieces } from "../../src/ui/keys/key-caps";
 
 const kNames = ["Ctrl", "Enter", "Escape", "Page"];
 const keysOf = (text: string): string[] =>

@@ -7,6 +7,7 @@ export function texts_of(language) {
   const contents = `
     import { setLocale } from "./core/locale";
     export { texts } from "./texts/${language}";
+    export { help } from "./texts/help-${language}";
     setLocale("${language}", true, []);`;
   const stdin = { contents, resolveDir: join(kRoot, "web-client", "src"), loader: "ts" };
   const [{ text }] = buildSync({
@@ -18,5 +19,6 @@ export function texts_of(language) {
   }).outputFiles;
   const made = { exports: {} };
   new Function("module", "exports", text)(made, made.exports);
-  return made.exports.texts;
+  const { texts, help } = made.exports;
+  return { ...texts, help: { ...texts.help, ...help } };
 }

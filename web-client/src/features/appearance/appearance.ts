@@ -43,8 +43,8 @@ export interface AppearanceHost {
   changed(): void;
 }
 
-const kLightModes: readonly Light["mode"][] = ["museum", "headlight", "raking", "unlit"];
-const kCuts: readonly SectionMode[] = ["off", "x", "y", "z"];
+export const kLightModes: readonly Light["mode"][] = ["museum", "headlight", "raking", "unlit"];
+export const kCuts = ["off", "x", "y", "z"] as const satisfies readonly SectionMode[];
 const after = <T>(all: readonly T[], one: T): T => all[(all.indexOf(one) + 1) % all.length]!;
 
 export class Appearance {

@@ -9,6 +9,7 @@ import type { ModelSession } from "../../session/model-session";
 import { icon, type IconName } from "../../ui/icons";
 import "../../ui/menu";
 import { sharedStyles } from "../../ui/styles";
+import { keyCapsOf, withKey, type KeyedCommand } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
 import { kStandardViews } from "../../math/view-cube";
 import "./light-controls";
@@ -21,19 +22,19 @@ const words = texts.picture_bar;
 const kParts = {
   light: {
     glyph: "bulb",
-    key: "K",
+    key: "light.next",
     content: (session: ModelSession) =>
       html`<strata-light-controls .session=${session}></strata-light-controls>`,
   },
   section: {
     glyph: "section",
-    key: "X",
+    key: "section.next",
     content: (session: ModelSession) =>
       html`<strata-section-controls .session=${session}></strata-section-controls>`,
   },
 } satisfies Record<
   string,
-  { glyph: IconName; key: string; content(session: ModelSession): TemplateResult }
+  { glyph: IconName; key: KeyedCommand; content(session: ModelSession): TemplateResult }
 >;
 type Part = keyof typeof kParts;
 const kPartNames = Object.keys(kParts) as Part[];
@@ -126,10 +127,10 @@ export class StrataPictureBar extends LitElement {
     return html`<div class="column">
         <strata-view-cube .session=${session}></strata-view-cube>
         <div class="bar" role="toolbar" aria-label=${words.title} aria-orientation="vertical">
-          <button class="icon quiet" aria-label=${texts.views.first} title="${texts.views.first} (Shift Home)" @click=${() => session.view.flyToFirst()}>
+          <button class="icon quiet" aria-label=${texts.views.first} title=${withKey(texts.views.first, "view.first")} @click=${() => session.view.flyToFirst()}>
             ${icon("home")}
           </button>
-          <button class="icon quiet" aria-label=${texts.views.fit} title="${texts.views.fit} (Home)" @click=${() => session.view.fit()}>
+          <button class="icon quiet" aria-label=${texts.views.fit} title=${withKey(texts.views.fit, "view.fit")} @click=${() => session.view.fit()}>
             ${icon("fit")}
           </button>
           ${this.viewMenu()} ${kPartNames.map((part) => this.button(part))}
@@ -148,7 +149,7 @@ export class StrataPictureBar extends LitElement {
       aria-label=${label}
       data-part=${part}
       aria-expanded=${this._open.value.includes(part)}
-      title="${label} (${kParts[part].key})"
+      title=${withKey(label, kParts[part].key)}
       @click=${() => this.toggle(part)}
     >
       ${icon(kParts[part].glyph)}
@@ -170,19 +171,19 @@ export class StrataPictureBar extends LitElement {
     const { view } = this.session;
     return html`<strata-menu label=${texts.model.view} glyph="cube">
       ${kStandardViews.map(
-        (each, index) =>
-          html`<button class="quiet" role="menuitem" @click=${() => view.standardView(each)}>${texts.views[each]}<kbd>${index + 1}</kbd></button>`,
+        (each) =>
+          html`<button class="quiet" role="menuitem" @click=${() => view.standardView(each)}>${texts.views[each]}<kbd>${keyCapsOf(`view.${each}`)}</kbd></button>`,
       )}
       <hr />
-      ${this.projection(true, texts.views.perspective, "P")} ${this.projection(false, texts.views.orthographic, "O")}
+      ${this.projection(true, texts.views.perspective)} ${this.projection(false, texts.views.orthographic)}
     </strata-menu>`;
   }
 
-  private projection(perspective: boolean, label: string, key: string): TemplateResult {
+  private projection(perspective: boolean, label: string): TemplateResult {
     const { view } = this.session;
     const isChosen = view.camera.perspective === perspective;
     return html`<button class="quiet" role="menuitemradio" aria-checked=${isChosen} @click=${() => view.setPerspective(perspective)}>
-      ${label}${isChosen ? icon("check") : nothing}<kbd>${key}</kbd>
+      ${label}${isChosen ? icon("check") : nothing}<kbd>${keyCapsOf(perspective ? "view.perspective" : "view.orthographic")}</kbd>
     </button>`;
   }
 

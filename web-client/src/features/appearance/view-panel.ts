@@ -6,6 +6,7 @@ import { customElement } from "lit/decorators.js";
 import { SidePanel, sidePanelStyles } from "../../session/side-panel";
 import { icon } from "../../ui/icons";
 import "./look-list";
+import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
 import type { TourRequest } from "../../session/requests";
 import type { ViewRequest } from "../../session/requests";
@@ -85,7 +86,7 @@ export class StrataViewPanel extends SidePanel {
       );
     return html`<div class="part">
       <h3>${texts.figures.title}</h3>
-      <div><button title="F" @click=${open}>${icon("measure")}${texts.figures.open}</button></div>
+      <div><button title=${withKey(texts.figures.open, "figure")} @click=${open}>${icon("measure")}${texts.figures.open}</button></div>
     </div>`;
   }
 }

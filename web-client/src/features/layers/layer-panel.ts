@@ -25,6 +25,7 @@ import { panelHeadingStyles } from "../../ui/panel/panel-styles";
 import { dragStyles, sharedStyles } from "../../ui/styles";
 import { chooseRaster, formatsOf, kFeatureFormats, saveFeatures, saveRaster } from "./raster-files";
 import type { TermsRequest } from "../../session/requests";
+import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
 import { visibilityBadge } from "../../ui/visibility";
 
@@ -255,7 +256,7 @@ export class StrataLayerPanel extends LitElement {
       ${
         layer.table === undefined
           ? nothing
-          : html`<button aria-pressed=${session.tables.view?.layerId === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggleTable()}>
+          : html`<button aria-pressed=${session.tables.view?.layerId === layer.id} title=${withKey(texts.tables.open, "table")} @click=${() => session.toggleTable()}>
             ${icon("table")}${texts.tables.open}
           </button>`
       }

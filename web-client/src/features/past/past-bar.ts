@@ -12,6 +12,7 @@ import type { ModelSession } from "../../session/model-session";
 import { icon } from "../../ui/icons";
 import { personMark, personMarkStyles } from "../../ui/person-mark";
 import { sharedStyles } from "../../ui/styles";
+import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
 import { kSpeeds } from "./past";
 import "./past-restore";
@@ -177,7 +178,7 @@ export class StrataPastBar extends LitElement {
   }
 
   private closeButton(): TemplateResult {
-    return html`<button class="icon quiet close" aria-label=${words.close} title="${words.close} (Z)" @click=${() => this.session.past.close()}>
+    return html`<button class="icon quiet close" aria-label=${words.close} title=${withKey(words.close, "past")} @click=${() => this.session.past.close()}>
       ${icon("close")}
     </button>`;
   }

@@ -15,6 +15,7 @@ import type { ModelSession } from "../../session/model-session";
 import { saveFrom } from "../../ui/save-from";
 import { sharedStyles } from "../../ui/styles";
 import type { TableView } from "./table-view";
+import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
 import type { TablePanelRequest } from "../../session/requests";
 
@@ -220,7 +221,7 @@ export class StrataTableBar extends LitElement {
             : nothing
         }
       </strata-menu>
-      <button class="icon quiet" aria-label=${words.close} title="${words.close} (T)" @click=${() => session.tables.close()}>${icon("close")}</button>
+      <button class="icon quiet" aria-label=${words.close} title=${withKey(words.close, "table")} @click=${() => session.tables.close()}>${icon("close")}</button>
     </div>`;
   }
 

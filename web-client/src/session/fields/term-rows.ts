@@ -1,5 +1,6 @@
 // A tree of terms as rows from top to bottom, and its keyboard control.
 
+import { plainText } from "../../core/search";
 import type { ListedTerm } from "../../core/protocol.gen";
 
 export interface TermRow {
@@ -39,17 +40,15 @@ export function pathTo(terms: readonly ListedTerm[], key: number): ListedTerm[] 
   return path;
 }
 
-const plain = (text: string): string => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
-
 /**
  * The terms with all of the words in their names, ignoring case and accents, together with their
  * ancestors, which do not `match`.
  */
 export function termsWith(terms: readonly ListedTerm[], words: string): ListedTerm[] {
-  const wanted = plain(words)
+  const wanted = plainText(words)
     .split(/\s+/)
     .filter((word) => word !== "");
-  const matches = terms.map(({ name }) => wanted.every((word) => plain(name).includes(word)));
+  const matches = terms.map(({ name }) => wanted.every((word) => plainText(name).includes(word)));
   const shown = new Set<number>();
   let depth = 0; // of the shown term below; its ancestors have smaller depths
   for (let index = terms.length - 1; index >= 0; --index) {
