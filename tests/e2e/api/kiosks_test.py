@@ -6,17 +6,7 @@ import uuid
 
 import pytest
 from support.browsers import Browser, join
-from support.kiosk_site import (
-    ALL,
-    STOP,
-    TOUR,
-    M,
-    make_kiosk,
-    make_site,
-    others_closed,
-    sweep,
-    told,
-)
+from support.kiosk_site import ALL, STOP, TOUR, M, make_kiosk, make_site, others_closed, sweep, told
 from support.live_client import LiveClient, Refused
 from support.strata_server import LONG_S, wait_for
 

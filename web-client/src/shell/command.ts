@@ -12,7 +12,7 @@ export interface Command {
   /** The first key, as caps. */
   readonly caps?: readonly string[];
   readonly glyph?: IconName;
-  /** Why it is not possible now. Its key tells the reason, or does nothing. */
+  /** Why it is not possible now. Its key shows the reason, or does nothing. */
   readonly problem?: string | undefined;
   /** It makes sense only with its key. */
   readonly isKeyOnly?: boolean;

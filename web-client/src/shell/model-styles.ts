@@ -156,7 +156,7 @@ export const modelStyles = css`
     justify-items: end;
     pointer-events: none;
     position: absolute;
-    right: 4.75rem; /* beside the bar on the picture, which tall cards reach */
+    right: 4.75rem; /* left of the bar on the picture, which tall cards reach */
     bottom: calc(0.875rem + var(--past-height, 0px));
     max-width: min(21.25rem, calc(100% - 17.625rem));
   }

@@ -247,7 +247,7 @@ test("until the mouse rests on another, something is pressed or the view moves",
   for (let steps = 0; steps < 5; ++steps) await page.mouse.wheel(0, -240);
   for (const at of [
     [0.03, 0.04],
-    [0.88, 0.04], // beside the cube
+    [0.88, 0.04], // left of the cube
     [0.03, 0.96],
     [0.97, 0.96],
   ]) {
