@@ -25,6 +25,7 @@ const kExceptions = {
   live: "it becomes a WebSocket, which live_cases_test.py opens",
   change_password:
     "it would end the owner's sessions and the token's rights on accounts; accounts_test.py does",
+  reset_demo: "the site has no demo; demo_test.py does",
   kiosk_self: "kiosks ask it, and nobody else; kiosks_test.py does",
   cancel_job: "the job may be over before it is asked to stop",
   open_owner_link:

@@ -128,6 +128,7 @@ export const modelStyles = css`
     top: 0.625rem;
     right: 0.625rem;
     max-width: calc(100% - 1.25rem);
+    bottom: 0.625rem; /* takes no clicks itself */
   }
   .banner {
     position: absolute;

@@ -59,6 +59,16 @@ export class StrataPictureBar extends LitElement {
         gap: var(--space-2);
         pointer-events: none;
       }
+      /* above a tall table they scroll; the space around them is for their shadows */
+      .column,
+      .beside {
+        box-sizing: border-box;
+        max-height: calc(100% + 2rem);
+        margin: -1rem;
+        padding: 1rem;
+        overflow: hidden auto;
+        scrollbar-width: thin;
+      }
       .column {
         display: grid;
         flex: none;
@@ -99,7 +109,7 @@ export class StrataPictureBar extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         gap: var(--space-2);
-        width: 20.5rem;
+        width: 22.5rem; /* with the space for shadows */
         min-width: 0;
       }
       section .row {
