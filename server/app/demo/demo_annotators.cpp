@@ -35,7 +35,7 @@ using Place = StoryPlaces::Place;
 
 constexpr const char* kLayer = "condition";
 
-// Where nothing is painted in the story, so that each stroke is seen and is easy to take back.
+// Where nothing is painted in the story and the wall is not broken, so that each stroke is seen.
 struct RecordedStroke {
   bool by_curator = false;
   const char* term = "";
@@ -44,10 +44,10 @@ struct RecordedStroke {
 };
 const std::vector<RecordedStroke>& recorded_strokes() {
   static const std::vector<RecordedStroke> strokes{
-      {false, "craquele", {{-112, .74}, {-104, .76}, {-97, .73}, {-90, .75}}, 3.5},
-      {true, "loss-of-matrix", {{-74, .68}, {-68, .71}, {-62, .69}}, 4},
+      {false, "craquele", {{-140, .68}, {-134, .70}, {-128, .67}, {-122, .69}}, 3.5},
+      {true, "loss-of-matrix", {{-48, .63}, {-41, .66}, {-34, .64}}, 4},
       {false, "biological-colonization", {{-100, .24}, {-92, .21}, {-84, .23}}, 4.5},
-      {true, "flaking", {{-80, .76}, {-73, .78}, {-66, .76}}, 3.5},
+      {true, "flaking", {{-40, .74}, {-33, .76}, {-26, .74}}, 3.5},
       {false, "soiling", {{-70, .20}, {-62, .17}, {-53, .19}}, 4},
   };
   return strokes;

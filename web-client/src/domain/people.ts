@@ -17,9 +17,11 @@ export interface Named {
 
 /** One or two letters for a person. */
 export function initials({ user, full_name: fullName = "" }: Named): string {
+  // "(recorded)" is no name
+  const named = fullName.split(/\s+/).filter((word) => /^[\p{L}\p{N}]/u.test(word));
   const words =
-    fullName.trim() !== ""
-      ? fullName.trim().split(/\s+/)
+    named.length > 0
+      ? named
       : user.split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
   const [first = "?", ...rest] = words;
   const last = rest[rest.length - 1] ?? "";

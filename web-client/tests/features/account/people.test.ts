@@ -104,6 +104,7 @@ describe("what people are called", () => {
     const of = (user: string, fullName = ""): string => initials({ user, full_name: fullName });
     expect(of("ada", "Ada Lovelace")).toBe("AL");
     expect(of("x", "  maría de los Ángeles  Ochoa ")).toBe("MO");
+    expect(of("x", "Lena Hoff (recorded)")).toBe("LH");
     expect(of("ada")).toBe("A");
     expect(of("ada.lovelace@museum")).toBe("AM");
     expect(of("x", "李小龙")).toBe("李");
