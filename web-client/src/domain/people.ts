@@ -20,9 +20,7 @@ export function initials({ user, full_name: fullName = "" }: Named): string {
   // "(recorded)" is no name
   const named = fullName.split(/\s+/).filter((word) => /^[\p{L}\p{N}]/u.test(word));
   const words =
-    named.length > 0
-      ? named
-      : user.split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
+    named.length > 0 ? named : user.split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
   const [first = "?", ...rest] = words;
   const last = rest[rest.length - 1] ?? "";
   return [first, last]
