@@ -170,7 +170,7 @@ class WebSocketSession final : public LiveSocket,
   // Control messages have priority over frames.
   void write_next() {
     if (writing_ || over_) return;
-    if (closing_) return do_close();
+    if (closing_ && texts_.empty()) return do_close();
     if (!texts_.empty()) {
       text_ = std::move(texts_.front());
       texts_.pop_front();
@@ -207,7 +207,8 @@ class WebSocketSession final : public LiveSocket,
     closing_ = true;
     reason_ = websocket::close_reason(static_cast<websocket::close_code>(code),
                                       beast::string_view(reason));
-    texts_.clear();
+    // The last messages say why: the model was deleted, an edit is saved before the server stops.
+    if (code != kCloseGoingAway) texts_.clear();
     frames_.clear();
     close_timer_.expires_after(kClosing);
     close_timer_.async_wait([weak = weak_from_this()](beast::error_code error) {
