@@ -92,15 +92,11 @@ void Recomputer::attempt(
     failures_.erase(layer.id);
     return;
   }
-  // It was deleted meanwhile, alone or with its model.
-  if (const auto known =
-          services_.store.layers().find(layer.model_id, to_string(layer.id), kAuthor.role);
-      !known && known.error().code == ErrorCode::not_found)
-    return;
   const auto pause =
       failed == failures_.end() ? kFirstPause : std::min(kMaxPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
-  if (failed == failures_.end() && !is_stopping())
+  // A layer that was deleted meanwhile, or is not yet in the open room, is no fault.
+  if (failed == failures_.end() && !is_stopping() && done.error().code != ErrorCode::not_found)
     log::warning("layer " + to_string(layer.id) + " could not be " + what + ": " +
                  done.error().detail);
 }
