@@ -95,7 +95,7 @@ void Recomputer::attempt(
   const auto pause =
       failed == failures_.end() ? kFirstPause : std::min(kMaxPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
-  // A layer that was deleted meanwhile, or is not yet in the open room, is no fault.
+  // A layer that is no longer there, or not yet in the open room, is no fault.
   if (failed == failures_.end() && !is_stopping() && done.error().code != ErrorCode::not_found)
     log::warning("layer " + to_string(layer.id) + " could not be " + what + ": " +
                  done.error().detail);

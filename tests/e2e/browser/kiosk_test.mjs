@@ -482,7 +482,7 @@ test("without its server the tour goes on with stored pictures", async () => {
   await is_loaded();
   await assert_accessible("away");
   await shot("away");
-  // The server took its time to end, and the tour may have restarted meanwhile.
+  // The server took its time to end, so the tour may have restarted.
   if (await begin.isVisible()) await begin.tap();
   await button("Next").tap();
   await heading("Fourteen sherds").waitFor();

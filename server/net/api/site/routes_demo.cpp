@@ -24,7 +24,7 @@ Result<Response> reset_demo(const RouteContext& context, const Request& request)
        templates = context.templates](Progress& progress) -> Result<jobs::JobResult> {
         STRATA_TRY(app::erase_demo_story(store, [&rooms](ModelId model) { rooms.forget(model); }));
         const auto made = STRATA_TRY(app::make_demo_story(store, templates, progress));
-        // A room that was opened meanwhile does not know all of the story.
+        // A room that was opened during the story does not know all of it.
         rooms.forget(made.model.id);
         return jobs::JobResult(made.model.id);
       },
