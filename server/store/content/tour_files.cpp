@@ -61,9 +61,6 @@ Result<TourFile> TourFiles::add(NamedPartId tour_id, const NewTourFile& file,
                                             Params().id(tour_id)));
     if (tour.rows() == 0) return no_such("tour", to_string(tour_id));
     STRATA_TRY(check_room(connection, tour_id, content.bytes));
-    const auto side = [](std::optional<int> pixels) {
-      return pixels ? std::optional<std::int64_t>(*pixels) : std::nullopt;
-    };
     auto made = STRATA_TRY(connection.query(
         "INSERT INTO tour_files (tour_id, sha256, name, media_type, width, height, user_name) "
         "VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING id",
@@ -72,8 +69,8 @@ Result<TourFile> TourFiles::add(NamedPartId tour_id, const NewTourFile& file,
             .bytes(content.hash)
             .text(file.name)
             .text(file.media_type)
-            .optional_integer(side(file.width))
-            .optional_integer(side(file.height))
+            .optional_integer(file.width)
+            .optional_integer(file.height)
             .text(user)));
     auto row = STRATA_TRY(connection.query(sql(kTourFiles, "WHERE f.id = $1"),
                                            Params().id(made.id<TourFileId>(0, 0))));

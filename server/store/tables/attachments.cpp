@@ -97,9 +97,6 @@ nlohmann::json cell_of(const Record& record, const Column& column) {
 Result<Attachment> insert_attachment(PgConnection& connection, TableId table_id,
                                      const NewAttachment& file, const Sha256& hash,
                                      const std::string& user) {
-  const auto side = [](std::optional<int> value) {
-    return value ? std::optional<std::int64_t>(*value) : std::nullopt;
-  };
   auto row = STRATA_TRY(connection.query(
       "INSERT INTO attachments (table_id, sha256, name, media_type, width, height, user_name, visibility) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8) RETURNING id",
@@ -108,8 +105,8 @@ Result<Attachment> insert_attachment(PgConnection& connection, TableId table_id,
           .bytes(hash)
           .text(file.name)
           .text(file.media_type)
-          .optional_integer(side(file.width))
-          .optional_integer(side(file.height))
+          .optional_integer(file.width)
+          .optional_integer(file.height)
           .text(user)
           .text(name(file.visibility))));
   auto made =
