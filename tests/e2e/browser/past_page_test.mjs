@@ -2,8 +2,9 @@
 // and restores a part.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/js/browser.mjs";
+import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { with_one_layer } from "../support/js/one-layer.mjs";
 import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
@@ -43,14 +44,7 @@ test.beforeAll(async () => {
   ];
   server = new StrataServer({ demo: true });
   await server.start();
-  model = (await server.json("GET", "/models")).models[0];
-  const layers = `/models/${model.id}/layers`;
-  for (const other of (await server.json("GET", layers)).layers)
-    await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
-  const palette = { mode: "categorical", points: [{ at: 1, color: "#0072b2", label: "Bone" }] };
-  await server.json("POST", layers, { name: "Finds", type: "u8", palette });
-  finds = `${layers}/finds`;
-  bone = rgb(palette.points[0].color);
+  ({ model, finds, bone } = await with_one_layer(server, "#0072b2"));
   const people = {
     ada: await server.add_person("ada", "annotator"),
     ben: await server.add_person("ben", "annotator"),
