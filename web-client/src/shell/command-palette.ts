@@ -142,7 +142,7 @@ export class StrataCommandPalette extends LitElement {
     return recent.length > 0 ? [{ title: words.recent, commands: recent }, ...sections] : sections;
   }
 
-  /** Equally good ones: the recently used first, and what is not possible last. */
+  /** Of equally good results, recently used commands are first and impossible ones last. */
   private found(): Section[] {
     const recent = this._recent.value;
     const place = ({ id, problem }: Command): number =>
