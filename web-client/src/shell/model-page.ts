@@ -126,11 +126,8 @@ export class StrataModelPage extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    loadPartLater("model_dialogs");
-    loadPartLater("table");
-    loadPartLater("measuring");
-    loadPartLater("activity");
-    loadPartLater("past");
+    for (const part of ["model_dialogs", "table", "measuring", "activity", "past"] as const)
+      loadPartLater(part);
     addEventListener("keydown", this.onKeyDown);
     addEventListener("keyup", this.onKeyUp);
     addEventListener("blur", this.onBlur);

@@ -50,7 +50,12 @@ setPartLoads({
       import("../features/activity/activity-panel"),
       import("../features/review/review-panel"),
     ]),
-  past: () => import("../features/past/elements"),
+  past: () =>
+    Promise.all([
+      import("../features/past/past-bar"),
+      import("../features/past/past-overlay"),
+      import("../features/past/past-since"),
+    ]),
   join: () => import("../features/account/join-page"),
   sign_in: () => import("../features/account/sign-in"),
   account: () => import("../features/account/account-dialog"),
