@@ -1,7 +1,6 @@
 #include "app/demo/demo_annotators.h"
 
 #include <algorithm>
-#include <future>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <string>
@@ -10,14 +9,13 @@
 
 #include "app/demo/demo_story.h"
 #include "app/demo/story_places.h"
-#include "core/log.h"
+#include "app/edits.h"
 #include "core/uuid.h"
 #include "domain/people/person_color.h"
 #include "domain/scene/camera.h"
 #include "domain/tables/term_list.h"
 #include "jobs/demo.h"
 #include "room/edit.h"
-#include "room/edits.h"
 #include "room/layers.h"
 #include "room/participants.h"
 #include "room/room.h"
@@ -71,28 +69,19 @@ StrokeBatch seen_from_outside(const StoryPlaces& places, const std::vector<glm::
   return batch;
 }
 
-Result<room::EditAnswer> submit(room::Room& room, room::EditRequest edit) {
-  std::promise<Result<room::EditAnswer>> saved;
-  auto answer = saved.get_future();
-  room.edits().submit(std::move(edit), {}, [&saved](Result<room::EditAnswer> result) {
-    saved.set_value(std::move(result));
-  });
-  return answer.get();
-}
-
 }  // namespace
 
-// One of them in the room.
 struct DemoAnnotators::Scene {
-  struct Annotator {
+  struct Annotator {  // in the room
     Author author;
     std::unique_ptr<room::Participant> here;
     int strokes = 0;
   };
 
-  Scene(std::shared_ptr<room::Room> in, Layer on)
+  Scene(std::shared_ptr<room::Room> in, Layer on, EditCounters& count)
       : room(std::move(in)),
         layer(std::move(on)),
+        counters(count),
         places(*room->surface().geometry()),
         lena{Author(kDemoConservator, Role::annotator), nullptr},
         marco{Author(kDemoCurator, Role::curator), nullptr} {}
@@ -118,18 +107,19 @@ struct DemoAnnotators::Scene {
         auto edit = request(*who);
         edit.edit = room::UndoEdit{};
         edit.record["op"] = "undo";
-        submit(*room, std::move(edit));
+        edit_and_wait(*room, std::move(edit), counters);
       }
   }
 
   std::shared_ptr<room::Room> room;
   Layer layer;
+  EditCounters& counters;
   StoryPlaces places;
   Annotator lena, marco;
 };
 
-DemoAnnotators::DemoAnnotators(store::Store& store, room::Rooms& rooms, Pace pace)
-    : store_(store), rooms_(rooms), pace_(pace), thread_([this] { run(); }) {}
+DemoAnnotators::DemoAnnotators(const Services& services, Pace pace)
+    : services_(services), pace_(pace), thread_([this] { run(); }) {}
 
 void DemoAnnotators::visited(const Model& model) {
   if (model.slug != jobs::kDemoModel) return;
@@ -175,13 +165,13 @@ bool DemoAnnotators::pause(std::chrono::milliseconds time, const room::Room& roo
 }
 
 void DemoAnnotators::play(ModelId model_id) {
-  auto room = rooms_.open(to_string(model_id), Role::owner);
+  auto room = services_.rooms.open(to_string(model_id), Role::owner);
   if (!room) return;
   auto layer = (*room)->layers().find(kLayer);  // missing in a demo without the story
   if (!layer || !layer->table || !pause(pace_.before_first, **room)) return;
   store::RecordQuery all;
   all.limit = 1000;
-  const auto terms = store_.records().page(*layer->table, Role::owner, all);
+  const auto terms = services_.store.records().page(*layer->table, Role::owner, all);
   if (!terms) return;
   const auto columns = term_columns(terms->table);
   if (!columns) return;
@@ -189,8 +179,9 @@ void DemoAnnotators::play(ModelId model_id) {
   for (const ListedTerm& listed : list_terms(*columns, terms->records))
     keys[listed.term.code] = listed.key;
 
-  Scene scene(*room, *layer);
-  if (!scene.enter(store_, scene.lena) || !scene.enter(store_, scene.marco)) return;
+  Scene scene(*room, *layer, services_.edits);
+  if (!scene.enter(services_.store, scene.lena) || !scene.enter(services_.store, scene.marco))
+    return;
   {
     const std::lock_guard lock(mutex_);
     played_[model_id] = std::chrono::steady_clock::now();
@@ -220,7 +211,7 @@ void DemoAnnotators::play(ModelId model_id) {
       request.record["op"] = "stroke";
       request.record["value"] = key->second;
       request.edit = std::move(edit);
-      if (!submit(**room, std::move(request))) return false;
+      if (!edit_and_wait(**room, std::move(request), services_.edits)) return false;
       if (n == 1) ++who.strokes;
       if (!pause(pace_.per_batch, **room)) return false;
     }

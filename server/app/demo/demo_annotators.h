@@ -7,15 +7,12 @@
 #include <optional>
 #include <thread>
 
+#include "app/services.h"
 #include "core/ids.h"
 #include "domain/scene/model.h"
 
 namespace strata::room {
 class Room;
-class Rooms;
-}  // namespace strata::room
-namespace strata::store {
-class Store;
 }
 
 namespace strata::app {
@@ -34,9 +31,8 @@ class DemoAnnotators {
     std::chrono::minutes rest{10};  // until they come to the same model again
   };
 
-  // The parts outlive it.
-  DemoAnnotators(store::Store& store, room::Rooms& rooms) : DemoAnnotators(store, rooms, Pace{}) {}
-  DemoAnnotators(store::Store& store, room::Rooms& rooms, Pace pace);
+  explicit DemoAnnotators(const Services& services) : DemoAnnotators(services, Pace{}) {}
+  DemoAnnotators(const Services& services, Pace pace);
   ~DemoAnnotators() { stop(); }
   // Somebody has opened the model, which may be another one than the demo's. Returns at once.
   void visited(const Model& model);
@@ -50,8 +46,7 @@ class DemoAnnotators {
   // Returns false if the scene has to end.
   bool pause(std::chrono::milliseconds time, const room::Room& room);
 
-  store::Store& store_;
-  room::Rooms& rooms_;
+  const Services services_;
   const Pace pace_;
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -122,7 +122,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
                templates_,
                trash_purger_},
       recomputer_(context_),
-      demo_annotators_(store, rooms) {
+      demo_annotators_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_people_routes(router_, context_);

@@ -13,6 +13,7 @@
 #include "room/participants.h"
 #include "room/queries.h"
 #include "strata_dirs.h"
+#include "support/quiet_services.h"
 #include "support/room_fixture.h"
 
 namespace strata::app {
@@ -75,6 +76,7 @@ class Annotators : public test::RoomTest {
   void take_back_their_strokes_before_the_server_stops();
 
   static constexpr DemoAnnotators::Pace kFast{1ms, 1ms, 1ms, 1ms, 0min};
+  test::QuietServices quiet_;
   Model pot_;
   std::shared_ptr<room::Room> room_;
   TileMap before_;
@@ -90,7 +92,7 @@ TEST_F(Annotators, paint_for_a_lone_visitor_and_take_it_back) {
 void Annotators::paint_and_leave() {
   const std::int64_t first = room_->edits().sequence();
   const auto visitor = visit("vera");
-  DemoAnnotators annotators(*store_, *rooms_, kFast);
+  DemoAnnotators annotators(quiet_.of(*store_, *rooms_), kFast);
   annotators.visited(pot_);
   expect_here({"vera", kDemoConservator, kDemoCurator});
   for (const auto& person : room_->participants().presence({}))
@@ -105,7 +107,7 @@ void Annotators::leave_when_a_second_person_comes() {
   const auto vera = visit("vera");
   DemoAnnotators::Pace slow = kFast;
   slow.per_batch = 200ms;
-  DemoAnnotators annotators(*store_, *rooms_, slow);
+  DemoAnnotators annotators(quiet_.of(*store_, *rooms_), slow);
   annotators.visited(pot_);
   expect_edits_after(first);
   const auto otto = visit("otto");
@@ -123,7 +125,7 @@ void Annotators::take_back_their_strokes_before_the_server_stops() {
   const auto vera = visit("vera");
   DemoAnnotators::Pace slow = kFast;
   slow.before_undo = 10min;
-  DemoAnnotators annotators(*store_, *rooms_, slow);
+  DemoAnnotators annotators(quiet_.of(*store_, *rooms_), slow);
   annotators.visited(pot_);
   expect_edits_after(first, 10);
   annotators.stop();
@@ -136,7 +138,8 @@ TEST_F(NotTheDemo, is_not_visited) {
   const std::int64_t first = room()->edits().sequence();
   const auto visitor =
       room()->participants().join(Author("vera", Role::viewer), {}, nullptr, [](const auto&) {});
-  DemoAnnotators annotators(*store_, *rooms_, {1ms, 1ms, 1ms, 1ms, 0min});
+  test::QuietServices quiet;
+  DemoAnnotators annotators(quiet.of(*store_, *rooms_), {1ms, 1ms, 1ms, 1ms, 0min});
   annotators.visited(model_);
   annotators.stop();
   EXPECT_EQ(room()->edits().sequence(), first);

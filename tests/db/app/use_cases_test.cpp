@@ -4,17 +4,15 @@
 #include <fstream>
 #include <thread>
 
-#include "app/change_notifier.h"
-#include "app/edits.h"
 #include "app/figures/figures.h"
 #include "app/layers/formula_layers.h"
 #include "app/layers/recomputer.h"
-#include "app/services.h"
 #include "app/trash_purger.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/queries.h"
 #include "store/content/layers.h"
+#include "support/quiet_services.h"
 #include "support/room_fixture.h"
 
 namespace strata::app {
@@ -34,14 +32,9 @@ bool wait_until(const Condition& holds) {
   return true;
 }
 
-class NobodyListens final : public ChangeNotifier {
- public:
-  void records_changed(const store::TableChange&, const std::string&) const override {}
-};
-
 class UseCases : public RoomTest {
  protected:
-  Services services() { return {*store_, *rooms_, counters_, nobody_}; }
+  Services services() { return quiet_.of(*store_, *rooms_); }
   double highest(const std::string& layer) { return room()->queries().statistics(layer)->max; }
 
   // Creates a layer with twice the values of the source.
@@ -56,7 +49,7 @@ class UseCases : public RoomTest {
     layer.formula = *formula;
     layer.origin = LayerOrigin::expression;
     layer.locked = true;
-    NewLayers layers(room(), counters_, {"carl", Role::curator});
+    NewLayers layers(room(), quiet_.counters, {"carl", Role::curator});
     Progress progress;
     auto made = add_formula_layer(services(), room(), layers, std::move(layer),
                                   {"carl", Role::curator}, true, progress);
@@ -65,8 +58,7 @@ class UseCases : public RoomTest {
     return *made;
   }
 
-  EditCounters counters_;
-  NobodyListens nobody_;
+  test::QuietServices quiet_;
 };
 
 TEST_F(UseCases, an_automatic_layer_follows_what_is_painted_below_it) {
@@ -74,7 +66,7 @@ TEST_F(UseCases, an_automatic_layer_follows_what_is_painted_below_it) {
   ASSERT_TRUE(send(stroke(source, 5, {{320, 240}}, 20)));
   const Layer twice = make_double(source);
   EXPECT_EQ(highest(twice.slug), 10);
-  EXPECT_EQ(counters_.saved, 1u);
+  EXPECT_EQ(quiet_.counters.saved, 1u);
   Recomputer recomputer(services());
   ASSERT_TRUE(send(stroke(source, 9, {{320, 240}}, 20)));
   EXPECT_TRUE(wait_until([&] { return highest(twice.slug) == 18; }));
@@ -94,7 +86,7 @@ TEST_F(UseCases, an_edit_that_is_refused_is_counted_and_its_layer_is_taken_back)
   const auto refused = compute_layer(services(), room(), *now, {"carl", Role::curator}, progress);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "expression");
-  EXPECT_EQ(counters_.saved, 1u);
+  EXPECT_EQ(quiet_.counters.saved, 1u);
 }
 
 TEST_F(UseCases, what_was_in_the_trash_for_long_enough_is_erased_and_nothing_else) {

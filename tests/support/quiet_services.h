@@ -1,0 +1,25 @@
+#pragma once
+
+#include "app/change_notifier.h"
+#include "app/edits.h"
+#include "app/services.h"
+
+namespace strata::test {
+
+// What use cases need beside the store and the rooms, when nobody listens to changes.
+class QuietServices {
+ public:
+  app::Services of(store::Store& store, room::Rooms& rooms) {
+    return {store, rooms, counters, nobody_};
+  }
+  app::EditCounters counters;
+
+ private:
+  class Nobody final : public app::ChangeNotifier {
+   public:
+    void records_changed(const store::TableChange&, const std::string&) const override {}
+  };
+  const Nobody nobody_{};
+};
+
+}  // namespace strata::test
