@@ -218,6 +218,10 @@ test("a table of numbers for the vertices of the scan is painted", async () => {
     .map((line) => Number(line.split(" ")[3]) * 10);
   await button(words.layers.options("quality")).click();
   await page.getByRole("menuitem", { name: words.layers.unlock_computed }).click();
+  await wait_for(
+    async () => !(await server.json("GET", `/models/${now}/layers/quality`)).locked,
+    "the layer to be unlocked",
+  );
   await button(words.layers.options("quality")).click();
   await page.getByRole("menuitem", { name: words.maps.menu }).click();
   await page.locator("strata-map-dialog input[type=file]").setInputFiles({

@@ -1,8 +1,14 @@
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cstring>
 #include <numeric>
+#include <thread>
+#include <typeinfo>
 
 #include "gl/buffer.h"
 #include "gl/debug_messages.h"
@@ -34,6 +40,33 @@ class GlWrapper : public testing::Test {
   DebugMessages messages_;
   EglContext context_;
 };
+
+#ifndef __SANITIZE_THREAD__
+// As the fences of llvmpipe are freed: by a thread that saw the result of another, which still
+// holds the mutex. See mutex_destruction.cpp.
+TEST(MutexDestruction, waits_for_the_thread_inside_the_mutex) {
+  pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+  std::atomic<bool> complete = false, left = false;
+  std::jthread drawing([&] {
+    pthread_mutex_lock(&mutex);
+    complete = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    left = true;
+    pthread_mutex_unlock(&mutex);
+  });
+  while (!complete) std::this_thread::yield();
+  EXPECT_EQ(pthread_mutex_destroy(&mutex), 0);
+  EXPECT_TRUE(left);
+}
+
+TEST(MutexDestruction, of_the_driver_is_that_of_the_program) {
+  Dl_info found{};
+  ASSERT_NE(dladdr(dlsym(RTLD_DEFAULT, "pthread_mutex_destroy"), &found), 0);
+  Dl_info program{};
+  ASSERT_NE(dladdr(&typeid(GlWrapper), &program), 0);
+  EXPECT_STREQ(found.dli_fname, program.dli_fname);
+}
+#endif
 
 // Objects are constructed, moved and assigned over another; a moved-from object is empty, and the
 // name exists as long as its last owner.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <random>
@@ -46,7 +45,8 @@ void expect_equal(const Geometry& a, const Geometry& b) {
   EXPECT_EQ(a.box_max, b.box_max);
   ASSERT_EQ(a.vertices.size(), b.vertices.size());
   const auto same = [](const mesh::Vertex& v, const mesh::Vertex& w) {
-    return std::memcmp(&v, &w, sizeof v) == 0;
+    return v.position == w.position && v.normal == w.normal && v.uv == w.uv && v.color == w.color &&
+           v.position_index == w.position_index;
   };
   EXPECT_TRUE(std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), same));
 }
