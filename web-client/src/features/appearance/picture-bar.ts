@@ -64,8 +64,8 @@ export class StrataPictureBar extends LitElement {
       .beside {
         box-sizing: border-box;
         max-height: calc(100% + 2rem);
-        margin: -1rem;
-        padding: 1rem;
+        margin: calc(-1 * var(--space-4));
+        padding: var(--space-4);
         overflow: hidden auto;
         scrollbar-width: thin;
       }
