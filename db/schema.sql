@@ -53,7 +53,7 @@ CREATE TABLE public.activities (
     changed text[],
     visibility text DEFAULT 'public'::text NOT NULL,
     group_name text,
-    CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'view'::text, 'tour'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
+    CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'view'::text, 'tour'::text, 'snapshot'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
 );
 
 CREATE FUNCTION public.activity_of(of_project bigint, of_kind text, of_op text, of_subject text) RETURNS public.activities
@@ -328,7 +328,7 @@ BEGIN
       AND l.layer_id IS NOT DISTINCT FROM line.layer_id AND l.table_id IS NOT DISTINCT FROM line.table_id
       AND l.person IS NOT DISTINCT FROM line.person AND l.group_name IS NOT DISTINCT FROM line.group_name
       -- what is made or deleted, looks among them, which have no id here, is a line of its own
-      AND (line.kind NOT IN ('layer', 'look', 'view', 'tour', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
+      AND (line.kind NOT IN ('layer', 'look', 'view', 'tour', 'snapshot', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
     ORDER BY l.time DESC, l.id DESC LIMIT 1);
   IF NOT FOUND THEN
     INSERT INTO activities (project_id, model_id, layer_id, table_id, record_key, comment_id, subject, user_name, kind, op, begun, time,
@@ -409,7 +409,7 @@ BEGIN
   IF of_kind = 'layer' AND TG_OP = 'DELETE' THEN
     UPDATE activities SET visibility = thing ->> 'visibility' WHERE model_id = (thing ->> 'model_id')::bigint AND layer_id = own_id;
   END IF;
-  IF of_kind IN ('layer', 'look', 'view', 'tour') THEN
+  IF of_kind IN ('layer', 'look', 'view', 'tour', 'snapshot') THEN
     SELECT m.project_id INTO of_project FROM models m WHERE m.id = (thing ->> 'model_id')::bigint;
   ELSIF of_kind = 'project' THEN
     of_project := own_id;
@@ -1185,6 +1185,29 @@ CREATE TABLE public.schema_migrations (
     version character varying(128) NOT NULL
 );
 
+CREATE TABLE public.snapshots (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    slug text NOT NULL,
+    name text NOT NULL,
+    text text DEFAULT ''::text NOT NULL,
+    content jsonb NOT NULL,
+    user_name text NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT snapshots_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200))),
+    CONSTRAINT snapshots_text_check CHECK ((char_length(text) <= 10000))
+);
+
+ALTER TABLE public.snapshots ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.snapshots_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.thumbnails (
     sha256 bytea NOT NULL,
     side integer NOT NULL,
@@ -1446,6 +1469,12 @@ ALTER TABLE ONLY public.schema_checksums
 ALTER TABLE ONLY public.schema_migrations
     ADD CONSTRAINT schema_migrations_pkey PRIMARY KEY (version);
 
+ALTER TABLE ONLY public.snapshots
+    ADD CONSTRAINT snapshots_model_id_slug_key UNIQUE (model_id, slug);
+
+ALTER TABLE ONLY public.snapshots
+    ADD CONSTRAINT snapshots_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.table_changes
     ADD CONSTRAINT table_changes_pkey PRIMARY KEY (table_id, subject, subject_id, sequence);
 
@@ -1631,6 +1660,8 @@ CREATE TRIGGER project_group_is_activity AFTER INSERT OR DELETE OR UPDATE OF rol
 
 CREATE TRIGGER project_is_activity AFTER INSERT OR UPDATE OF name, slug, description ON public.projects FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('project');
 
+CREATE TRIGGER snapshot_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('snapshot');
+
 CREATE CONSTRAINT TRIGGER table_edit_is_activity AFTER INSERT ON public.table_edits DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.table_edit_is_activity();
 
 CREATE TRIGGER table_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, labels, description ON public.record_tables FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('table');
@@ -1759,6 +1790,9 @@ ALTER TABLE ONLY public.record_tables
 
 ALTER TABLE ONLY public.record_views
     ADD CONSTRAINT record_views_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.snapshots
+    ADD CONSTRAINT snapshots_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.table_changes
     ADD CONSTRAINT table_changes_table_id_sequence_fkey FOREIGN KEY (table_id, sequence) REFERENCES public.table_edits(table_id, sequence) ON DELETE CASCADE;

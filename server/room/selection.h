@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "domain/people/role.h"
 #include "expression/expression.h"
@@ -19,9 +22,16 @@ struct Selection {
     double radius = 0;  // model units
   };
   std::optional<std::variant<Around, Outline>> within{};
+  // Where any of these layers differs between two states.
+  struct Changed {
+    std::vector<std::string> layers;  // slugs
+    std::int64_t from = 0;
+    std::int64_t to = 0;
+  };
+  std::optional<Changed> changed{};
   At at{};                     // of the layers
   Role seen_by = Role::owner;  // `where` cannot name layers that this role does not see
-  bool whole() const { return !where && !within; }
+  bool whole() const { return !where && !within && !changed; }
 };
 
 }  // namespace strata::room

@@ -44,6 +44,7 @@ Answers& Store::answers() { return impl_->answers; }
 Comments& Store::comments() { return impl_->comments; }
 NamedParts& Store::views() { return impl_->views; }
 NamedParts& Store::tours() { return impl_->tours; }
+NamedParts& Store::snapshots() { return impl_->snapshots; }
 Jobs& Store::jobs() { return impl_->jobs; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }
 TourFiles& Store::tour_files() { return impl_->tour_files; }

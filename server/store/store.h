@@ -83,6 +83,7 @@ class Store {
   Comments& comments();
   NamedParts& views();  // of models (store/content/named_parts.h)
   NamedParts& tours();  // the same
+  NamedParts& snapshots();
   Jobs& jobs();
   Kiosks& kiosks();
   TourFiles& tour_files();

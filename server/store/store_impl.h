@@ -127,6 +127,7 @@ struct Store::Impl {
   Tools tools{pool};
   Answers answers{pool};
   std::int64_t schema_version = 0;
+  NamedParts snapshots{pool, NamedParts::kSnapshots};
 
   template <class Answer, class Work>
   auto change(const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)

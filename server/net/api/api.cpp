@@ -157,6 +157,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_extent_routes(router_, context_);
   add_feature_routes(router_, context_);
   add_vertex_routes(router_, context_);
+  add_snapshot_routes(router_, context_);
   add_timeline_routes(router_, context_);
   add_frame_routes(router_, context_);
   add_figure_routes(router_, context_);

@@ -39,6 +39,7 @@ void add_quantity_routes(Router& router, const RouteContext& context);
 void add_extent_routes(Router& router, const RouteContext& context);
 void add_feature_routes(Router& router, const RouteContext& context);
 void add_vertex_routes(Router& router, const RouteContext& context);
+void add_snapshot_routes(Router& router, const RouteContext& context);
 void add_timeline_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
 void add_figure_routes(Router& router, const RouteContext& context);

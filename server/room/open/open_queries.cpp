@@ -7,6 +7,7 @@
 #include "domain/people/question.h"
 #include "mesh/parallel.h"
 #include "mesh/texels/slot_bits.h"
+#include "query/conditions/changed_texels.h"
 #include "query/conditions/expression_evaluator.h"
 #include "query/conditions/flood.h"
 #include "query/conditions/texel_values.h"
@@ -130,12 +131,54 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::texels_withi
                             static_cast<float>(around.radius));
 }
 
+// The state of a layer that is far back differs in few tiles from a near one: the journal reads
+// only these.
+Result<OpenRoom::QueriesPart::ChangedLayer> OpenRoom::QueriesPart::changed_layer(
+    const std::string& slug, const Selection::Changed& states) {
+  const auto found = STRATA_TRY(room_.state(slug));
+  store::Journal& journal = room_.services_.store.journal();
+  const auto state_after =
+      [&](std::int64_t sequence,
+          const std::optional<TileMirror::Snapshot>& near) -> Result<TileMirror::Snapshot> {
+    STRATA_TRY(room_.check_durable(sequence));
+    const auto last = STRATA_TRY(journal.layer_sequences(room_.model().id, sequence));
+    const auto of_layer = last.find(found.layer.id);
+    const std::int64_t edit = of_layer == last.end() ? 0 : of_layer->second;
+    return near ? journal.load_tiles_near(found.layer, edit, *near)
+                : journal.load_tiles(found.layer, edit);
+  };
+  auto to = STRATA_TRY(state_after(states.to, room_.durable_tiles(found.layer)));
+  auto from = STRATA_TRY(state_after(states.from, to));
+  return ChangedLayer{found.layer, std::move(from), std::move(to)};
+}
+
+// Returns nothing if the selection does not ask for changes. Reads one layer at a time.
+Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::changed_texels(
+    const Selection& selection, const mesh::SurfaceMap& map) {
+  if (!selection.changed) return std::nullopt;
+  query::TexelSelection changed(map.block_of_slot.size(), 0);
+  for (const std::string& slug : selection.changed->layers) {
+    check_question();
+    const auto states = STRATA_TRY(changed_layer(slug, *selection.changed));
+    query::add_changed_texels(states.layer, states.from.tiles, states.to.tiles, map,
+                              mesh::background_threads(), changed);
+  }
+  return changed;
+}
+
 // Returns nothing for the whole surface. A condition is evaluated only within the place, so that a
 // small place is answered quickly.
 Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texels(
     const Selection& selection, const mesh::SurfaceMap& map) {
   auto inside = texels_within(selection, map);
-  if (!inside || !selection.where) return inside;
+  if (!inside) return inside;
+  if (auto changed = STRATA_TRY(changed_texels(selection, map))) {
+    if (*inside)
+      for (std::size_t slot = 0; slot < changed->size(); ++slot)
+        (*changed)[slot] &= (**inside)[slot];
+    *inside = std::move(changed);
+  }
+  if (!selection.where) return inside;
   std::vector<std::string> slugs;
   std::vector<query::LayerView> candidates;
   for (const auto& layer : room_.layer_list())
@@ -199,6 +242,10 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
   for (const auto& view : views) area.resolution = std::max(area.resolution, view.layer.resolution);
   if (selection.where)
     for (const auto& slug : layers_of(*selection.where))
+      if (const auto found = room_.state(slug))
+        area.resolution = std::max(area.resolution, found->layer.resolution);
+  if (selection.changed)
+    for (const auto& slug : selection.changed->layers)
       if (const auto found = room_.state(slug))
         area.resolution = std::max(area.resolution, found->layer.resolution);
   if (area.resolution == 0) area.resolution = room_.model().default_resolution;

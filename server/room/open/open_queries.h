@@ -46,6 +46,16 @@ class OpenRoom::QueriesPart final : public Queries {
     std::shared_ptr<const mesh::TexelGraph> graph;
   };
   Result<LayerGraph> layer_graph(const std::string& layer, At at);
+  // Contents of the layers of Selection::Changed then and later; only what they do not share takes
+  // memory of its own.
+  struct ChangedLayer {
+    Layer layer;
+    TileMirror::Snapshot from, to;
+  };
+  Result<std::optional<query::TexelSelection>> changed_texels(const Selection& selection,
+                                                              const mesh::SurfaceMap& map);
+  Result<ChangedLayer> changed_layer(const std::string& slug, const Selection::Changed& states);
+  // Returns nothing for the whole surface.
   Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,

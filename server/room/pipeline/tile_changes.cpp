@@ -1,27 +1,14 @@
 #include "room/pipeline/tile_changes.h"
 
-#include <cstring>
 #include <set>
 
 #include "domain/layers/mask_texels.h"
+#include "domain/layers/tile_difference.h"
 #include "mesh/texels/slot_bits.h"
 #include "query/statistics/surface_keys.h"
 
 namespace strata::room {
 namespace {
-
-// Returns the texels whose value or validity differs.
-TileMask differing(const TileData& a, const TileData& b) {
-  TileMask mask;
-  const int width = a.texel_bytes();
-  for (int w = 0; w < kMaskWords; ++w) mask.words[w] = a.valid.words[w] ^ b.valid.words[w];
-  if (std::memcmp(a.values.data(), b.values.data(), a.values.size()) == 0) return mask;
-  for (int texel = 0; texel < kTexelsPerTile; ++texel)
-    if (std::memcmp(&a.values[std::size_t(texel) * width], &b.values[std::size_t(texel) * width],
-                    width) != 0)
-      mask.set(texel);
-  return mask;
-}
 
 // Writes the texels of `mask_of(address)`.
 template <class MaskOf>

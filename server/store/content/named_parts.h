@@ -15,22 +15,23 @@ namespace strata::store {
 
 class Pool;
 
-// A saved view of a model (a camera with the shown layers, images and light) or a tour of views.
+// A saved view of a model (a camera with the shown layers, images and light), a tour of views, or a
+// snapshot (a named state).
 struct NamedPart {
   NamedPartId id = 0;
   ModelId model_id = 0;
   std::string slug;  // unique in the model; made from the name if it is empty
   std::string name;
   std::string text;  // plain, UTF-8, at most 10 000 characters
-  // the other fields of the protocol's View or Tour, with ids in place of slugs
+  // the other fields of the protocol's View, Tour or Snapshot, with ids in place of slugs
   nlohmann::json content;
   std::string user;  // the user who made it
   std::chrono::system_clock::time_point time;
   std::int64_t version = 1;
 };
 
-// Saved views of models, or tours. Part of Store: thread-safe and blocking as Store is, with the
-// same errors for missing, stale or unreachable data.
+// Saved views of models, tours, or snapshots. Part of Store: thread-safe and blocking as Store is,
+// with the same errors for missing, stale or unreachable data.
 class NamedParts {
  public:
   struct Kind {
@@ -38,7 +39,8 @@ class NamedParts {
     const char* table;  // all kinds have the same columns
     std::int64_t most;  // limit for one model
   };
-  static constexpr Kind kViews{"view", "views", 1000}, kTours{"tour", "tours", 100};
+  static constexpr Kind kViews{"view", "views", 1000}, kTours{"tour", "tours", 100},
+      kSnapshots{"snapshot", "snapshots", 200};
 
   NamedParts(Pool& pool, const Kind& kind) : pool_(pool), kind_(kind) {}
 

@@ -17,6 +17,8 @@ Result<std::chrono::system_clock::time_point> JournalWriter::date_back(
       "WHERE t.id = a.table_id AND t.project_id = $1 AND a.time >= $2",
       "UPDATE views v SET time = $3 FROM all_models m "
       "WHERE m.id = v.model_id AND m.project_id = $1 AND v.time >= $2",
+      "UPDATE snapshots s SET time = $3 FROM all_models m "
+      "WHERE m.id = s.model_id AND m.project_id = $1 AND s.time >= $2",
       "UPDATE kiosks k SET created = $3 FROM tours o JOIN all_models m ON m.id = o.model_id "
       "WHERE o.id = k.tour_id AND m.project_id = $1 AND k.created >= $2",
       "UPDATE tours o SET time = $3 FROM all_models m "

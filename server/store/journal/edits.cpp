@@ -120,6 +120,16 @@ Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& u
   });
 }
 
+Result<std::optional<std::chrono::system_clock::time_point>> Journal::time_of_state(
+    ModelId model_id, std::int64_t sequence) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::optional<Time>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT time FROM edits WHERE model_id = $1 AND sequence <= $2 ORDER BY sequence DESC LIMIT 1",
+        Params().id(model_id).integer(sequence)));
+    return rows.rows() == 0 ? std::nullopt : std::optional(rows.time(0, 0));
+  });
+}
+
 Result<std::int64_t> Journal::last_sequence(ModelId model_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     auto row = connection.query("SELECT sequence FROM models WHERE id = $1", Params().id(model_id));

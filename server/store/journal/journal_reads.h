@@ -15,6 +15,7 @@
 #include "domain/layers/tile_mirror.h"
 #include "store/journal/journal.h"
 #include "store/journal/timeline.h"
+#include "store/journal/undo_steps.h"
 
 namespace strata::store {
 
@@ -84,10 +85,15 @@ class Journal {
   // Returns the strokes and other edits up to `from` (backward) or after it, the nearest ones.
   Result<TimelineSteps> timeline_steps(ModelId model_id, const std::vector<LayerId>& layers,
                                        std::int64_t from, bool backward, int limit);
+  // undo_steps.cpp: returns the steps that undo and redo would change, one after the other.
+  Result<UndoSteps> undo_steps(ModelId model_id, const std::string& user, const UndoQuery& query);
   Result<std::int64_t> last_sequence(ModelId model_id);
   // Returns the sequence of the last edit until a time (the text of core/text/timestamp.h); 0
   // before the first edit.
   Result<std::int64_t> sequence_at(ModelId model_id, const std::string& utc);
+  // Returns when the last edit up to a sequence was made; nothing: no edit exists up to it.
+  Result<std::optional<std::chrono::system_clock::time_point>> time_of_state(ModelId model_id,
+                                                                             std::int64_t sequence);
   Result<std::uint64_t> revision_bytes(ModelId model_id);
 
  private:

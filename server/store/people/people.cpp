@@ -323,6 +323,7 @@ Result<void> Accounts::remove(const std::string& name) {
          "UPDATE views SET user_name = $2 WHERE user_name = $1",
          "UPDATE all_models SET binned_by = $2 WHERE binned_by = $1",
          "UPDATE all_layers SET binned_by = $2 WHERE binned_by = $1",
+         "UPDATE snapshots SET user_name = $2 WHERE user_name = $1",
          "UPDATE tours SET user_name = $2 WHERE user_name = $1",
          "UPDATE kiosks SET user_name = $2 WHERE user_name = $1",
          "UPDATE jobs SET user_name = $2 WHERE user_name = $1"})

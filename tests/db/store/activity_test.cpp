@@ -175,7 +175,7 @@ TEST_F(ActivityOfAProject, things_that_people_make_change_and_delete_are_told) {
   EXPECT_FALSE(page().lines[0].model);
 }
 
-TEST_F(ActivityOfAProject, views_and_tours_that_people_make_change_and_delete_are_told) {
+TEST_F(ActivityOfAProject, views_tours_and_snapshots_that_people_make_change_and_delete_are_told) {
   const auto tell = [&](NamedParts& parts, const std::string& name) {
     NamedPart part;
     part.model_id = model_.id;
@@ -201,6 +201,11 @@ TEST_F(ActivityOfAProject, views_and_tours_that_people_make_change_and_delete_ar
               ::testing::ElementsAre("bob tour deleted The pot ×1", "bob tour changed The pot ×1",
                                      "ada tour created The pot ×1"));
   EXPECT_EQ(page().lines[0].model, model_.id);
+  forget();
+  tell(store_->snapshots(), "Before cleaning");
+  EXPECT_THAT(lines_of(page()), ::testing::ElementsAre("bob snapshot deleted Before cleaning ×1",
+                                                       "bob snapshot changed Before cleaning ×1",
+                                                       "ada snapshot created Before cleaning ×1"));
 }
 
 TEST_F(ActivityOfAProject, a_layer_or_table_that_work_takes_back_never_was) {

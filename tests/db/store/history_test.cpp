@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "db/journal_painter.h"
 #include "store/journal/journal_reads.h"
 
@@ -103,6 +105,71 @@ TEST_F(History, undo_stays_on_its_layer_and_a_restore_counts_as_paint) {
   undo("Ada");
   EXPECT_THAT(undoable("Ada"), ElementsAre(1));
   EXPECT_THAT(store_->journal().undoable(other.id, "Ada").value(), IsEmpty());
+}
+
+TEST_F(History, a_step_has_the_sums_and_the_value_of_its_batches) {
+  const Uuid id = random_uuid();
+  for (int i = 1; i <= 3; ++i) {
+    auto entry = painter_.entry(++sequence_, "stroke", "Ada");
+    entry.stroke = id;
+    entry.record = {{"op", "stroke"}, {"value", 7}, {"erase", false}, {"n", i}};
+    entry.answer = {{"texels_changed", 10 * i}, {"area_m2", 0.5}};
+    ASSERT_TRUE(save(writer_, entry));
+  }
+  auto erased = painter_.entry(++sequence_, "fill", "Ada");
+  erased.record = {{"op", "fill"}, {"value", 0}, {"erase", true}};
+  ASSERT_TRUE(save(writer_, erased));
+  stroke("Ben");
+  const auto steps = store_->journal().undo_steps(model_.id, "Ada", {{layer_.id}, {}, 9}).value();
+  ASSERT_EQ(steps.done.size(), 2u);
+  EXPECT_TRUE(steps.done[0].erases);
+  EXPECT_FALSE(steps.done[0].value);
+  const UndoStep& painted = steps.done[1];
+  EXPECT_EQ(std::pair(painted.first, painted.last), std::pair(std::int64_t{1}, std::int64_t{3}));
+  EXPECT_EQ(painted.value, 7);
+  EXPECT_FALSE(painted.erases);
+  EXPECT_EQ(painted.texels, 60u);
+  EXPECT_DOUBLE_EQ(painted.area_m2, 1.5);
+  EXPECT_FALSE(steps.more);
+  const auto one = store_->journal().undo_steps(model_.id, "Ada", {{layer_.id}, {}, 1}).value();
+  EXPECT_EQ(one.done.size(), 1u);
+  EXPECT_TRUE(one.more);
+  EXPECT_THAT(store_->journal().undo_steps(model_.id, "Ada", {{}, {}, 9})->done, IsEmpty());
+}
+
+// The list is compared with the undos, or redos, that follow one another from the same state.
+TEST_F(History, the_steps_are_those_that_undos_and_redos_take_in_this_order) {
+  std::mt19937 random(11);
+  const auto turn_all = [&](bool redoes) {
+    std::vector<std::int64_t> lasts;
+    for (;;) {
+      const auto next = redoes ? redoable("Ada") : undoable("Ada");
+      if (next.empty()) return lasts;
+      lasts.push_back(next.back());
+      redoes ? redo("Ada") : undo("Ada");
+    }
+  };
+  const auto lasts_of = [](const std::vector<UndoStep>& steps) {
+    std::vector<std::int64_t> lasts;
+    for (const UndoStep& step : steps) lasts.push_back(step.last);
+    return lasts;
+  };
+  for (int round = 0; round < 12; ++round) {
+    for (int i = 0; i < 12; ++i) switch (random() % 4) {
+        case 0: stroke("Ben"); break;
+        case 1:
+          if (!redoable("Ada").empty()) redo("Ada");
+          break;
+        case 2:
+          if (!undoable("Ada").empty()) undo("Ada");
+          break;
+        default: stroke("Ada", 1 + static_cast<int>(random() % 3));
+      }
+    const auto steps =
+        store_->journal().undo_steps(model_.id, "Ada", {{layer_.id}, {}, 200}).value();
+    const bool redoes = round % 2 == 0;
+    EXPECT_EQ(turn_all(redoes), lasts_of(redoes ? steps.undone : steps.done)) << "round " << round;
+  }
 }
 
 TEST_F(History, an_undo_and_what_it_undoes_may_come_in_one_transaction) {

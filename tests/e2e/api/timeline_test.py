@@ -157,6 +157,39 @@ def test_the_batches_of_a_stroke_are_one_step(server, people, camera):
     assert step["stroke"] == stroke
 
 
+def test_the_own_steps_are_what_undo_and_redo_change(server, people, painted):
+    def listed(query="", token=people["ada"]):
+        return server.ok("GET", M + "/undo" + query, token=token).json()
+
+    def lasts_of(steps):
+        return [step["last"] for step in steps]
+
+    sequences = [answer["sequence"] for answer in painted]
+    before = listed()
+    assert lasts_of(before["done"])[-2:] == [sequences[1], sequences[0]], before
+    newest = before["done"][-2]
+    assert newest["op"] == "stroke" and newest["value"] == 2 and newest["area_m2"] > 0, newest
+    assert newest["texels_changed"] == painted[1]["texels_changed"]
+    assert before["undone"] == [] and before["more"] is False
+    assert listed(token=people["vera"])["done"] == []
+    one = listed("?limit=1")
+    assert len(one["done"]) == 1 and one["more"] is True
+    # back over two steps of this layer, in the order of the list
+    cracks = server.get(L).json()["id"]
+    of_layer = [step for step in before["done"] if step["layer"] == cracks]
+    for _ in of_layer[:2]:
+        server.ok("POST", L + "/undo", token=people["ada"])
+    after = listed()
+    assert lasts_of(after["undone"]) == lasts_of(of_layer[1::-1]), after
+    assert lasts_of(after["done"]) == [
+        last for last in lasts_of(before["done"]) if last not in lasts_of(of_layer[:2])
+    ]
+    for _ in of_layer[:2]:
+        server.ok("POST", L + "/redo", token=people["ada"])
+    assert listed() == before
+    assert server.request("GET", M + "/undo?limit=0").status == 422
+
+
 def test_a_restore_of_a_part_changes_what_the_difference_counts(server, people, painted, camera):
     then = painted[1]["sequence"]
     left = {"camera": camera, "path": [[0, 0], [258, 0], [258, 480], [0, 480]]}
@@ -186,6 +219,56 @@ def test_a_restore_of_a_part_changes_what_the_difference_counts(server, people, 
         "POST", M + "/layers/secret/difference", {"from": 0}, token=people["vera"]
     )
     assert hidden.status == 404, hidden
+
+
+def test_a_selection_finds_what_changed_between_two_states(server, people, painted, camera):
+    then = painted[1]["sequence"]
+    one = {"changed": {"from": then, "layers": ["cracks"]}}
+
+    def select(body, token=people["vera"]):
+        return server.ok("POST", M + "/select", body, token=token).json()
+
+    found = select(one)
+    counted = server.ok("POST", L + "/difference", {"from": then}).json()
+    assert 0 < found["texels"] == counted["texels"], (found, counted)
+    assert found["area_m2"] == pytest.approx(counted["area_m2"])
+    # the same texels in either direction, and none between equal states
+    newest = server.get(M).json()["sequence"]
+    back = {"changed": {"from": newest, "to": then, "layers": ["cracks"]}}
+    assert select(back)["texels"] == found["texels"]
+    assert select({"changed": {"from": newest}})["texels"] == 0
+    # with a place and a condition: only inside
+    left = {"camera": camera, "path": [[0, 0], [258, 0], [258, 480], [0, 480]]}
+    part = server.ok("POST", L + "/difference", {"from": then, "within": left}).json()
+    assert select({**one, "within": left})["texels"] == part["texels"] < found["texels"]
+    assert select({**one, "where": "false"})["texels"] == 0
+    # all layers that the caller can see
+    everything = {"changed": {"from": 0}}
+    assert select(everything)["texels"] > found["texels"]
+    picture = {"camera": camera, "width": 64, "height": 48}
+    assert select({**one, "picture": picture})["picture"].startswith("iVBOR")
+    # another resolution finds about the same surface
+    server.ok("POST", M + "/layers", {"name": "Fine", "type": "u8", "resolution": 4096})
+    fine = select({"changed": {"from": then, "layers": ["cracks", "fine"]}})
+    assert fine["resolution"] == 4096 and fine["area_m2"] == pytest.approx(
+        found["area_m2"], rel=0.02
+    ), fine
+    server.ok("DELETE", M + "/layers/fine")
+
+    for changed, field in (
+        ({"from": 10**9}, "changed.from"),
+        ({"from": then, "to": "yesterday"}, "changed.to"),
+        ({"to": then}, "changed.from"),
+        ({"from": then, "layers": ["nothing"]}, "changed.layers"),
+        ({"from": then, "layers": []}, "changed.layers"),
+    ):
+        answer = server.request("POST", M + "/select", {"changed": changed})
+        assert answer.status in (404, 422) and answer.json()["field"] == field, answer
+    secret = {"changed": {"from": 0, "layers": ["secret"]}}
+    assert select(secret, True)["texels"] > 0
+    assert server.request("POST", M + "/select", secret, token=people["vera"]).status in (404, 422)
+    into = {**one, "where": "true", "into": {"layer": "cracks", "value": 2}}
+    assert server.request("POST", M + "/select", into).json()["field"] == "into"
 
 
 def test_a_live_view_shows_the_past_and_refuses_paint(server, people, painted, camera):

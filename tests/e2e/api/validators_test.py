@@ -17,6 +17,7 @@ OF_PATH = {
     "key": "1",
     "view": "west",
     "tour": "round",
+    "snapshot": "first",
     "look": "plain",
     "tool": "left",
     "user": "ada",
@@ -85,6 +86,7 @@ def make_site(server):
             "stops": [{"view": "west", "title": {"en": "West"}}],
         },
     )
+    server.ok("POST", M + "/snapshots", {"name": "First"})
     picture = server.ok("POST", M + "/tours/round/files?name=west.png", plain(64)).json()["id"]
     comment = server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()[
         "id"

@@ -14,6 +14,7 @@ OF_PATH = {
     "key": "1",
     "view": "west",
     "tour": "round",
+    "snapshot": "first",
     "look": "plain",
 }
 
@@ -45,6 +46,7 @@ def make_site(server):
             "stops": [{"view": "west", "title": {"en": "West"}}],
         },
     )
+    server.ok("POST", M + "/snapshots", {"name": "First"})
     OF_PATH["comment"] = str(
         server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"]
     )
@@ -64,7 +66,7 @@ def versioned_changes(server):
                 asked = asked.replace("{" + name + "}", value)
             assert "{" not in asked, asked
             found.append((method.upper(), asked))
-    assert len(found) == 22, found
+    assert len(found) == 24, found
     return found
 
 
@@ -84,6 +86,7 @@ BODIES = {
     M + "/layers/finds/records/1": {"values": {"name": "Three"}},
     M + "/views/west": {"name": "West"},
     M + "/tours/round": {"name": "Round"},
+    M + "/snapshots/first": {"name": "First"},
 }
 
 

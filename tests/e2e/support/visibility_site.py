@@ -141,6 +141,7 @@ def make_site(server):
     server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [stop]})
     server.ok("POST", query(M + "/tours/round/files", name="plan.png"), PNG)
     server.ok("POST", M + "/tours/round/kiosks", {"name": "Hall"})
+    server.ok("POST", M + "/snapshots", {"name": "First"})
     assert hidden["visibility"] == "private" and public["visibility"] == "public"
     return camera, before, public, hidden, thread
 
@@ -162,6 +163,7 @@ def words(server, public):
         "comment": ["1"],
         "view": ["plan"],
         "tour": ["round"],
+        "snapshot": ["first"],
         "file": ["1"],
         "kiosk": ["1"],
         "name": ["sheet.ply"],

@@ -1455,7 +1455,7 @@ export interface ProjectPersonList {
 }
 
 /** Kind of the changed thing. */
-export type ActivityKind = "edit" | "layer" | "look" | "view" | "tour" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project";
+export type ActivityKind = "edit" | "layer" | "look" | "view" | "tour" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project" | "snapshot";
 
 /** Changed property. */
 export type ChangedProperty = string;
@@ -2840,6 +2840,15 @@ export interface SelectInto {
   erase?: boolean;
 }
 
+/** Texels that differ between two states. Together with `where` and `within`: only inside them. */
+export interface SelectChanged {
+  from: At;
+  /** Absent: the newest durable state. */
+  to?: At;
+  /** Texels where any of these differs. Absent: all layers that the caller can see. */
+  layers?: LayerRef[];
+}
+
 /** Selection of surface. Without `where` and `within`: everywhere. */
 export interface SelectRequest {
   /** A condition over the layers, as in a fill. */
@@ -2851,6 +2860,7 @@ export interface SelectRequest {
   include?: StatisticsPart[];
   into?: SelectInto;
   picture?: SelectionPicture;
+  changed?: SelectChanged;
 }
 
 /** Bar of a histogram. Values from `from` (included) to `to`; the last bin includes `to`. */
@@ -3110,6 +3120,77 @@ export interface Readiness {
 export interface ServerVersion {
   /** Semantic version of the release. */
   version: string;
+}
+
+/** An edit that undo or redo would change. */
+export interface UndoStep {
+  /** Sequence of its first batch. */
+  first: number;
+  /** Sequence of its last batch. */
+  last: number;
+  stroke: string;
+  layer: number;
+  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "restore";
+  /** Time of its last batch. */
+  time: string;
+  /** Texels that its batches changed, counted once for each batch. */
+  texels_changed: number;
+  area_m2: number;
+  /** The painted value. Absent: it painted no single value. */
+  value?: number;
+  /** true: it erased. */
+  erase?: boolean;
+}
+
+/** What undo and redo would change. */
+export interface UndoSteps {
+  /** Edits in force, newest first: the order of undos. */
+  done: UndoStep[];
+  /** Undone edits that can still be redone, in the order of redos. */
+  undone: UndoStep[];
+  /** There are earlier edits in force. */
+  more: boolean;
+}
+
+/** Named state of a model. */
+export interface Snapshot {
+  id: number;
+  /** Stays the same if the snapshot gets another name. */
+  slug: string;
+  name: string;
+  /** Plain text: a note. */
+  text: string;
+  /** The state after this edit; use it as `at`. */
+  sequence: number;
+  /** Time of the last edit of this state. Absent: the state before the first edit. */
+  state_time?: string;
+  /** Creator of the snapshot. */
+  user: string;
+  /** When the snapshot was made. UTC, RFC 3339. */
+  time: string;
+  version: number;
+}
+
+/** Snapshots of a model, in the order of their creation. */
+export interface SnapshotList {
+  snapshots: Snapshot[];
+  total: number;
+}
+
+/** New snapshot. */
+export interface SnapshotCreate {
+  name: string;
+  /** Plain text: a note. */
+  text?: string;
+  /** The state. Absent: the newest durable one. */
+  at?: At;
+}
+
+/** Changes to a snapshot. */
+export interface SnapshotPatch {
+  name?: string;
+  /** Plain text: a note. */
+  text?: string;
 }
 
 export type ClientMessage =

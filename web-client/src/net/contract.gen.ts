@@ -1286,6 +1286,48 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/snapshots": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        /** List the snapshots of a model */
+        get: operations["list_snapshots"];
+        put?: never;
+        /** Name a state of a model */
+        post: operations["create_snapshot"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/snapshots/{snapshot}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+                snapshot: components["parameters"]["snapshot"];
+            };
+            cookie?: never;
+        };
+        /** Get a snapshot */
+        get: operations["get_snapshot"];
+        put?: never;
+        post?: never;
+        /** Delete a snapshot */
+        delete: operations["delete_snapshot"];
+        options?: never;
+        head?: never;
+        /** Rename a snapshot */
+        patch: operations["change_snapshot"];
+        trace?: never;
+    };
     "/models/{model}/source/{name}": {
         parameters: {
             query?: never;
@@ -1459,6 +1501,25 @@ export interface paths {
         put?: never;
         /** Transfer the layers of another scan version */
         post: operations["transfer_layers"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        /** List what undo and redo would change */
+        get: operations["list_undo_steps"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -2739,6 +2800,8 @@ export interface components {
         SectionRequest: wire.SectionRequest;
         /** Visible surface inside an outline */
         SeenOutline: wire.SeenOutline;
+        /** Texels that differ between two states */
+        SelectChanged: wire.SelectChanged;
         /** Contents of layers in a selection */
         SelectedLayers: wire.SelectedLayers;
         /** Paint the selection */
@@ -2759,6 +2822,14 @@ export interface components {
         SignInSessionList: wire.SignInSessionList;
         /** Largest angle at which a surface is painted */
         SlantLimit: wire.SlantLimit;
+        /** Named state of a model */
+        Snapshot: wire.Snapshot;
+        /** New snapshot */
+        SnapshotCreate: wire.SnapshotCreate;
+        /** Snapshots of a model, in the order of their creation */
+        SnapshotList: wire.SnapshotList;
+        /** Changes to a snapshot */
+        SnapshotPatch: wire.SnapshotPatch;
         /** Uploaded file, kept unchanged */
         SourceFile: wire.SourceFile;
         /** Statistics of a layer, weighted by surface area */
@@ -2902,6 +2973,10 @@ export interface components {
         TransferredLayer: wire.TransferredLayer;
         /** Report of a transfer of layers */
         TransferReport: wire.TransferReport;
+        /** An edit that undo or redo would change */
+        UndoStep: wire.UndoStep;
+        /** What undo and redo would change */
+        UndoSteps: wire.UndoSteps;
         /**
          * Unit of length
          * @enum {string}
@@ -3130,6 +3205,7 @@ export interface components {
         project: string;
         separator: "comma" | "semicolon" | "tab";
         sheet_format: "json" | "csv" | "xlsx";
+        snapshot: string;
         table: string;
         tool: string;
         tour: string;
@@ -5665,6 +5741,136 @@ export interface operations {
             };
         };
     };
+    list_snapshots: {
+        parameters: {
+            query?: {
+                after?: components["parameters"]["after"];
+                limit?: components["parameters"]["limit"];
+                offset?: components["parameters"]["offset"];
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SnapshotList"];
+                };
+            };
+        };
+    };
+    create_snapshot: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SnapshotCreate"];
+            };
+        };
+        responses: {
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Snapshot"];
+                };
+            };
+        };
+    };
+    get_snapshot: {
+        parameters: {
+            query?: never;
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                snapshot: components["parameters"]["snapshot"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Snapshot"];
+                };
+            };
+        };
+    };
+    delete_snapshot: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                snapshot: components["parameters"]["snapshot"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    change_snapshot: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                snapshot: components["parameters"]["snapshot"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SnapshotPatch"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Snapshot"];
+                };
+            };
+        };
+    };
     get_source_file: {
         parameters: {
             query?: never;
@@ -5989,6 +6195,31 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Job"];
+                };
+            };
+        };
+    };
+    list_undo_steps: {
+        parameters: {
+            query?: {
+                limit?: number;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UndoSteps"];
                 };
             };
         };

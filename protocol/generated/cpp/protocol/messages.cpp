@@ -523,6 +523,7 @@ std::string_view name(ActivityKind value) {
     case ActivityKind::comment: return "comment";
     case ActivityKind::member: return "member";
     case ActivityKind::project: return "project";
+    case ActivityKind::snapshot: return "snapshot";
   }
   return {};
 }
@@ -541,6 +542,7 @@ void read(const nlohmann::json& json, ActivityKind& value) {
   if (text == "comment") value = ActivityKind::comment;
   if (text == "member") value = ActivityKind::member;
   if (text == "project") value = ActivityKind::project;
+  if (text == "snapshot") value = ActivityKind::snapshot;
 }
 
 nlohmann::json to_json(const ActivityKind& value) { return name(value); }
@@ -3291,6 +3293,20 @@ nlohmann::json to_json(const SelectInto& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, SelectChanged& value) {
+  read_member(json, "from", value.from);
+  read_optional_member(json, "to", value.to);
+  read_optional_member(json, "layers", value.layers);
+}
+
+nlohmann::json to_json(const SelectChanged& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "from", value.from);
+  write_optional_member(json, "to", value.to);
+  write_optional_member(json, "layers", value.layers);
+  return json;
+}
+
 void read(const nlohmann::json& json, SelectRequest& value) {
   read_optional_member(json, "where", value.where);
   read_optional_member(json, "within", value.within);
@@ -3299,6 +3315,7 @@ void read(const nlohmann::json& json, SelectRequest& value) {
   read_optional_member(json, "include", value.include);
   read_optional_member(json, "into", value.into);
   read_optional_member(json, "picture", value.picture);
+  read_optional_member(json, "changed", value.changed);
 }
 
 nlohmann::json to_json(const SelectRequest& value) {
@@ -3310,6 +3327,7 @@ nlohmann::json to_json(const SelectRequest& value) {
   write_optional_member(json, "include", value.include);
   write_optional_member(json, "into", value.into);
   write_optional_member(json, "picture", value.picture);
+  write_optional_member(json, "changed", value.changed);
   return json;
 }
 
@@ -3730,6 +3748,32 @@ void read(const nlohmann::json& json, ServerVersion& value) {
 nlohmann::json to_json(const ServerVersion& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "version", value.version);
+  return json;
+}
+
+void read(const nlohmann::json& json, SnapshotCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
+  read_optional_member(json, "at", value.at);
+}
+
+nlohmann::json to_json(const SnapshotCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
+  write_optional_member(json, "at", value.at);
+  return json;
+}
+
+void read(const nlohmann::json& json, SnapshotPatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
+}
+
+nlohmann::json to_json(const SnapshotPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
   return json;
 }
 

@@ -341,8 +341,15 @@ enum class Schema {
   Statistics,
   Readiness,
   ServerVersion,
+  UndoStep,
+  UndoSteps,
+  Snapshot,
+  SnapshotList,
+  SnapshotCreate,
+  SnapshotPatch,
+  SelectChanged,
 };
-constexpr int kSchemaCount = 316;
+constexpr int kSchemaCount = 323;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1589,7 +1596,7 @@ template <>
 inline constexpr Schema kSchemaOf<GroupPatch> = Schema::GroupPatch;
 
 // Kind of the changed thing.
-enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project };
+enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project, snapshot };
 std::string_view name(ActivityKind value);
 void read(const nlohmann::json& json, ActivityKind& value);
 nlohmann::json to_json(const ActivityKind& value);
@@ -2580,6 +2587,19 @@ nlohmann::json to_json(const SelectInto& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectInto> = Schema::SelectInto;
 
+// Texels that differ between two states. Together with `where` and `within`: only inside them.
+struct SelectChanged {
+  At from;
+  std::optional<At> to;  // Absent: the newest durable state.
+  // Texels where any of these differs. Absent: all layers that the caller can see.
+  std::optional<std::vector<LayerRef>> layers;
+  bool operator==(const SelectChanged&) const = default;
+};
+void read(const nlohmann::json& json, SelectChanged& value);
+nlohmann::json to_json(const SelectChanged& value);
+template <>
+inline constexpr Schema kSchemaOf<SelectChanged> = Schema::SelectChanged;
+
 // Selection of surface. Without `where` and `within`: everywhere.
 struct SelectRequest {
   std::optional<std::string> where;  // A condition over the layers, as in a fill.
@@ -2590,6 +2610,7 @@ struct SelectRequest {
   std::optional<std::vector<StatisticsPart>> include;
   std::optional<SelectInto> into;
   std::optional<SelectionPicture> picture;
+  std::optional<SelectChanged> changed;
   bool operator==(const SelectRequest&) const = default;
 };
 void read(const nlohmann::json& json, SelectRequest& value);
@@ -2963,6 +2984,29 @@ void read(const nlohmann::json& json, ServerVersion& value);
 nlohmann::json to_json(const ServerVersion& value);
 template <>
 inline constexpr Schema kSchemaOf<ServerVersion> = Schema::ServerVersion;
+
+// New snapshot.
+struct SnapshotCreate {
+  std::string name;
+  std::optional<std::string> text;  // Plain text: a note.
+  std::optional<At> at;  // The state. Absent: the newest durable one.
+  bool operator==(const SnapshotCreate&) const = default;
+};
+void read(const nlohmann::json& json, SnapshotCreate& value);
+nlohmann::json to_json(const SnapshotCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<SnapshotCreate> = Schema::SnapshotCreate;
+
+// Changes to a snapshot.
+struct SnapshotPatch {
+  std::optional<std::string> name;
+  std::optional<std::string> text;  // Plain text: a note.
+  bool operator==(const SnapshotPatch&) const = default;
+};
+void read(const nlohmann::json& json, SnapshotPatch& value);
+nlohmann::json to_json(const SnapshotPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<SnapshotPatch> = Schema::SnapshotPatch;
 
 using ClientMessage = std::variant<Hello, CameraUpdate, LayersUpdate, StrokeBegin, StrokeExtend, StrokeEnd, EditRequest, Undo, Redo, RecordEdit, Ack, PresenceUpdate, Pick>;
 // The schema of the message with this `op`; nothing when the op is unknown.

@@ -89,16 +89,41 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
   return response;
 }
 
+Result<room::Selection::Changed> changed_of(const RouteContext& context, const room::Room& room,
+                                            const protocol::SelectChanged& body) {
+  const auto sequence_of = [&](const protocol::At& at,
+                               const std::string& field) -> Result<std::int64_t> {
+    auto found = find_sequence(context, room, at);
+    if (found) return **found;
+    found.error().field = field;
+    return tl::unexpected(std::move(found.error()));
+  };
+  room::Selection::Changed changed;
+  changed.from = STRATA_TRY(sequence_of(body.from, "changed.from"));
+  changed.to = room.edits().durable_sequence();
+  if (body.to) changed.to = STRATA_TRY(sequence_of(*body.to, "changed.to"));
+  std::vector<Layer> layers;
+  if (body.layers) {
+    std::vector<std::string> refs;
+    for (const auto& ref : *body.layers) refs.push_back(protocol::to_ref(ref));
+    layers = STRATA_TRY(find_layers(room, refs, "changed.layers"));
+  } else {
+    layers = room.layers().all();
+  }
+  for (const Layer& layer : layers) changed.layers.push_back(layer.slug);
+  return changed;
+}
+
 // Returns the edit that paints where the condition is true.
 Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& body,
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
     return fail(ErrorCode::forbidden, "Not allowed",
                 "`into` paints on a layer. This needs the role annotator.", "into");
-  if (!body.where || body.within || body.at)
+  if (!body.where || body.within || body.at || body.changed)
     return fail(ErrorCode::invalid, "Cannot paint this area",
-                "`into` paints where a condition is true now. Send `where`, but neither "
-                "`within` nor `at`.",
+                "`into` paints where a condition is true now. Send `where`, but none of "
+                "`within`, `changed` and `at`.",
                 "into");
   const auto layer = room.layers().find(protocol::to_ref(body.into->layer));
   if (!layer) {
@@ -135,9 +160,14 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   const auto layers = find_layers(**room, refs, "layers");
   if (!layers) return respond(layers.error());
   for (const auto& layer : *layers) slugs.push_back(layer.slug);
-  const auto selection = selection_of(context, **room, select_request->where,
-                                      select_request->within, select_request->at);
+  auto selection = selection_of(context, **room, select_request->where, select_request->within,
+                                select_request->at);
   if (!selection) return respond(selection.error());
+  if (select_request->changed) {
+    auto changed = changed_of(context, **room, *select_request->changed);
+    if (!changed) return respond(changed.error());
+    selection->changed = std::move(*changed);
+  }
   room::StatisticsOptions options;
   for (const auto part : select_request->include.value_or(std::vector<protocol::StatisticsPart>{}))
     switch (part) {

@@ -4,6 +4,7 @@
 
 #include "core/text/timestamp.h"
 #include "domain/layers/layer.h"
+#include "domain/people/role.h"
 #include "domain/scene/camera.h"
 #include "net/api/addressed.h"
 #include "net/api/route_help.h"
@@ -73,6 +74,13 @@ nlohmann::json to_json(const store::Timeline::Interval& interval) {
           {"layers", std::move(layers)}};
 }
 
+nlohmann::json to_json(const store::TimelineStep& step) {
+  return {
+      {"first", step.first},           {"last", step.last},      {"stroke", to_string(step.stroke)},
+      {"layer", step.layer.number()},  {"op", step.op},          {"time", utc_text(step.time)},
+      {"texels_changed", step.texels}, {"area_m2", step.area_m2}};
+}
+
 Result<Response> timeline(const RouteContext& context, const Request& request) {
   store::TimelineQuery query;
   query.from = STRATA_TRY(time_in(request, "from"));
@@ -106,19 +114,39 @@ Result<Response> steps(const RouteContext& context, const Request& request) {
       model.id, layers, after.value_or(before.value_or(INT64_MAX)), !after,
       static_cast<int>(limit.value_or(kUsualSteps))));
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& step : found.steps)
-    list.push_back({{"first", step.first},
-                    {"last", step.last},
-                    {"stroke", to_string(step.stroke)},
-                    {"layer", step.layer.number()},
-                    {"user", step.user},
-                    {"op", step.op},
-                    {"time", utc_text(step.time)},
-                    {"texels_changed", step.texels},
-                    {"area_m2", step.area_m2}});
+  for (const auto& step : found.steps) {
+    list.push_back(to_json(step));
+    list.back()["user"] = step.user;
+  }
   nlohmann::json answer{{"steps", std::move(list)}, {"more", found.more}};
   STRATA_TRY(People::add_to(context.store, answer));
   return json_response(answer);
+}
+
+// What undo and redo would change, for the caller.
+Result<Response> undo_steps(const RouteContext& context, const Request& request) {
+  const auto limit = STRATA_TRY(number_in(request, "limit", 1, kMaxSteps));
+  const auto model = STRATA_TRY(stored_model(context, request));
+  store::UndoQuery query;
+  query.limit = static_cast<int>(limit.value_or(kUsualSteps));
+  for (const Layer& layer : STRATA_TRY(context.store.layers().of_model(model.id, request.role()))) {
+    query.layers.push_back(layer.id);
+    // Only a curator can change an accepted edit.
+    if (layer.review && request.role() < Role::curator) query.pending_only.push_back(layer.id);
+  }
+  const auto found =
+      STRATA_TRY(context.store.journal().undo_steps(model.id, request.user(), query));
+  const auto list_of = [](const std::vector<store::UndoStep>& found_steps) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const store::UndoStep& step : found_steps) {
+      list.push_back(to_json(step));
+      if (step.value) list.back()["value"] = *step.value;
+      if (step.erases) list.back()["erase"] = true;
+    }
+    return list;
+  };
+  return json_response(
+      {{"done", list_of(found.done)}, {"undone", list_of(found.undone)}, {"more", found.more}});
 }
 
 Result<Response> difference(const RouteContext& context, const Request& request) {
@@ -165,6 +193,11 @@ void add_timeline_routes(Router& router, const RouteContext& context) {
        .pattern = "/api/v1/models/{model}/timeline/steps",
        .handler = answering([&context](const Request& request) { return steps(context, request); }),
        .query = {"before", "after", "limit"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/undo",
+              .handler = answering(
+                  [&context](const Request& request) { return undo_steps(context, request); }),
+              .query = {"limit"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/layers/{layer}/difference",
               .handler = answering(

@@ -206,6 +206,7 @@ export class Site {
     await server.json("POST", `/comments/${id}/replies`, { text: "Since 2019." });
     await this.#view("West");
     await this.#tour("Round");
+    await this.#snapshot("First");
     await this.#post("/models/wall/tours/round/files?name=north.png", "picture.png");
     const { path } = await this.#kiosk("Hall");
     this.kiosk_link = path.split("/").pop();
@@ -262,6 +263,10 @@ export class Site {
       camera,
       layers: [{ layer: "cracks", opacity: 0.5 }],
     });
+  }
+
+  #snapshot(name) {
+    return this.server.json("POST", "/models/wall/snapshots", { name });
   }
 
   #tour(name) {
@@ -378,6 +383,8 @@ export class Site {
         );
       case "view":
         return (await this.#view(name)).slug;
+      case "snapshot":
+        return (await this.#snapshot(name)).slug;
       case "tour":
         return (await this.#tour(name)).slug;
       case "kiosk":

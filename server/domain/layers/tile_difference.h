@@ -1,0 +1,10 @@
+#pragma once
+
+#include "domain/layers/tile.h"
+
+namespace strata {
+
+// Returns the texels whose value or validity differs, of two tiles of one type.
+TileMask differing(const TileData& a, const TileData& b);
+
+}  // namespace strata
