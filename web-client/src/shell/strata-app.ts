@@ -55,6 +55,7 @@ setPartLoads({
       import("../features/past/past-bar"),
       import("../features/past/past-overlay"),
       import("../features/past/past-since"),
+      import("../features/past/step-list"),
     ]),
   join: () => import("../features/account/join-page"),
   sign_in: () => import("../features/account/sign-in"),

@@ -1,12 +1,13 @@
 // <strata-tool-rail>: tools, undo and redo.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property } from "lit/decorators.js";
+import { customElement, property, query, state } from "lit/decorators.js";
 import { kChangingTools, kRailTools, type ToolName } from "../tools/tool";
 import { followSession } from "../session/follow-session";
 import { withKey } from "../ui/keys/command-keys";
 import { icon } from "../ui/icons";
 import type { OpenModelSession } from "./open-model-session";
+import { hasPart } from "./page-parts";
 import { ScrollFade } from "../ui/scroll-fade";
 import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
@@ -18,6 +19,8 @@ const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "va
 @customElement("strata-tool-rail")
 export class StrataToolRail extends LitElement {
   @property({ attribute: false }) session!: OpenModelSession;
+  @state() private _showsSteps = false;
+  @query(".steps") private _stepsButton!: HTMLElement;
 
   constructor() {
     super();
@@ -52,6 +55,12 @@ export class StrataToolRail extends LitElement {
       .turns {
         display: contents;
       }
+      button.icon.steps {
+        min-height: 1.5rem;
+      }
+      .steps svg {
+        transform: rotate(90deg);
+      }
       hr {
         width: 1.75rem;
         margin: var(--space-1) 0;
@@ -74,7 +83,7 @@ export class StrataToolRail extends LitElement {
           scroll-padding-inline: var(--fade) calc(var(--fade) + var(--turns)); /* focus in view */
         }
         :host([paints]) {
-          --turns: calc(2 * 2.75rem + 1.125rem);
+          --turns: calc(3 * 2.75rem + 1.125rem);
         }
         /* Undo and redo are always needed: they stay while the tools scroll below them. */
         .turns {
@@ -164,6 +173,21 @@ export class StrataToolRail extends LitElement {
             >
               ${icon("redo")}
             </button>
+            <button
+              class="icon quiet steps"
+              aria-label=${texts.steps.title}
+              title=${texts.steps.title}
+              aria-haspopup="dialog"
+              aria-expanded=${this._showsSteps}
+              @click=${() => (this._showsSteps = true)}
+            >
+              ${icon("chevron")}
+            </button>
+            ${
+              this._showsSteps && hasPart("past", this)
+                ? html`<strata-step-list .session=${session} .anchor=${this._stepsButton} @closed=${() => (this._showsSteps = false)}></strata-step-list>`
+                : nothing
+            }
           </div>`
           : nothing
       }

@@ -1381,6 +1381,28 @@ export const texts = {
     },
   },
 
+  steps: {
+    title: "Ihre Schritte",
+    lead: "Ein Klick geht zu einem Schritt zurück oder vor.",
+    none: "Sie haben auf diesem Modell keine Schritte, die Sie rückgängig machen können.",
+    failed: "Ihre Schritte konnten nicht geladen werden.",
+    before_first: "Vor Ihrem ersten Schritt",
+    undone: "rückgängig gemacht",
+    erased: "Gelöscht",
+    ops: {
+      stroke: "Gemalt",
+      fill: "Gefüllt",
+      polygon: "Umrissen",
+      import: "Importiert",
+      compute: "Berechnet",
+      restore: "Wiederhergestellt",
+    },
+    walking: (n, of) => `Schritt ${n} von ${of}`,
+    stop: "Anhalten",
+    elsewhere: "Ihre Schritte haben sich inzwischen geändert. Die Liste zeigt den jetzigen Stand.",
+    refused: (n, of) => `Nach ${n} von ${count(of, "Schritt", "Schritten")} angehalten`,
+  },
+
   past: {
     title: "Verlauf",
     lead: "Mit dem Regler sehen Sie das Modell, wie es war.",

@@ -1334,6 +1334,28 @@ export const texts = {
     },
   },
 
+  steps: {
+    title: "Your steps",
+    lead: "A click goes back or forward to a step.",
+    none: "You have no steps on this model that you can undo.",
+    failed: "Your steps could not be loaded.",
+    before_first: "Before your first step",
+    undone: "undone",
+    erased: "Erased",
+    ops: {
+      stroke: "Painted",
+      fill: "Filled",
+      polygon: "Outlined",
+      import: "Imported",
+      compute: "Computed",
+      restore: "Restored",
+    },
+    walking: (n: number, of: number) => `Step ${n} of ${of}`,
+    stop: "Stop",
+    elsewhere: "Your steps changed in the meantime. The list shows them as they are now.",
+    refused: (n: number, of: number) => `Stopped after ${n} of ${count(of, "step", "steps")}`,
+  },
+
   past: {
     title: "History",
     lead: "Move the handle to see the model as it was.",

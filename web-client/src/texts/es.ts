@@ -1375,6 +1375,28 @@ export const texts = {
     },
   },
 
+  steps: {
+    title: "Sus pasos",
+    lead: "Un clic retrocede o avanza hasta un paso.",
+    none: "No tiene pasos en este modelo que pueda deshacer.",
+    failed: "No se han podido cargar sus pasos.",
+    before_first: "Antes de su primer paso",
+    undone: "deshecho",
+    erased: "Borrado",
+    ops: {
+      stroke: "Pintado",
+      fill: "Rellenado",
+      polygon: "Contorno",
+      import: "Importado",
+      compute: "Calculado",
+      restore: "Restaurado",
+    },
+    walking: (n, of) => `Paso ${n} de ${of}`,
+    stop: "Detener",
+    elsewhere: "Sus pasos han cambiado entretanto. La lista los muestra como están ahora.",
+    refused: (n, of) => `Detenido después de ${n} de ${count(of, "paso", "pasos")}`,
+  },
+
   past: {
     title: "Historial",
     lead: "Mueva el control para ver el modelo como era.",

@@ -1,0 +1,128 @@
+// The person's own steps on the page: back and forward by a click.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
+const { steps } = words;
+
+let ada, ben, server, model, layers;
+
+async function shoot({ page }, name) {
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `steps_${name}.png`) });
+}
+const list = ({ page }) => page.getByRole("dialog", { name: steps.title });
+const rows = (who) => list(who).locator("[data-step]");
+const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
+const texels = async (layer = "finds") =>
+  (await server.json("GET", `${layers}/${layer}/statistics`)).texels;
+const newest = async () => (await server.json("GET", `/models/${model.id}`)).sequence;
+async function stroke(who, from, to) {
+  const before = await newest();
+  await who.page.keyboard.press("b");
+  await who.drag([from, to]);
+  await who.saved();
+  await wait_for(async () => (await newest()) > before, "the stroke in the journal");
+}
+const opens = ({ page }) => page.getByRole("button", { name: steps.title, exact: true }).click();
+const select = ({ page }, name) =>
+  page.getByRole("button", { name: words.layers.select(name) }).click();
+/** How many of the rows are undone. */
+const undone = (who) => list(who).locator(".undone").count();
+
+test.beforeAll(async () => {
+  [ada, ben] = [await Browser.open(), await Browser.open()];
+  server = new StrataServer({ demo: true });
+  await server.start();
+  model = (await server.json("GET", "/models")).models[0];
+  layers = `/models/${model.id}/layers`;
+  for (const other of (await server.json("GET", layers)).layers)
+    await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
+  const palette = { mode: "categorical", points: [{ at: 1, color: "#0072b2", label: "Bone" }] };
+  for (const name of ["Finds", "Salts"])
+    await server.json("POST", layers, { name, type: "u8", palette });
+  for (const [who, name] of [
+    [ada, "ada"],
+    [ben, "ben"],
+  ]) {
+    await who.sign_in(server, await server.add_person(name, "annotator"));
+    await who.page.goto(`${server.url}/models/${model.id}`);
+    await who.drawn();
+    await select(who, "Finds");
+  }
+});
+
+test("the list has the own steps of all layers, the newest first", async () => {
+  await opens(ada);
+  await list(ada).getByText(steps.none).waitFor();
+  await ada.page.keyboard.press("Escape");
+  await stroke(ada, [0.42, 0.5], [0.56, 0.52]);
+  await stroke(ben, [0.42, 0.54], [0.56, 0.56]);
+  await stroke(ada, [0.42, 0.58], [0.56, 0.6]);
+  await select(ada, "Salts");
+  await stroke(ada, [0.42, 0.64], [0.56, 0.66]);
+  await opens(ada);
+  await wait_for(async () => (await rows(ada).count()) === 4, "three steps and the begin");
+  const told = await rows(ada).allInnerTexts();
+  assert.match(told[0], /Painted: Bone[^]*Salts/);
+  assert.match(told[1], /Painted: Bone[^]*Finds/);
+  assert.match(told[3], new RegExp(steps.before_first));
+  assert.equal(await rows(ada).first().getAttribute("aria-current"), "step");
+  await shoot(ada, "list");
+});
+
+test("a click goes back two steps, and forward again", async () => {
+  const [finds, salts] = [await texels(), await texels("salts")];
+  await rows(ada).nth(2).click();
+  await wait_for(async () => (await undone(ada)) === 2, "two undone steps");
+  assert.equal(await texels("salts"), 0);
+  assert.ok((await texels()) < finds, "the second stroke on Finds is undone");
+  assert.equal(await rows(ada).nth(2).getAttribute("aria-current"), "step");
+  await shoot(ada, "back");
+  // after a reload, the list is the same
+  await ada.page.reload();
+  await ada.drawn();
+  await opens(ada);
+  await wait_for(async () => (await undone(ada)) === 2, "two undone steps after a reload");
+  await ada.page.keyboard.press("Home");
+  await ada.page.keyboard.press("Enter");
+  await wait_for(async () => (await undone(ada)) === 0, "no undone step");
+  assert.deepEqual([await texels(), await texels("salts")], [finds, salts]);
+});
+
+test("a refused step stops the walk with its reason", async () => {
+  // a curator locks the layer below the open list
+  const turns = [];
+  await ada.page.route("**/undo", async (route) => {
+    if (route.request().method() === "POST") {
+      turns.push(route.request().url());
+      if (turns.length === 2) await server.json("PATCH", `${layers}/finds`, { locked: true });
+    }
+    await route.continue();
+  });
+  await list(ada).getByText(steps.before_first).click();
+  await notice(ada, steps.refused(1, 3)).waitFor();
+  await ada.page.unroute("**/undo");
+  assert.equal(turns.length, 2);
+  assert.equal(await texels("salts"), 0);
+  await shoot(ada, "refused");
+  await server.json("PATCH", `${layers}/finds`, { locked: false });
+  await ada.page.keyboard.press("Escape");
+  await ada.close_notices();
+});
+
+test("nobody complained", async () => {
+  for (const who of [ada, ben]) who.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [ada, ben]) await who?.close();
+  await server?.remove();
+});
