@@ -1,4 +1,4 @@
-// The person's own steps on the page: back and forward by a click.
+// The person's own steps on the page, and snapshots on the slider of the history.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -7,7 +7,7 @@ import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
-const { steps } = words;
+const { past, snapshots, steps } = words;
 
 let ada, ben, server, model, layers;
 
@@ -15,7 +15,11 @@ async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `steps_${name}.png`) });
 }
+const bar = ({ page }) => page.getByRole("region", { name: past.title });
+const slider = ({ page }) => page.getByRole("slider", { name: past.slider });
+const button = (who, name) => bar(who).getByRole("button", { name, exact: true });
 const list = ({ page }) => page.getByRole("dialog", { name: steps.title });
+const naming = ({ page }) => page.locator("strata-naming-dialog");
 const rows = (who) => list(who).locator("[data-step]");
 const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
 const texels = async (layer = "finds") =>
@@ -113,6 +117,55 @@ test("a refused step stops the walk with its reason", async () => {
   await server.json("PATCH", `${layers}/finds`, { locked: false });
   await ada.page.keyboard.press("Escape");
   await ada.close_notices();
+});
+
+test("a state gets a name, and a mark on the slider", async () => {
+  await ada.page.keyboard.press("v");
+  await ada.page.keyboard.press("z");
+  await slider(ada).waitFor();
+  await button(ada, snapshots.title).click();
+  await bar(ada).getByText(snapshots.none).waitFor();
+  await button(ada, snapshots.name_now).click();
+  const dialog = naming(ada);
+  await dialog.getByLabel(snapshots.fields.name).fill("Before cleaning");
+  await dialog.getByLabel(snapshots.fields.text).fill("With the poultice marks");
+  await shoot(ada, "naming");
+  await dialog.getByRole("button", { name: snapshots.save }).click();
+  await bar(ada).locator("[data-snapshot]").waitFor();
+  const [stored] = (await server.json("GET", `/models/${model.id}/snapshots`)).snapshots;
+  assert.equal(stored.sequence, await newest());
+  assert.equal(stored.user, "ada");
+  await stroke(ben, [0.42, 0.7], [0.56, 0.72]);
+  await button(ada, past.state_named("Before cleaning")).click();
+  await ada.page
+    .locator(`strata-stage canvas[data-scene-sequence="${stored.sequence}"][data-still=true]`)
+    .waitFor();
+  await shoot(ada, "snapshot");
+});
+
+test("others see the snapshot, but only its author changes it", async () => {
+  await ben.page.keyboard.press("v");
+  await ben.page.keyboard.press("z");
+  await button(ben, snapshots.title).click();
+  await bar(ben).locator("[data-snapshot]").waitFor();
+  const menu = words.layers.options("Before cleaning");
+  await button(ben, menu).click();
+  assert.equal(await bar(ben).getByRole("menuitem").count(), 1);
+  await ben.page.keyboard.press("Escape");
+  await button(ada, menu).click();
+  await bar(ada).getByRole("menuitem", { name: snapshots.rename }).click();
+  const dialog = naming(ada);
+  await dialog.getByLabel(snapshots.fields.name).fill("Before all");
+  await dialog.getByRole("button", { name: words.save, exact: true }).click();
+  await bar(ada).locator("[data-snapshot]").getByText("Before all").waitFor();
+});
+
+test("a snapshot is deleted after a question", async () => {
+  await button(ada, words.layers.options("Before all")).click();
+  await bar(ada).getByRole("menuitem", { name: words.layers.delete }).click();
+  await ada.page.getByRole("button", { name: words.delete, exact: true }).click();
+  await bar(ada).getByText(snapshots.none).waitFor();
+  assert.equal((await server.json("GET", `/models/${model.id}/snapshots`)).total, 0);
 });
 
 test("nobody complained", async () => {

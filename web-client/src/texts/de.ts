@@ -1413,6 +1413,7 @@ export const texts = {
     now: "Jetzt",
     back: "Zurück zu jetzt",
     before_first: "Vor der ersten Bearbeitung",
+    state_named: (name) => `Schnappschuss „${name}“`,
     state_of: (when) => `Stand: ${when}`,
     play: "Abspielen",
     pause: "Anhalten",
@@ -1442,6 +1443,29 @@ export const texts = {
     saving_first:
       "Ihre letzten Änderungen werden noch gespeichert. Versuchen Sie es gleich noch einmal.",
     paint_refused: "Sie sehen einen früheren Stand. Gehen Sie zurück zu jetzt, um zu kartieren.",
+  },
+
+  snapshots: {
+    title: "Schnappschüsse",
+    name_now: "Jetzigen Stand benennen…",
+    name_then: "Diesen Stand benennen…",
+    none: "Noch kein Stand dieses Modells hat einen Namen.",
+    failed: "Die Schnappschüsse konnten nicht geladen werden.",
+    compare: "Mit jetzt vergleichen",
+    rename: "Umbenennen…",
+    new_title: "Stand benennen",
+    new_lead:
+      "Alle finden den Stand unter seinem Namen wieder. Spätere Bearbeitungen ändern ihn nicht.",
+    rename_title: "Schnappschuss umbenennen",
+    save: "Namen speichern",
+    fields: {
+      name: "Name",
+      name_hint: "Vor der Reinigung, Mai 2026",
+      name_empty: "Geben Sie einen Namen ein.",
+      text: "Notiz",
+    },
+    delete_title: (name) => `Schnappschuss „${name}“ löschen?`,
+    delete_lead: "Er wird für alle gelöscht. Die Bearbeitungen des Modells bleiben.",
   },
 
   activity: {
@@ -1477,6 +1501,9 @@ export const texts = {
       "view created": "speicherte die Ansicht",
       "view changed": "änderte die Ansicht",
       "view deleted": "löschte die Ansicht",
+      "snapshot created": "benannte den Stand",
+      "snapshot changed": "änderte den Schnappschuss",
+      "snapshot deleted": "löschte den Schnappschuss",
       "tour created": "erstellte die Führung",
       "tour changed": "änderte die Führung",
       "tour deleted": "löschte die Führung",

@@ -1407,6 +1407,7 @@ export const texts = {
     now: "Ahora",
     back: "Volver a ahora",
     before_first: "Antes de la primera edición",
+    state_named: (name) => `Instantánea «${name}»`,
     state_of: (when) => `Estado: ${when}`,
     play: "Reproducir",
     pause: "Pausar",
@@ -1435,6 +1436,29 @@ export const texts = {
     restored_hint: "Puede deshacerlo.",
     saving_first: "Sus últimos cambios aún se están guardando. Inténtelo de nuevo en un momento.",
     paint_refused: "Está viendo un estado anterior. Vuelva a ahora para pintar.",
+  },
+
+  snapshots: {
+    title: "Instantáneas",
+    name_now: "Dar nombre al estado de ahora…",
+    name_then: "Dar nombre a este estado…",
+    none: "Ningún estado de este modelo tiene nombre todavía.",
+    failed: "No se han podido cargar las instantáneas.",
+    compare: "Comparar con ahora",
+    rename: "Cambiar el nombre…",
+    new_title: "Dar nombre a un estado",
+    new_lead:
+      "Todos vuelven a encontrar el estado por su nombre. Las ediciones posteriores no lo cambian.",
+    rename_title: "Cambiar el nombre de la instantánea",
+    save: "Guardar el nombre",
+    fields: {
+      name: "Nombre",
+      name_hint: "Antes de la limpieza, mayo de 2026",
+      name_empty: "Introduzca un nombre.",
+      text: "Nota",
+    },
+    delete_title: (name) => `¿Eliminar la instantánea «${name}»?`,
+    delete_lead: "Se elimina para todos. Las ediciones del modelo se conservan.",
   },
 
   activity: {
@@ -1470,6 +1494,9 @@ export const texts = {
       "view created": "guardó la vista",
       "view changed": "cambió la vista",
       "view deleted": "eliminó la vista",
+      "snapshot created": "dio nombre al estado",
+      "snapshot changed": "cambió la instantánea",
+      "snapshot deleted": "eliminó la instantánea",
       "tour created": "creó el recorrido",
       "tour changed": "cambió el recorrido",
       "tour deleted": "eliminó el recorrido",

@@ -15,8 +15,10 @@ import { sharedStyles } from "../../ui/styles";
 import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
 import { kSpeeds } from "./past";
+import { Snapshots } from "./snapshots";
 import "./past-restore";
 import "./past-slider";
+import "./snapshot-list";
 import { layersText, peopleText } from "./past-slider";
 
 const words = texts.past;
@@ -25,6 +27,8 @@ const words = texts.past;
 export class StrataPastBar extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _restores = false;
+  @state() private _listsSnapshots = false;
+  private _snapshots!: Snapshots;
   /** The picture ends above the bar. */
   private readonly _observer = new ResizeObserver(() =>
     document.documentElement.style.setProperty("--past-height", `${this.offsetHeight}px`),
@@ -114,6 +118,17 @@ export class StrataPastBar extends LitElement {
     document.documentElement.style.removeProperty("--past-height");
   }
 
+  override willUpdate(): void {
+    if (this._snapshots) return;
+    const { session } = this;
+    this._snapshots = new Snapshots(session.api, session.modelId, {
+      user: () => session.user,
+      canCurate: () => session.canCurate,
+      changed: () => this.requestUpdate(),
+    });
+    void this._snapshots.load();
+  }
+
   override render(): TemplateResult {
     const { past } = this.session;
     return html`<section
@@ -160,6 +175,7 @@ export class StrataPastBar extends LitElement {
         <div class="state" role="status">${this.state()}</div>
         <div class="group">
           ${past.isActive ? html`<button class="primary" @click=${() => past.goNow()}>${words.back}</button>` : nothing}
+          <button aria-expanded=${this._listsSnapshots} @click=${() => (this._listsSnapshots = !this._listsSnapshots)}>${texts.snapshots.title}</button>
           <button aria-pressed=${past.compares} title=${words.compare_hint} ?disabled=${!past.isActive} @click=${() => past.setCompares(!past.compares)}>${words.compare}</button>
           ${
             session.canPaint
@@ -174,7 +190,12 @@ export class StrataPastBar extends LitElement {
           ? html`<strata-past-restore .session=${session} @closed=${() => this.toggleRestore()}></strata-past-restore>`
           : nothing
       }
-      <strata-past-slider .session=${session}></strata-past-slider>`;
+      ${
+        this._listsSnapshots
+          ? html`<strata-snapshot-list .session=${session} .snapshots=${this._snapshots}></strata-snapshot-list>`
+          : nothing
+      }
+      <strata-past-slider .session=${session} .snapshots=${this._snapshots.all}></strata-past-slider>`;
   }
 
   private closeButton(): TemplateResult {

@@ -3,12 +3,13 @@
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
+import { marksOf } from "../../domain/snapshot-marks";
 import { intervalAtPlace, placeOfTime } from "../../domain/timeline";
 import { called } from "../../domain/people";
 import { formatList } from "../../core/locale";
 import { labelOf } from "../../domain/cells";
 import { toldDate, toldTime } from "../../domain/times";
-import type { TimelineInterval } from "../../core/protocol.gen";
+import type { Snapshot, TimelineInterval } from "../../core/protocol.gen";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { icon } from "../../ui/icons";
@@ -41,6 +42,8 @@ export const layersText = (session: ModelSession, layers: readonly number[]): st
 @customElement("strata-past-slider")
 export class StrataPastSlider extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
+  /** Shown as marks above the bars. */
+  @property({ attribute: false }) snapshots: readonly Snapshot[] = [];
   @state() private _hover: TimelineInterval | null = null;
   private _drags = false;
 
@@ -79,6 +82,33 @@ export class StrataPastSlider extends LitElement {
       }
       .bar.later {
         opacity: 0.4;
+      }
+      .marks {
+        position: relative;
+        height: 1.5rem;
+        overflow: hidden;
+      }
+      .marks button {
+        position: absolute;
+        display: flex;
+        align-items: center;
+        gap: var(--space-half);
+        min-height: 1.5rem;
+        padding: 0 var(--space-1);
+        border: 0;
+        border-inline-start: 2px solid var(--accent);
+        border-radius: 0;
+        background: none;
+        font-size: var(--text-tiny);
+        font-weight: 400;
+      }
+      .marks button.ends-here {
+        border-inline: 0 2px solid var(--accent);
+        transform: translateX(-100%);
+      }
+      .marks button[aria-current="true"] {
+        background: var(--accent-soft);
+        font-weight: 600;
       }
       .handle {
         position: absolute;
@@ -143,7 +173,27 @@ export class StrataPastSlider extends LitElement {
     const { intervals } = timeline;
     const most = Math.max(1, ...intervals.map(({ edits }) => edits));
     const shown = past.at ?? Infinity;
-    return html`<div
+    const marks = marksOf(timeline, this.snapshots);
+    return html`${
+      marks.length > 0
+        ? html`<div class="marks">
+            ${marks.map(
+              ({ snapshot, place, room }) =>
+                html`<button
+                class="quiet ${place > 0.8 ? "ends-here" : ""}"
+                aria-label=${words.state_named(snapshot.name)}
+                aria-current=${past.at === snapshot.sequence}
+                title=${snapshot.name}
+                ${styled({ left: `${place * 100}%`, "max-width": `${room * 100}%` })}
+                @click=${() => past.goTo(snapshot.sequence)}
+              >
+                <span class="ellipsis">${snapshot.name}</span>
+              </button>`,
+            )}
+          </div>`
+        : nothing
+    }
+      <div
         class="track"
         role="slider"
         tabindex="0"
