@@ -1,4 +1,5 @@
-// The person's own steps on the page, and snapshots on the slider of the history.
+// The person's own steps on the page, snapshots on the slider of the history, and what changed since
+// a state.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -158,6 +159,29 @@ test("others see the snapshot, but only its author changes it", async () => {
   await dialog.getByLabel(snapshots.fields.name).fill("Before all");
   await dialog.getByRole("button", { name: words.save, exact: true }).click();
   await bar(ada).locator("[data-snapshot]").getByText("Before all").waitFor();
+});
+
+test("what changed since a state is lit on the surface", async () => {
+  await button(ada, past.changes_show).click();
+  await bar(ada)
+    .getByText(/^Changed: /)
+    .waitFor();
+  await ada.page.locator("strata-stage .dim").waitFor();
+  const [{ sequence }] = (await server.json("GET", `/models/${model.id}/snapshots`)).snapshots;
+  const counted = await server.json("POST", `${layers}/finds/difference`, { from: sequence });
+  assert.ok(counted.texels > 0);
+  const select = await server.json("POST", `/models/${model.id}/select`, {
+    changed: { from: sequence, layers: ["finds"] },
+  });
+  assert.equal(select.texels, counted.texels);
+  await button(ada, past.back).click();
+  await ada.page.locator("strata-stage .dim").waitFor();
+  await shoot(ada, "changes");
+  await button(ada, past.changes_show).click();
+  await wait_for(
+    async () => (await ada.page.locator("strata-stage .dim").count()) === 0,
+    "nothing lit",
+  );
 });
 
 test("a snapshot is deleted after a question", async () => {

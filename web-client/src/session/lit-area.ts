@@ -1,5 +1,5 @@
 // The part of the surface that a condition or outlines select, lit in the picture before anything
-// changes. The server measures it and draws where the camera sees it; both are requested again
+// changes, or the part that differs between two states. The server measures it and draws where the camera sees it; both are requested again
 // when the camera rests.
 
 import type { SelectRequest, SelectResponse } from "../core/protocol.gen";
@@ -10,7 +10,7 @@ import type { Api } from "../net/api";
 const kMostPixels = 640; // of the longer side: the picture only marks an area
 
 /** What is lit. */
-export type LitRequest = Pick<SelectRequest, "where" | "within" | "layers" | "include">;
+export type LitRequest = Pick<SelectRequest, "where" | "within" | "layers" | "include" | "changed">;
 
 export interface LitHost {
   camera(): OrbitCamera;
@@ -23,6 +23,11 @@ export class LitArea {
   private _request: LitRequest | null = null;
   private _lasting: LitRequest | null = null; // lit again when another area is no longer lit
   private _running: AbortController | null = null;
+
+  /** The rest of the picture is dimmed: what changed may be small. */
+  get dims(): boolean {
+    return this._request?.changed !== undefined;
+  }
 
   constructor(
     private readonly _api: Api,

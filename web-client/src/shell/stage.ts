@@ -101,6 +101,16 @@ export class StrataStage extends LitElement {
           color-mix(in srgb, var(--lit) 38%, transparent) 4px 9px
         );
       }
+      .dim {
+        position: absolute;
+        inset: 0;
+        pointer-events: none;
+        mask:
+          linear-gradient(black 0 0),
+          var(--lit-picture) center / 100% 100% no-repeat;
+        mask-composite: exclude;
+        background: color-mix(in srgb, var(--mark-dark) 55%, transparent);
+      }
       .shape-cursor {
         position: absolute;
         pointer-events: none;
@@ -263,9 +273,10 @@ export class StrataStage extends LitElement {
 
   /** Hatching over the lit part of the surface. */
   private litArea(): TemplateResult | typeof nothing {
-    const { picture } = this.session.lit;
+    const { picture, dims } = this.session.lit;
     return picture
-      ? html`<div class="lit" aria-hidden="true" ${styled({ "mask-image": `url(${picture})` })}></div>`
+      ? html`${dims ? html`<div class="dim" aria-hidden="true" ${styled({ "--lit-picture": `url(${picture})` })}></div>` : nothing}
+          <div class="lit" aria-hidden="true" ${styled({ "mask-image": `url(${picture})` })}></div>`
       : nothing;
   }
 

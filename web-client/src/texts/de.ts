@@ -1438,6 +1438,10 @@ export const texts = {
     restored: (layer, area) => `${layer} wiederhergestellt: ${area} geändert`,
     since: (when, edits, people, layers) =>
       `Seit Ihrem letzten Besuch (${when}): ${edits} von ${people}${layers ? `, auf ${layers}` : ""}.`,
+    since_show: "Am Modell zeigen",
+    changes_show: "Änderungen zeigen",
+    changes_none: "Auf den sichtbaren Ebenen hat sich nichts geändert.",
+    changes_area: (area, share) => `Geändert: ${area} (${share})`,
     since_compare: "Vergleichen",
     restored_hint: "Sie können dies rückgängig machen.",
     saving_first:

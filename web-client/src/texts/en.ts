@@ -1392,6 +1392,10 @@ export const texts = {
     restored: (layer: string, area: string) => `${layer} restored: ${area} changed`,
     since: (when: string, edits: string, people: string, layers: string) =>
       `Since your last visit (${when}): ${edits} by ${people}${layers ? ` on ${layers}` : ""}.`,
+    since_show: "Show on the model",
+    changes_show: "Show what changed",
+    changes_none: "Nothing changed on the visible layers.",
+    changes_area: (area: string, share: string) => `Changed: ${area} (${share})`,
     since_compare: "Compare",
     restored_hint: "You can undo this.",
     saving_first: "Your last changes are still being saved. Try again in a moment.",

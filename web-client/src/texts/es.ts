@@ -1432,6 +1432,10 @@ export const texts = {
     restored: (layer, area) => `${layer} restaurada: ${area} cambiados`,
     since: (when, edits, people, layers) =>
       `Desde su última visita (${when}): ${edits} de ${people}${layers ? `, en ${layers}` : ""}.`,
+    since_show: "Mostrar en el modelo",
+    changes_show: "Mostrar los cambios",
+    changes_none: "Nada ha cambiado en las capas visibles.",
+    changes_area: (area, share) => `Cambiado: ${area} (${share})`,
     since_compare: "Comparar",
     restored_hint: "Puede deshacerlo.",
     saving_first: "Sus últimos cambios aún se están guardando. Inténtelo de nuevo en un momento.",

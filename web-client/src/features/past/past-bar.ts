@@ -4,6 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { called } from "../../domain/people";
+import { formatArea } from "../../domain/measure";
 import { labelOf } from "../../domain/cells";
 import { toldTime } from "../../domain/times";
 import { formatFixed } from "../../core/locale";
@@ -14,6 +15,7 @@ import { personMark, personMarkStyles } from "../../ui/person-mark";
 import { sharedStyles } from "../../ui/styles";
 import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
+import { ChangedArea } from "./changed-area";
 import { kSpeeds } from "./past";
 import { Snapshots } from "./snapshots";
 import "./past-restore";
@@ -29,6 +31,7 @@ export class StrataPastBar extends LitElement {
   @state() private _restores = false;
   @state() private _listsSnapshots = false;
   private _snapshots!: Snapshots;
+  private _changed!: ChangedArea;
   /** The picture ends above the bar. */
   private readonly _observer = new ResizeObserver(() =>
     document.documentElement.style.setProperty("--past-height", `${this.offsetHeight}px`),
@@ -115,6 +118,7 @@ export class StrataPastBar extends LitElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this._observer.disconnect();
+    if (this.hasUpdated) this._changed.stop();
     document.documentElement.style.removeProperty("--past-height");
   }
 
@@ -127,6 +131,16 @@ export class StrataPastBar extends LitElement {
       changed: () => this.requestUpdate(),
     });
     void this._snapshots.load();
+    this._changed = new ChangedArea(session.lit, () => this.requestUpdate());
+  }
+
+  override updated(): void {
+    const { layers, past } = this.session;
+    const visible = layers.all.filter((layer) => layers.visible(layer));
+    this._changed.follow(
+      past.changesFrom,
+      visible.map(({ slug, sequence }) => ({ slug, sequence })),
+    );
   }
 
   override render(): TemplateResult {
@@ -173,9 +187,11 @@ export class StrataPastBar extends LitElement {
         </select>
         </div>
         <div class="state" role="status">${this.state()}</div>
+        ${past.changesFrom === null ? nothing : html`<p class="hint" role="status">${this.changed()}</p>`}
         <div class="group">
           ${past.isActive ? html`<button class="primary" @click=${() => past.goNow()}>${words.back}</button>` : nothing}
           <button aria-expanded=${this._listsSnapshots} @click=${() => (this._listsSnapshots = !this._listsSnapshots)}>${texts.snapshots.title}</button>
+          <button aria-pressed=${past.changesFrom !== null} ?disabled=${!past.isActive && past.changesFrom === null} @click=${() => past.setShowsChanges(past.changesFrom === null)}>${words.changes_show}</button>
           <button aria-pressed=${past.compares} title=${words.compare_hint} ?disabled=${!past.isActive} @click=${() => past.setCompares(!past.compares)}>${words.compare}</button>
           ${
             session.canPaint
@@ -230,6 +246,19 @@ export class StrataPastBar extends LitElement {
           : nothing
       }
     </div>`;
+  }
+
+  private changed(): string {
+    const { measured, problem } = this._changed;
+    if (problem) return problem;
+    if (!measured) return texts.loading;
+    const { texels, area_m2: areaM2, share } = measured;
+    return texels === 0
+      ? words.changes_none
+      : words.changes_area(
+          formatArea(areaM2),
+          `${formatFixed(share * 100, share < 0.01 ? 2 : 1)} %`,
+        );
   }
 
   private toggleRestore(): void {

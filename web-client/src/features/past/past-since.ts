@@ -65,11 +65,17 @@ export class StrataPastSince extends LitElement {
       <span
         >${words.since(toldTime(news.since.time), `${words.edits(news.edits)}${news.more ? "+" : ""}`, people, layersText(this.session, news.layers.slice(0, kNamed)))}</span
       >
+      <button @click=${() => this.light(news.since.sequence)}>${words.since_show}</button>
       <button @click=${() => this.compare(news.since.sequence)}>${words.since_compare}</button>
       <button class="icon quiet" aria-label=${texts.close} title=${texts.close} @click=${() => this.session.visits.dismiss()}>
         ${icon("close")}
       </button>
     </div>`;
+  }
+
+  private light(sequence: number): void {
+    this.session.visits.dismiss();
+    void this.session.past.showChangesSince(sequence);
   }
 
   private compare(sequence: number): void {

@@ -61,6 +61,8 @@ export class Past {
   /** Then and now are next to each other; the share of the width that shows then. */
   compares = false;
   divider = 0.5;
+  /** The state whose differences from now are lit on the surface; null: none. */
+  changesFrom: number | null = null;
   /** The part to restore; null: the whole layer. */
   part: PastPart | null = null;
   drawsPart = false;
@@ -133,9 +135,20 @@ export class Past {
     this.goTo(sequence);
   }
 
+  /** Opens the timeline, and lights what changed since a state. */
+  async showChangesSince(sequence: number): Promise<void> {
+    this.changesFrom = sequence;
+    await this.open();
+  }
+  setShowsChanges(shows: boolean): void {
+    this.changesFrom = shows ? this.at : null;
+    this._host.changed();
+  }
+
   close(): void {
     this.stop();
     this.goNow();
+    this.changesFrom = null;
     this.isOpen = this.compares = false;
     this.timeline = this._whole = null;
     this._steps = [];
@@ -290,6 +303,7 @@ export class Past {
     if (at === null) this.setPart(null);
     this.at = at;
     if (at === null) this.drawn = null;
+    else if (this.changesFrom !== null) this.changesFrom = at;
     this._host.show(at, this.compares);
     this._host.changed();
   }
