@@ -148,7 +148,7 @@ export class StrataColorDialog extends LitElement {
     const words = texts.colors;
     const { session, layer, _palette: palette, column } = this;
     if (!palette) return html``;
-    return html`<strata-dialog aside heading=${words.title(labelOf(layer))} way_out=${texts.cancel} @closed=${() => this.onClosed()}>
+    return html`<strata-dialog docked heading=${words.title(labelOf(layer))} way_out=${texts.cancel} @closed=${() => this.onClosed()}>
       ${layer.table === undefined ? nothing : this.choices(palette, column)}
       ${this._problem ? html`<p class="error" role="alert">${this._problem}</p>` : nothing}
       ${palette.mode === "linear" ? nothing : this.rows(palette, column)} ${this.rest(palette)}
@@ -422,15 +422,23 @@ export class StrataColorDialog extends LitElement {
     this.dispatchEvent(new CustomEvent("closed"));
   }
 
-  /** Restores the previous palette if nothing was saved. */
+  /** Another dialog replaces this one, or the page closes. */
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.restore();
+  }
+
   private onClosed(): void {
-    if (this._before)
-      this.session.layers.setPalette(
-        this.layer,
-        this._before === this.layer.palette ? null : this._before,
-      );
-    this._before = null;
+    this.restore();
     this.dispatchEvent(new CustomEvent("closed"));
+  }
+
+  /** The previous palette, if nothing was saved. */
+  private restore(): void {
+    const { _before: before } = this;
+    this._before = null;
+    if (!before || !this.session.layers.find(this.layer.id)) return;
+    this.session.layers.setPalette(this.layer, before === this.layer.palette ? null : before);
   }
 }
 
