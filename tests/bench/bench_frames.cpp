@@ -1,8 +1,10 @@
 // Measures the processor time of frames of a moving camera with two or more folders of shaders, one
-// frame of each after the other: other programs on the machine change all of them alike.
+// frame of each after the other: other programs on the machine change all of them alike. Also
+// measures whether the refinement of one view delays the pixels of a change in another.
 #include <cmath>
 #include <ctime>
 #include <iostream>
+#include <thread>
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
@@ -16,7 +18,7 @@ namespace {
 struct Options {
   std::vector<std::string> models{"pot"}, shaders;
   std::string cache = "build/bench", json;
-  int frames = 200, layers = 0;
+  int frames = 200, layers = 0, changes = 0;
 };
 
 // Of all threads, also those of a driver that draws on the CPU.
@@ -36,24 +38,58 @@ class Drawer {
         [&](auto done) { renderer_->add_model(geometry, std::move(done)); });
     view_ =
         await<render::ViewHandle>([&](auto done) { renderer_->add_view(model_, std::move(done)); });
+    other_view_ =
+        await<render::ViewHandle>([&](auto done) { renderer_->add_view(model_, std::move(done)); });
     for (int i = 0; i < layers; ++i) add_filled_layer(i);
   }
 
   double frame_ms(const Camera& camera, bool moving) {
-    render::FrameRequest request;
-    request.view = view_;
-    request.camera = camera;
-    request.width = camera.width;
-    request.height = camera.height;
+    render::FrameRequest request = request_for(view_, camera);
     request.moving = moving;
-    request.style = style_;
     const double start = processor_ms();
     await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
     return processor_ms() - start;
   }
   auto info() const { return renderer_->info(); }
 
+  // From the change of a tile until its pixels are there, while the picture of another view is
+  // refined or not.
+  double change_ms(const Camera& camera, std::uint32_t value, bool while_refining) {
+    render::FrameRequest other = request_for(other_view_, camera);
+    std::promise<void> over;
+    if (while_refining) {
+      other.samples = render::kMaxSamples;
+      other.refinement = true;
+      renderer_->draw(other, [&](const auto&) { over.set_value(); });
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));  // it has begun
+    }
+    const double start = now_ms();
+    auto tile = std::make_shared<TileData>(ValueType::u8);
+    for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, value);
+    renderer_->write_tiles(layer_, {{{3, 3}, tile}}, [](const auto&) {});
+    render::FrameRequest request = request_for(view_, camera);
+    request.changed = {{{glm::vec3(-1e3F), glm::vec3(1e3F)}}};
+    await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    const double taken = now_ms() - start;
+    if (while_refining) {
+      other.samples = 1;
+      other.refinement = false;  // supersedes the refinement
+      await<render::SharedFrame>([&](auto done) { renderer_->draw(other, std::move(done)); });
+      over.get_future().wait();
+    }
+    return taken;
+  }
+
  private:
+  render::FrameRequest request_for(render::ViewHandle view, const Camera& camera) const {
+    render::FrameRequest request;
+    request.view = view;
+    request.camera = camera;
+    request.width = camera.width;
+    request.height = camera.height;
+    request.style = style_;
+    return request;
+  }
   void add_filled_layer(int number) {
     constexpr int kResolution = 1024;
     const auto layer = await<render::LayerHandle>([&](auto done) {
@@ -68,14 +104,35 @@ class Drawer {
     await<void>(
         [&](auto done) { renderer_->write_tiles(layer, std::move(tiles), std::move(done)); });
     const auto palette = std::make_shared<Palette>(default_palette(ValueType::u8, false));
+    layer_ = layer;
     style_.layers.push_back({.layer = layer, .palette = palette, .opacity = 0.6F});
   }
 
   std::unique_ptr<render::Renderer> renderer_;
   render::ModelHandle model_ = 0;
-  render::ViewHandle view_ = 0;
+  render::ViewHandle view_ = 0, other_view_ = 0;
+  render::LayerHandle layer_ = 0;  // the topmost
   render::ViewStyle style_;
 };
+
+nlohmann::json measure_changes(Drawer& drawer, const mesh::Geometry& geometry,
+                               const std::string& name, const Options& options) {
+  const auto camera = look_at(geometry, {0.7, 0.7, 0.4}, 1280, 720);
+  drawer.frame_ms(camera, false);
+  Samples alone, refining;
+  for (int i = 0; i < options.changes; ++i)
+    for (const bool while_refining : {i % 2 == 0, i % 2 != 0})
+      (while_refining ? refining : alone)
+          .add(drawer.change_ms(camera, static_cast<std::uint32_t>(1 + i % 200), while_refining));
+  std::printf(
+      "%s: change → pixels p50 %.1f ms, p95 %.1f; while another view is refined %.1f, %.1f\n",
+      mesh_title(name).c_str(), alone.median(), alone.quantile(0.95), refining.median(),
+      refining.quantile(0.95));
+  return {{"method", "changes"},
+          {"model", mesh_title(name)},
+          {"change_to_pixels", alone.json()},
+          {"while_refining", refining.json()}};
+}
 
 nlohmann::json measure(const std::string& name, const Options& options, nlohmann::json& on) {
   Progress progress;
@@ -90,6 +147,7 @@ nlohmann::json measure(const std::string& name, const Options& options, nlohmann
   const auto gpu = drawers.front()->info();
   on = machine(&gpu);
 
+  if (options.changes > 0) return measure_changes(*drawers.front(), *geometry.full, name, options);
   const std::size_t count = drawers.size();
   std::vector<Samples> times(count), ratios(count);
   constexpr int kWarm = 6;
@@ -154,12 +212,17 @@ Command add_frames(CLI::App& app) {
       ->add_option("--shaders", options->shaders,
                    "Folders of shaders; the first is what the others are compared with")
       ->check(CLI::ExistingDirectory);
-  command->add_option("--layers", options->layers, "Filled layers shown")
-      ->check(CLI::Range(0, 64))
-      ->capture_default_str();
+  auto* layers = command->add_option("--layers", options->layers, "Filled layers shown")
+                     ->check(CLI::Range(0, 64))
+                     ->capture_default_str();
   command->add_option("--frames", options->frames)
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();
+  command
+      ->add_option(
+          "--changes", options->changes,
+          "Instead: times from a change of a layer to its pixels, while another view is refined or not")
+      ->needs(layers);
   command->add_option("--cache", options->cache, "Where generated meshes are kept")
       ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
