@@ -478,7 +478,9 @@ CREATE TABLE public.all_layers (
     erasing boolean DEFAULT false NOT NULL,
     labels jsonb DEFAULT '{}'::jsonb NOT NULL,
     descriptions jsonb DEFAULT '{}'::jsonb NOT NULL,
+    group_name text,
     CONSTRAINT all_layers_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
+    CONSTRAINT all_layers_group_name_check CHECK (((char_length(group_name) >= 1) AND (char_length(group_name) <= 60))),
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
     CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
     CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),
@@ -564,7 +566,8 @@ CREATE VIEW public.layers AS
     all_layers.visibility,
     all_layers.review,
     all_layers.labels,
-    all_layers.descriptions
+    all_layers.descriptions,
+    all_layers.group_name
    FROM public.all_layers
   WHERE ((all_layers.binned IS NULL) AND (EXISTS ( SELECT 1
            FROM public.all_models m

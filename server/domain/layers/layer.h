@@ -48,6 +48,8 @@ struct Layer {
   std::string description;
   Labels labels;        // its name in other languages
   Labels descriptions;  // its description in other languages
+  // heading in the list of layers, for all users; without blanks at its ends
+  std::optional<std::string> group;
   Palette palette;
   // follows the colors of its table's terms, and is not stored
   bool palette_of_terms = false;

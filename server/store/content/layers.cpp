@@ -16,7 +16,7 @@ constexpr auto kLayerStale = sql(
     "l.sequence > layers.computed_sequence OR t.sequence > i.table_sequence))))");
 constexpr auto kLayerColumns = sql(
     "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, "
-    "table_id, sequence, version, locked, visibility, review, labels, descriptions, "
+    "table_id, sequence, version, locked, visibility, review, labels, descriptions, group_name, "
     "(SELECT o.origin FROM layer_origins o WHERE o.layer_id = layers.id), "
     "coalesce((SELECT o.edited_by_hand FROM layer_origins o WHERE o.layer_id = layers.id), false), "
     "expression, automatic, computed_sequence, "
@@ -80,6 +80,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.review = row.boolean();
   layer.labels = row.json().get<Labels>();
   layer.descriptions = row.json().get<Labels>();
+  layer.group = row.optional_text();
   if (const auto origin = row.optional_text())
     layer.origin = *origin == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
   layer.edited_by_hand = row.boolean();
@@ -141,6 +142,7 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
+constexpr std::size_t kMaxGroupLength = 240;          // bytes of 60 characters
 constexpr std::size_t kMaxDescriptionLength = 40000;  // bytes of 10000 characters
 Result<void> keep_origin(PgConnection& connection, LayerId layer_id, const Layer& layer) {
   if (!layer.origin) return {};
@@ -165,6 +167,12 @@ Result<void> check(const Layer& layer) {
           check_texts_by_language(layer.descriptions, kMaxDescriptionLength, "descriptions");
       !good)
     return good;
+  if (layer.group) {
+    if (layer.group->empty() || layer.group->size() > kMaxGroupLength)
+      return fail(ErrorCode::malformed, "Invalid group", "`group` must have 1 to 60 characters.",
+                  "group");
+    STRATA_TRY(check_text(*layer.group, "group"));
+  }
   return check_texts(
       {{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
 }
@@ -248,8 +256,8 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
         [&](const std::string& slug) {
           return connection.query(
               sql("INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
-                  "draw_order, table_id, locked, visibility, review, labels, descriptions) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
-                  "$15, $16, $17, $18) "
+                  "draw_order, table_id, locked, visibility, review, labels, descriptions, group_name) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
+                  "$15, $16, $17, $18, $19) "
                   "ON CONFLICT DO NOTHING RETURNING ",
                   kLayerColumns),
               Params()
@@ -270,7 +278,8 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
                   .text(name(layer.visibility))
                   .boolean(layer.review)
                   .json(layer.labels)
-                  .json(layer.descriptions));
+                  .json(layer.descriptions)
+                  .optional_text(layer.group));
         });
     if (!row || (!layer.formula && !layer.origin))
       return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
@@ -287,7 +296,7 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
         sql("UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
-            "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
+            "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, group_name = $16, version = version + 1 WHERE id = $1 AND version = $2 "
             "RETURNING ",
             kLayerColumns),
         Params()
@@ -305,7 +314,8 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
             .text(name(layer.visibility))
             .boolean(layer.review)
             .json(layer.labels)
-            .json(layer.descriptions)));
+            .json(layer.descriptions)
+            .optional_text(layer.group)));
     if (row.rows() > 0) {
       auto now = STRATA_TRY(read_layer(connection, row, 0));
       const bool same_origin =

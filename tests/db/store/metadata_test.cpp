@@ -249,7 +249,20 @@ TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
             (Labels{{"de", "Salze"}}));
   EXPECT_EQ(store->layers().find(model.id, "salt", Role::viewer)->descriptions,
             (Labels{{"pt-BR", "Brancos"}}));
+  named.group = "Salts of the north side";
+  named = store->layers().update(named).value();
+  EXPECT_EQ(store->layers().find(model.id, "salt", Role::viewer)->group, "Salts of the north side");
+  EXPECT_FALSE(store->layers().find(model.id, "other", Role::viewer)->group);
   auto bad = named;
+  for (const std::string& group : {std::string(), std::string(241, 'a'), std::string("\xff")}) {
+    bad.group = group;
+    EXPECT_EQ(store->layers().update(bad).error().field, "group");
+  }
+  bad = named;
+  bad.group.reset();
+  named = store->layers().update(bad).value();
+  EXPECT_FALSE(named.group);
+  bad = named;
   bad.slug = "other";
   EXPECT_EQ(store->layers().update(bad).error().code, ErrorCode::conflict);
   bad = named;

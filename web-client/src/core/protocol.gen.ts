@@ -358,6 +358,8 @@ export interface Layer {
   visibility: Visibility;
   /** Drawn in ascending order: higher is on top. */
   order: number;
+  /** Heading under which the page lists the layer. Absent: none. */
+  group?: string;
   /** Layers of records: id of the project's table whose keys the texels hold. */
   table?: number;
   /** How the server computed the values. Absent: they were painted or sent. While the layer is locked and not edited by hand, nobody can change its texels (403). */
@@ -1993,6 +1995,12 @@ export interface TemplateLayer {
   type: "u8" | "u16" | "u32";
 }
 
+/** Group of a template's layers. */
+export interface TemplateGroup {
+  name: string;
+  labels?: Labels;
+}
+
 /** Template: tables and layers that are made together. */
 export interface Template {
   /** Name of the template's file. */
@@ -2002,6 +2010,7 @@ export interface Template {
   /** Default: "". */
   description?: string;
   tables: TemplateTable[];
+  group?: TemplateGroup;
   layers: TemplateLayer[];
 }
 
@@ -2217,6 +2226,8 @@ export interface LayerCreate {
   /** Names of the layer in other languages. */
   labels?: Labels;
   descriptions?: Descriptions;
+  /** Heading under which the page lists the layer. The server removes blanks at its ends. Empty: none. */
+  group?: string;
   palette?: Palette;
   /** Default: 1. */
   opacity?: number;
@@ -2533,6 +2544,8 @@ export interface LayerPatch {
   labels?: Labels;
   /** Descriptions in other languages; replaces all. */
   descriptions?: Descriptions;
+  /** Heading under which the page lists the layer. The server removes blanks at its ends. Empty: none. */
+  group?: string;
   palette?: Palette;
   opacity?: number;
   visible?: boolean;

@@ -2875,6 +2875,8 @@ export interface components {
         TableRef: wire.TableRef;
         /** Template: tables and layers that are made together */
         Template: wire.Template;
+        /** Group of a template's layers */
+        TemplateGroup: wire.TemplateGroup;
         /** Layer of a template */
         TemplateLayer: wire.TemplateLayer;
         /** Templates */

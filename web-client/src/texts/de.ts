@@ -928,6 +928,13 @@ export const texts = {
   },
 
   layers: {
+    group: "Gruppe",
+    group_hint: "Keine Gruppe",
+    group_rename: "Gruppe umbenennen…",
+    group_dissolve: "Gruppierung aufheben",
+    find: "Ebenen suchen",
+    shown: { all: "Alle", visible: "Sichtbare", locked: "Gesperrte" },
+    none_found: "Keine passenden Ebenen.",
     stale: "Veraltet: Die Eingangsdaten haben sich geändert.",
     stale_automatic: "Wird aktualisiert …",
     recompute: "Aktualisieren",

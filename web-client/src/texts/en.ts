@@ -893,6 +893,13 @@ export const texts = {
   },
 
   layers: {
+    group: "Group",
+    group_hint: "No group",
+    group_rename: "Rename group…",
+    group_dissolve: "Ungroup",
+    find: "Find layers",
+    shown: { all: "All", visible: "Visible", locked: "Locked" },
+    none_found: "No matching layers.",
     stale: "Out of date: its inputs have changed.",
     stale_automatic: "Updating…",
     recompute: "Update",

@@ -925,6 +925,13 @@ export const texts = {
   },
 
   layers: {
+    group: "Grupo",
+    group_hint: "Ningún grupo",
+    group_rename: "Renombrar grupo…",
+    group_dissolve: "Desagrupar",
+    find: "Buscar capas",
+    shown: { all: "Todas", visible: "Visibles", locked: "Bloqueadas" },
+    none_found: "No hay capas que coincidan.",
     stale: "Desactualizada: han cambiado los datos de los que depende.",
     stale_automatic: "Actualizando…",
     recompute: "Actualizar",

@@ -7,12 +7,17 @@ export class DragOrder<Id extends number | string> implements ReactiveController
   dragged: Id | null = null;
   /** Index of the row after the drop position. */
   before: number | null = null;
+  /** The row under the pointer. */
+  over: number | null = null;
 
-  /** `move`: to an index of the list without the row. */
+  /**
+   * `move`: to an index of the list without the row. `over`: the row under the pointer, in the list
+   * with it; null: none.
+   */
   constructor(
     private readonly _host: ReactiveControllerHost,
     private readonly _shown: () => readonly Id[],
-    private readonly _move: (id: Id, to: number) => void,
+    private readonly _move: (id: Id, to: number, over: number | null) => void,
   ) {
     _host.addController(this);
   }
@@ -36,22 +41,25 @@ export class DragOrder<Id extends number | string> implements ReactiveController
   overRow(event: DragEvent, index: number): void {
     if (this.dragged === null) return;
     event.preventDefault();
+    this.over = index;
     const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
     this.put(this.dragged, event.clientY < box.top + box.height / 2 ? index : index + 1);
   }
 
   readonly overList = (event: DragEvent): void => {
-    if (this.dragged !== null) event.preventDefault();
+    if (this.dragged === null) return;
+    event.preventDefault();
+    if (event.target === event.currentTarget) this.over = null; // between rows
   };
 
   readonly drop = (event: DragEvent): void => {
-    const { dragged, before } = this;
+    const { dragged, before, over } = this;
     this.end();
     const from = dragged === null ? -1 : this._shown().indexOf(dragged);
     if (dragged === null || before === null || from < 0) return;
     event.preventDefault();
     const to = before > from ? before - 1 : before;
-    if (to !== from) this._move(dragged, to);
+    if (to !== from || over !== from) this._move(dragged, to, over);
   };
 
   readonly end = (): void => this.put(null, null);

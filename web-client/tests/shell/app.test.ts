@@ -109,6 +109,7 @@ describe("a changed layer", () => {
     description: "",
     labels: {},
     descriptions: {},
+    group: "",
     palette: classPalette(classes.points as never),
     visibility: "public" as const,
   };
@@ -117,6 +118,8 @@ describe("a changed layer", () => {
     expect(layerChanges(old, { ...same, description: "by eye" })).toEqual({
       description: "by eye",
     });
+    expect(layerChanges(old, { ...same, group: "Salts" })).toEqual({ group: "Salts" });
+    expect(layerChanges({ ...old, group: "Salts" }, same)).toEqual({ group: "" });
     expect(layerChanges(old, { ...same, visibility: "team" })).toEqual({ visibility: "team" });
     expect(
       layerChanges(old, {

@@ -2546,12 +2546,25 @@ nlohmann::json to_json(const TemplateLayer& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, TemplateGroup& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "labels", value.labels);
+}
+
+nlohmann::json to_json(const TemplateGroup& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "labels", value.labels);
+  return json;
+}
+
 void read(const nlohmann::json& json, Template& value) {
   read_optional_member(json, "slug", value.slug);
   read_member(json, "name", value.name);
   read_optional_member(json, "labels", value.labels);
   read_optional_member(json, "description", value.description);
   read_member(json, "tables", value.tables);
+  read_optional_member(json, "group", value.group);
   read_member(json, "layers", value.layers);
 }
 
@@ -2562,6 +2575,7 @@ nlohmann::json to_json(const Template& value) {
   write_optional_member(json, "labels", value.labels);
   write_member(json, "description", value.description);
   write_member(json, "tables", value.tables);
+  write_optional_member(json, "group", value.group);
   write_member(json, "layers", value.layers);
   return json;
 }
@@ -2612,6 +2626,7 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "description", value.description);
   read_optional_member(json, "labels", value.labels);
   read_optional_member(json, "descriptions", value.descriptions);
+  read_optional_member(json, "group", value.group);
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
@@ -2637,6 +2652,7 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_member(json, "description", value.description);
   write_optional_member(json, "labels", value.labels);
   write_optional_member(json, "descriptions", value.descriptions);
+  write_optional_member(json, "group", value.group);
   write_optional_member(json, "palette", value.palette);
   write_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);
@@ -2902,6 +2918,7 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "description", value.description);
   read_optional_member(json, "labels", value.labels);
   read_optional_member(json, "descriptions", value.descriptions);
+  read_optional_member(json, "group", value.group);
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
@@ -2921,6 +2938,7 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "description", value.description);
   write_optional_member(json, "labels", value.labels);
   write_optional_member(json, "descriptions", value.descriptions);
+  write_optional_member(json, "group", value.group);
   write_optional_member(json, "palette", value.palette);
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);

@@ -237,6 +237,7 @@ enum class Schema {
   TemplateTerm,
   TemplateTable,
   TemplateLayer,
+  TemplateGroup,
   Template,
   TemplateList,
   TemplateUse,
@@ -349,7 +350,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 323;
+constexpr int kSchemaCount = 324;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1955,6 +1956,17 @@ nlohmann::json to_json(const TemplateLayer& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateLayer> = Schema::TemplateLayer;
 
+// Group of a template's layers.
+struct TemplateGroup {
+  std::string name;
+  std::optional<Labels> labels;
+  bool operator==(const TemplateGroup&) const = default;
+};
+void read(const nlohmann::json& json, TemplateGroup& value);
+nlohmann::json to_json(const TemplateGroup& value);
+template <>
+inline constexpr Schema kSchemaOf<TemplateGroup> = Schema::TemplateGroup;
+
 // Template: tables and layers that are made together.
 struct Template {
   std::optional<std::string> slug;  // Name of the template's file.
@@ -1962,6 +1974,7 @@ struct Template {
   std::optional<Labels> labels;
   std::string description;
   std::vector<TemplateTable> tables;
+  std::optional<TemplateGroup> group;
   std::vector<TemplateLayer> layers;
   bool operator==(const Template&) const = default;
 };
@@ -2022,6 +2035,9 @@ struct LayerCreate {
   std::string description;
   std::optional<Labels> labels;  // Names of the layer in other languages.
   std::optional<Descriptions> descriptions;
+  // Heading under which the page lists the layer. The server removes blanks at its ends. Empty:
+  // none.
+  std::optional<std::string> group;
   std::optional<nlohmann::json> palette;
   double opacity = 1;
   // Absent: true. For computed layers false, because they must not cover the view of others; the
@@ -2270,6 +2286,9 @@ struct LayerPatch {
   std::optional<std::string> description;
   std::optional<Labels> labels;  // Names in other languages; replaces all.
   std::optional<Descriptions> descriptions;  // Descriptions in other languages; replaces all.
+  // Heading under which the page lists the layer. The server removes blanks at its ends. Empty:
+  // none.
+  std::optional<std::string> group;
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
   std::optional<bool> visible;

@@ -3,6 +3,7 @@
 #include "app/authorization/visibility_leak_check.h"
 #include "app/layers/formula_layers.h"
 #include "app/trash_purger.h"
+#include "core/text/ascii.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
@@ -69,6 +70,12 @@ Palette palette_of_condition(const std::string& label) {
   return palette;
 }
 
+// Nothing: an empty text.
+std::optional<std::string> group_of(const std::string& text) {
+  const std::string group(trimmed(text));
+  return group.empty() ? std::nullopt : std::optional(group);
+}
+
 int order_at_bottom(const std::vector<Layer>& others) {
   int bottom = 1;
   for (const Layer& other : others) bottom = std::min(bottom, other.order);
@@ -116,6 +123,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   layer.description = body.description;
   layer.labels = body.labels.value_or(Labels());
   layer.descriptions = body.descriptions.value_or(Labels());
+  layer.group = group_of(body.group.value_or(""));
   const bool is_computed = body.compute || body.expression;
   if (is_computed && body.locked == false)
     return fail(ErrorCode::invalid, "Locked when created",
@@ -261,6 +269,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (body.description) layer->description = *body.description;
   if (body.labels) layer->labels = *body.labels;
   if (body.descriptions) layer->descriptions = *body.descriptions;
+  if (body.group) layer->group = group_of(*body.group);
   if (body.palette) {
     auto palette = STRATA_TRY(palette_from_json(*body.palette));
     layer->palette = std::move(palette);

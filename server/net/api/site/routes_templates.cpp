@@ -77,6 +77,7 @@ Result<std::vector<RequestedLayer>> requested_layers(const protocol::Template& o
             "The model has a layer \"" + other.name +
                 "\". Rename or delete that layer first, or use the template without a model.",
             "model");
+    if (of.group) next.layer.group = app::name_in(of.group->name, of.group->labels, language);
     auto slug = STRATA_TRY(slug_of({}, template_layer.name));
     next.layer.slug = slug;
     next.layer.kind = LayerKind::database;

@@ -48,6 +48,7 @@ def lists_of(templates):
 def test_everything_that_has_a_name_has_it_in_three_languages(templates):
     for template in templates:
         parts = [template, *template["tables"], *template["layers"]]
+        parts += [template["group"]] if "group" in template else []
         for table in template["tables"]:
             parts += table.get("columns") or []
         named = [(part["name"], part) for part in parts]

@@ -11,6 +11,7 @@ export interface LayerWanted {
   description: string;
   labels: Labels;
   descriptions: Labels;
+  group: string; // empty: none
   palette: Palette;
   visibility: Visibility;
   expression?: string; // for a computed layer
@@ -26,6 +27,7 @@ export function layerChanges(
     description,
     labels,
     descriptions,
+    group,
     palette,
     visibility,
     expression,
@@ -38,6 +40,7 @@ export function layerChanges(
   if (description !== layer.description) change.description = description;
   if (!sameWords(labels, layer.labels)) change.labels = labels;
   if (!sameWords(descriptions, layer.descriptions)) change.descriptions = descriptions;
+  if (group !== (layer.group ?? "")) change.group = group;
   if (!samePalette(palette, layer.palette)) change.palette = palette;
   if (visibility !== layer.visibility) change.visibility = visibility;
   if (expression !== undefined && expression !== layer.expression) change.expression = expression;

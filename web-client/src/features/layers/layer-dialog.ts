@@ -21,6 +21,7 @@ import { ApiError } from "../../net/api-error";
 import { createRecord } from "../../net/records";
 import { createLayer, createLayerOrJob, readLayer, recomputeLayer } from "../../net/layers";
 import { labelOf } from "../../domain/cells";
+import { groupCalled } from "../../domain/layer-groups";
 import type { Labels, Table, Visibility } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import "./expression-field";
@@ -30,6 +31,7 @@ import type { StrataExpressionField } from "./expression-field";
 import type { StrataDialog } from "../../ui/dialog";
 import "../../ui/labels-field";
 import type { StrataLabelsField } from "../../ui/labels-field";
+import { groupField } from "./group-row";
 import { layerChanges, type LayerWanted } from "./layer-changes";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
@@ -185,6 +187,7 @@ export class StrataLayerDialog extends LitElement {
           <span>${words.description}</span>
           <textarea name="description" maxlength="10000" placeholder=${words.description_hint} .value=${layer?.description ?? ""}></textarea>
         </label>
+        ${groupField(this.session, layer)}
         <strata-labels-field .labels=${layer?.labels ?? kNoWords} .descriptions=${layer?.descriptions ?? kNoWords}></strata-labels-field>
         ${visibilityChoice(this._visibility, (visibility) => (this._visibility = visibility))}
       </form>`,
@@ -323,7 +326,7 @@ export class StrataLayerDialog extends LitElement {
     const form = new FormData(this._form);
     const text = (name: string): string => String(form.get(name) ?? "").trim();
     this._problem = this._problemField = "";
-    const said = this.said();
+    const said = this.said(groupCalled(text("group"), this.session.layers.all));
     if (!said) return;
     if (this._purpose === "shape")
       return this.compute(text("name") || this._shape.kindTitle, {
@@ -384,15 +387,15 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  /** Names in other languages; null: a field shows a problem. */
-  private said(): { labels: Labels; descriptions: Labels } | null {
+  /** Names in other languages, and the group; null: a field shows a problem. */
+  private said(group: string): { labels: Labels; descriptions: Labels; group: string } | null {
     const labels = this._labels.read();
-    return labels && { labels, descriptions: this._labels.writtenDescriptions };
+    return labels && { labels, descriptions: this._labels.writtenDescriptions, group };
   }
 
   private async compute(
     name: string,
-    said: Pick<LayerCreate, "description" | "labels" | "descriptions">,
+    said: Pick<LayerCreate, "description" | "labels" | "descriptions" | "group">,
   ): Promise<void> {
     const compute = this._shape.recipe();
     if ("problem" in compute) return this.refuse(compute.field, compute.problem);

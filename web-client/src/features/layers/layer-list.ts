@@ -74,10 +74,13 @@ export class LayerList {
   }
 
   setVisible(layer: Layer, visible: boolean): void {
-    this.override(layer, { visible });
+    this.override([layer], { visible });
+  }
+  setAllVisible(layers: readonly Layer[], visible: boolean): void {
+    this.override(layers, { visible });
   }
   setOpacity(layer: Layer, opacity: number): void {
-    this.override(layer, { opacity });
+    this.override([layer], { opacity });
   }
   /** Null: the layer's own palette. */
   setPalette(layer: Layer, palette: Palette | null): void {
@@ -91,6 +94,10 @@ export class LayerList {
   move(layer: Layer, index: number): void {
     const wanted = this.all.filter((other) => other.id !== layer.id);
     wanted.splice(Math.max(0, Math.min(index, wanted.length)), 0, layer);
+    this.arrange(wanted);
+  }
+  /** Puts the layers, bottom to top, in this order, for this person. */
+  arrange(wanted: readonly Layer[]): void {
     // Changes the order of as few layers as possible, so that a new layer appears at its default
     // place.
     const places = wanted.map((each) => this.order(each)).sort((a, b) => a - b);
@@ -225,9 +232,9 @@ export class LayerList {
       for (const id of kept.keys()) if (!known.has(id)) kept.delete(id);
   }
 
-  private override(layer: Layer, change: LayerShown): void {
+  private override(layers: readonly Layer[], change: LayerShown): void {
     for (const shown of [this._overrides, this._own])
-      shown.set(layer.id, { ...shown.get(layer.id), ...change });
+      for (const { id } of layers) shown.set(id, { ...shown.get(id), ...change });
     this.changedByHand();
   }
 

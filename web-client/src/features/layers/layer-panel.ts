@@ -6,7 +6,7 @@ import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { descriptionIn, labelOf } from "../../domain/cells";
-import { isAsComputed, valueRange, type Layer, type LayerPatch } from "../../core/types";
+import { valueRange, type Layer, type LayerPatch } from "../../core/types";
 import { askToTrash, tellTrashed } from "../../ui/trash";
 import { openTrashOf } from "../../ui/trash-dialog";
 import { ask } from "../../ui/dialog";
@@ -14,6 +14,18 @@ import { DragOrder } from "../../ui/drag-order";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import { unlockLabel } from "../../session/layer-lock";
+import {
+  fits,
+  isFiltered,
+  kMostWithoutSearch,
+  kNoFilter,
+  layerFilter,
+  layerFilterStyles,
+} from "./layer-filter";
+import { groupRow, groupRowStyles, regroup } from "./group-row";
+import { groupsOf, placeAfterStep } from "../../domain/layer-groups";
+import { Kept } from "../../core/kept";
+import { layerNotes, whoIsLocked } from "./layer-notes";
 import { layerPanelStyles } from "./layer-panel-styles";
 import { canBeColored } from "./color-dialog";
 import { layerChip, legend, legendStyles } from "./legend";
@@ -38,13 +50,13 @@ export type LayerPanelRequest =
 export class StrataLayerPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _computing: number | null = null;
-  private readonly _drag = new DragOrder<number>(
+  @state() private _filter = kNoFilter;
+  private readonly _folded = new Kept<string[]>(() => localStorage, "strata.folded_groups", []);
+  // the names of groups are ids of their headings
+  private readonly _drag = new DragOrder<number | string>(
     this,
-    () => this.shown.map(({ id }) => id),
-    (id, to) => {
-      const layer = this.session.layers.find(id);
-      if (layer) this.move(layer, to);
-    },
+    () => this.rows.map((row) => (typeof row === "string" ? row : row.id)),
+    (id, to, over) => this.drop(id, to, over),
   );
 
   constructor() {
@@ -58,6 +70,8 @@ export class StrataLayerPanel extends LitElement {
     legendStyles,
     dragStyles,
     layerPanelStyles,
+    layerFilterStyles,
+    groupRowStyles,
   ];
 
   /** Top to bottom. */
@@ -65,10 +79,86 @@ export class StrataLayerPanel extends LitElement {
     return [...this.session.layers.all].reverse();
   }
 
+  private get isLong(): boolean {
+    return this.session.layers.all.length > kMostWithoutSearch;
+  }
+  private get isFiltered(): boolean {
+    return this.isLong && isFiltered(this._filter);
+  }
+
+  /** The rows of the list: layers, and names of groups. */
+  private get rows(): (Layer | string)[] {
+    const { layers } = this.session;
+    const { isFiltered: filtered, shown } = this;
+    const found = filtered
+      ? shown.filter((layer) => fits(layer, this._filter, layers.visible(layer)))
+      : shown;
+    return groupsOf(found).flatMap(({ name, layers: inside }) => {
+      if (name === null) return inside;
+      return this._folded.value.includes(name) && !filtered ? [name] : [name, ...inside];
+    });
+  }
+
+  private group(name: string, layers: Layer[], index: number): TemplateResult {
+    const folded = this._folded.value;
+    const isFolded = folded.includes(name) && !this.isFiltered;
+    return html`<li
+      class="group ${this._drag.classes(name, index)}"
+      @dragover=${(event: DragEvent) => this._drag.overRow(event, index)}
+    >
+      ${groupRow({
+        session: this.session,
+        name,
+        layers,
+        isFolded,
+        fold: this.isFiltered
+          ? null
+          : () => {
+              this._folded.value = isFolded
+                ? folded.filter((each) => each !== name)
+                : [...folded, name];
+              this.requestUpdate();
+            },
+      })}
+    </li>`;
+  }
+
+  /** `to`: in the list without the dragged row. It joins the group of the row under the pointer. */
+  private drop(id: number | string, to: number, over: number | null): void {
+    const layer = this.session.layers.find(Number(id));
+    if (!layer) return;
+    const { rows } = this;
+    const target = over === null ? null : rows[over]!;
+    const before = rows.filter((row) => row !== layer).slice(0, to);
+    // the upper half of a heading is the end of what is above it
+    const isAbove = typeof target === "string" && !before.includes(target);
+    const beside = isAbove ? before.at(-1) : target;
+    const group = typeof beside === "string" ? beside : (beside?.group ?? "");
+    if (group !== (layer.group ?? "")) {
+      if (!this.session.canCurate) return;
+      void regroup(this.session, [layer], group);
+    }
+    const last = before.at(-1);
+    const others = this.listed.filter((each) => each !== layer);
+    const at =
+      last === undefined
+        ? 0
+        : typeof last === "string"
+          ? others.findIndex((each) => each.group === last)
+          : others.indexOf(last) + 1;
+    this.move(layer, Math.max(0, at));
+  }
+
+  /** All layers in the order of the list, also those of folded groups. */
+  private get listed(): Layer[] {
+    return groupsOf(this.shown).flatMap(({ layers }) => layers);
+  }
+
   override render(): TemplateResult {
     const { session } = this;
     const words = texts.layers;
-    const shown = this.shown;
+    const { shown, rows } = this;
+    const groups = new Map(groupsOf(shown).map((group) => [group.name, group]));
     return html`<div class="heading">
         <h2>${words.title}</h2>
         ${
@@ -100,13 +190,18 @@ export class StrataLayerPanel extends LitElement {
                 : nothing
             }
           </div>`
-          : html`<ul class="list" @dragover=${this._drag.overList} @drop=${this._drag.drop}>
+          : html`${this.isLong ? layerFilter(this._filter, (filter) => (this._filter = filter)) : nothing}
+          <ul class="list" @dragover=${this._drag.overList} @drop=${this._drag.drop}>
             ${repeat(
-              shown,
-              (layer) => layer.id,
-              (layer, index) => this.row(layer, index),
+              rows,
+              (row) => (typeof row === "string" ? row : row.id),
+              (row, index) =>
+                typeof row === "string"
+                  ? this.group(row, groups.get(row)!.layers, index)
+                  : this.row(row, index),
             )}
-          </ul>`
+          </ul>
+          ${rows.length === 0 ? html`<p class="hint" role="status">${words.none_found}</p>` : nothing}`
       }
       ${
         session.layers.hasOverrides
@@ -128,14 +223,15 @@ export class StrataLayerPanel extends LitElement {
     const words = texts.layers;
     const selected = session.layers.selectedId === layer.id;
     const visible = session.layers.visible(layer);
-    const count = session.layers.all.length;
+    const groups = groupsOf(this.shown);
+    const [above, below] = ([-1, 1] as const).map((step) => placeAfterStep(groups, layer, step));
     return html`<li
-      class="layer ${selected ? "selected" : ""} ${this._drag.classes(layer.id, index)}"
+      class="layer ${layer.group ? "inside" : ""} ${selected ? "selected" : ""} ${this._drag.classes(layer.id, index)}"
       @dragover=${(event: DragEvent) => this._drag.overRow(event, index)}
     >
       <div class="line">
         ${
-          count > 1
+          session.layers.all.length > 1 && !this.isFiltered
             ? html`<span
               class="grip"
               draggable="true"
@@ -165,7 +261,7 @@ export class StrataLayerPanel extends LitElement {
           ${layerChip(session.layers.palette(layer))}<span class="ellipsis">${labelOf(layer)}</span>
         </button>
         ${visibilityBadge(layer.visibility)}
-        ${layer.locked ? html`<span class="lock" role="img" aria-label=${this.whoIsLocked(layer)} title=${this.whoIsLocked(layer)}>${icon("lock")}</span>` : nothing}
+        ${layer.locked ? html`<span class="lock" role="img" aria-label=${whoIsLocked(session, layer)} title=${whoIsLocked(session, layer)}>${icon("lock")}</span>` : nothing}
         <strata-menu label=${words.options(labelOf(layer))}>
           ${
             session.canCurate
@@ -226,10 +322,10 @@ export class StrataLayerPanel extends LitElement {
               : nothing
           }
           <hr />
-          <button class="quiet" role="menuitem" ?disabled=${index === 0} @click=${() => this.move(layer, index - 1)}>
+          <button class="quiet" role="menuitem" ?disabled=${above === null} @click=${() => this.move(layer, above!)}>
             ${icon("up")}${words.up}
           </button>
-          <button class="quiet" role="menuitem" ?disabled=${index === count - 1} @click=${() => this.move(layer, index + 1)}>
+          <button class="quiet" role="menuitem" ?disabled=${below === null} @click=${() => this.move(layer, below!)}>
             ${icon("down")}${words.down}
           </button>
           ${
@@ -250,7 +346,7 @@ export class StrataLayerPanel extends LitElement {
     const { session } = this;
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
-      ${layer.locked ? this.lockTold(layer) : nothing} ${layer.edited_by_hand === true ? this.handTold(layer) : nothing} ${layer.review ? this.reviewTold(layer) : nothing}
+      ${layerNotes(session, layer, () => void this.change(layer, { locked: false }))}
       ${descriptionIn(layer) ? html`<p class="description">${descriptionIn(layer)}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${
@@ -273,35 +369,6 @@ export class StrataLayerPanel extends LitElement {
         <output>${Math.round(opacity * 100)} %</output>
       </div>
     </div>`;
-  }
-
-  private whoIsLocked(layer: Layer): string {
-    if (isAsComputed(layer)) return texts.layers.locked_computed;
-    return this.session.isLocked(layer)
-      ? texts.layers.locked_to_you
-      : texts.layers.locked_to_others;
-  }
-
-  private lockTold(layer: Layer): TemplateResult {
-    const unlock = (): void => void this.change(layer, { locked: false });
-    return html`<p class="locked">
-      ${icon("lock")}<span>${this.whoIsLocked(layer)}</span>
-      ${this.session.canCurate ? html`<button class="link" @click=${unlock}>${unlockLabel(layer)}</button>` : nothing}
-    </p>`;
-  }
-
-  private handTold(layer: Layer): TemplateResult {
-    return html`<p class="locked by-hand">
-      ${icon("edit")}<span>${layer.expression === undefined ? texts.layers.by_hand : `${texts.layers.by_hand} ${texts.layers.by_hand_formula}`}</span>
-    </p>`;
-  }
-
-  private reviewTold(layer: Layer): TemplateResult {
-    const { canCurate, reviews } = this.session;
-    const waiting = reviews.waitingOn(layer);
-    return html`<p class="locked">
-      ${icon("shield")}<span>${canCurate ? texts.review.asked : texts.review.asked_of_you} ${waiting > 0 ? texts.review.waiting(waiting) : nothing}</span>
-    </p>`;
   }
 
   private async change(layer: Layer, change: LayerPatch): Promise<void> {
@@ -360,10 +427,11 @@ export class StrataLayerPanel extends LitElement {
     this.dispatchEvent(new CustomEvent<LayerPanelRequest>("request", { detail }));
   }
 
-  /** `index` counts from the top of the displayed list, without the layer itself. */
+  /** `index` counts from the top of the list of all layers, without the layer itself. */
   private move(layer: Layer, index: number): void {
-    const last = this.session.layers.all.length - 1;
-    this.session.layers.move(layer, last - index);
+    const others = this.listed.filter((each) => each !== layer);
+    others.splice(index, 0, layer);
+    this.session.layers.arrange(others.reverse());
   }
 
   private async saveDefault(): Promise<void> {

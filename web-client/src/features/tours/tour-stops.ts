@@ -254,7 +254,7 @@ export class StrataTourStops extends LitElement {
   }
 
   private move(from: number, to: number): void {
-    this.put(moved(this.stops, from, to), this.chosen);
+    if (from !== to) this.put(moved(this.stops, from, to), this.chosen);
   }
 
   private removeStop(index: number): void {

@@ -1,0 +1,62 @@
+import { describe, expect, it } from "vitest";
+import { groupCalled, groupNames, groupsOf, placeAfterStep } from "../../src/domain/layer-groups";
+
+interface L {
+  id: number;
+  group?: string;
+}
+/** "a1" is layer 1 in the group a; "2" has none. */
+const layers = (text: string): L[] =>
+  text.split(" ").map((each) => {
+    const group = each.replace(/\d/g, "");
+    return { id: Number(each.replace(/\D/g, "")), ...(group ? { group } : {}) };
+  });
+const told = (text: string): string =>
+  groupsOf(layers(text))
+    .map(({ name, layers: inside }) => `${name ?? ""}(${inside.map(({ id }) => id).join(" ")})`)
+    .join(" ");
+
+describe("Groups of layers", () => {
+  it("are where their topmost layer is", () => {
+    expect(told("1 2")).toBe("(1 2)");
+    expect(told("a1 a2 3 b4 5")).toBe("a(1 2) (3) b(4) (5)");
+    expect(told("a1 2 a3 4")).toBe("a(1 3) (2 4)");
+    expect(groupsOf([])).toEqual([]);
+  });
+
+  it("have names in alphabetical order, and are found in other letters", () => {
+    const some = layers("b1 Ä2 b3 4 a5");
+    expect(groupNames(some)).toEqual(["a", "Ä", "b"]);
+    expect(groupCalled(" B ", some)).toBe("b");
+    expect(groupCalled("A", layers("Ä1"))).toBe("Ä");
+    expect(groupCalled("  New one ", some)).toBe("New one");
+    expect(groupCalled("  ", some)).toBe("");
+  });
+});
+
+describe("A step in the list", () => {
+  const after = (text: string, id: number, step: 1 | -1): string | null => {
+    const groups = groupsOf(layers(text));
+    const flat = groups.flatMap((group) => group.layers);
+    const layer = flat.find((each) => each.id === id)!;
+    const place = placeAfterStep(groups, layer, step);
+    if (place === null) return null;
+    const rest = flat.filter((each) => each !== layer);
+    rest.splice(place, 0, layer);
+    return rest.map((each) => each.id).join(" ");
+  };
+
+  it("stays in the group", () => {
+    expect(after("a1 a2 3", 1, 1)).toBe("2 1 3");
+    expect(after("a1 a2 3", 2, -1)).toBe("2 1 3");
+    expect(after("a1 a2 3", 2, 1)).toBeNull();
+    expect(after("3 a1 a2", 1, -1)).toBeNull();
+  });
+
+  it("passes over whole groups", () => {
+    expect(after("1 a2 a3 4", 1, 1)).toBe("2 3 1 4");
+    expect(after("1 a2 a3 4", 4, -1)).toBe("1 4 2 3");
+    expect(after("1 2", 1, -1)).toBeNull();
+    expect(after("1 2", 2, 1)).toBeNull();
+  });
+});
