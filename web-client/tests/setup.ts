@@ -1,7 +1,8 @@
 // Node 18 has the Web Crypto API, but not as a global.
 import { webcrypto } from "node:crypto";
-import { loadTexts } from "../src/texts";
+import { loadLaterTexts, loadTexts } from "../src/texts";
 
 if (!("crypto" in globalThis)) Object.defineProperty(globalThis, "crypto", { value: webcrypto });
 
 await loadTexts("en", true, []);
+await loadLaterTexts();

@@ -37,32 +37,40 @@ import {
 } from "../ui/routes";
 import { checkConnections, discardUnsaved, keepViews, unsavedChanges } from "../session/sessions";
 import { sharedStyles } from "../ui/styles";
-import { texts } from "../texts";
+import { loadLaterTexts, texts } from "../texts";
+
+/** A part whose texts are not loaded with the page. */
+const later = (load: () => Promise<unknown>) => async (): Promise<unknown> => {
+  await loadLaterTexts();
+  return load();
+};
 
 setPartLoads({
   home: () => import("../features/home/home-page"),
   model: () => import("./model-page"),
-  model_dialogs: () => import("./model-dialogs"),
-  table: () => import("../features/tables/table-panel"),
-  measuring: () => import("../features/measuring/measure-panel"),
-  activity: () =>
+  model_dialogs: later(() => import("./model-dialogs")),
+  table: later(() => import("../features/tables/table-panel")),
+  measuring: later(() => import("../features/measuring/measure-panel")),
+  activity: later(() =>
     Promise.all([
       import("../features/activity/activity-panel"),
       import("../features/review/review-panel"),
     ]),
-  past: () =>
+  ),
+  past: later(() =>
     Promise.all([
       import("../features/past/past-bar"),
       import("../features/past/past-overlay"),
       import("../features/past/past-since"),
       import("../features/past/step-list"),
     ]),
+  ),
   join: () => import("../features/account/join-page"),
   sign_in: () => import("../features/account/sign-in"),
-  account: () => import("../features/account/account-dialog"),
-  people: () => import("../features/account/people-dialog"),
-  kiosks: () => import("../features/account/kiosks-dialog"),
-  preferences: () => import("../features/account/preferences-fields"),
+  account: later(() => import("../features/account/account-dialog")),
+  people: later(() => import("../features/account/people-dialog")),
+  kiosks: later(() => import("../features/account/kiosks-dialog")),
+  preferences: later(() => import("../features/account/preferences-fields")),
 });
 
 @customElement("strata-app")

@@ -11,3 +11,7 @@ export function plural(n: number, one: string, other: string, many = other): str
 /** "1 layer", "1,200 layers". */
 export const count = (n: number, one: string, other: string, many = other): string =>
   `${formatCount(n)} ${plural(n, one, other, many)}`;
+
+/** Whole millions take "de": "1.000.000 de capas". */
+export const countInSpanish = (n: number, one: string, other: string): string =>
+  count(n, one, other, `de ${other}`);

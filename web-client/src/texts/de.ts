@@ -10,7 +10,7 @@
 //   hatch Schraffur · orthophoto Orthofoto · site (of a server) Server · invitation Einladung · token Token
 
 import { formatCount } from "../core/locale";
-import type { Texts } from "./shape";
+import type { FirstTexts } from "./shape";
 import { count, plural } from "./count";
 
 const whatChanged = (created: number, changed: number, deleted: number): string =>
@@ -186,108 +186,6 @@ export const texts = {
     button: "Kopieren",
     copied: "Kopiert",
     by_hand: "Strg + C drücken",
-  },
-
-  site_people: {
-    parts: "Anzeige",
-    people: "Personen",
-    title: "Personen auf diesem Server",
-    filter: "Personen suchen",
-    filter_hint: "Name, Rolle oder Gruppe",
-    count: (n) => count(n, "Person", "Personen"),
-    count_of: (n, all) => `${formatCount(n)} von ${count(all, "Person", "Personen")}`,
-    none_found: "Keine passenden Personen.",
-    user: "Benutzername",
-    full_name: "Vollständiger Name",
-    role: "Rolle",
-    role_of: (name) => `Rolle von ${name}`,
-    state: "Status",
-    states: { invited: "eingeladen", active: "aktiv", disabled: "deaktiviert" },
-    no_password: "kein Passwort",
-    no_password_hint: "Anmeldung mit dem Link, den der Server ausgibt",
-    state_hints: {
-      invited: "Hat noch kein Passwort festgelegt",
-      active: "Kann sich anmelden",
-      disabled: "Kann sich nicht anmelden",
-    },
-    last_seen: "Zuletzt aktiv",
-    never: "nie",
-    you: "Sie",
-    options: (name) => `Optionen für ${name}`,
-    invite: "Person einladen",
-    invite_lead:
-      "Sie erhalten einen Link zum Versenden. Die Person öffnet ihn und legt ein Passwort fest.",
-    invite_user: "Benutzername",
-    invite_user_hint: "ada",
-    user_missing: "Geben Sie einen Benutzernamen ein.",
-    user_wrong:
-      "Verwenden Sie Buchstaben ohne Umlaute und Akzente, Ziffern und . _ - @. Beginnen Sie mit einem Buchstaben oder einer Ziffer. Höchstens 64 Zeichen.",
-    invite_button: "Link erstellen",
-    link: (name) => `Link für ${name}`,
-    link_lead: (until) =>
-      `Senden Sie ihn nur an diese Person: Wer den Link hat, kann das Passwort festlegen. Er wird nur jetzt angezeigt, ist nur einmal verwendbar und gilt bis ${until}.`,
-    link_done: "Fertig",
-    new_link: "Neuer Link …",
-    new_link_title: (name) => `Neuer Link für ${name}?`,
-    new_link_lead:
-      "Mit dem Link kann die Person ein neues Passwort festlegen. Frühere Links werden ungültig. Bis dahin gilt das aktuelle Passwort.",
-    new_link_button: "Link erstellen",
-    disable: "Deaktivieren …",
-    disable_title: (name) => `Konto von ${name} deaktivieren?`,
-    disable_lead:
-      "Alle Sitzungen werden abgemeldet, und alle Token werden ungültig. Die Person kann sich erst wieder anmelden, wenn Sie das Konto aktivieren.",
-    disable_button: "Deaktivieren",
-    enable: "Aktivieren",
-    projects: "Rollen in Projekten …",
-    delete: "Löschen …",
-    delete_title: (name) => `Konto von ${name} löschen?`,
-    delete_lead:
-      "Die Person wird abgemeldet und kann sich nicht mehr anmelden. Ihre Arbeit bleibt unter einem anonymen Namen im Verlauf. Dies kann nicht rückgängig gemacht werden.",
-    role_changed: (role) => `Rolle geändert: ${role}.`,
-    disabled: "Konto deaktiviert.",
-    enabled: "Konto aktiviert.",
-  },
-
-  groups: {
-    title: "Gruppen",
-    lead: "Die Rolle einer Gruppe gilt für alle Personen in der Gruppe. Hat jemand mehrere Rollen, gilt die höchste.",
-    new_name: "Neue Gruppe",
-    name: "Name",
-    name_hint: "Grabung 2026",
-    name_empty: "Geben Sie einen Namen für die Gruppe ein.",
-    make: "Gruppe erstellen",
-    none: "Noch keine Gruppen.",
-    about: (people, projects) =>
-      `${count(people, "Person", "Personen")} · ${projects === 0 ? "keine Rolle in Projekten" : `Rolle in ${count(projects, "Projekt", "Projekten")}`}`,
-    options: (name) => `Optionen für die Gruppe ${name}`,
-    of: (name) => `Gruppen von ${name}`,
-    members: "Personen …",
-    members_of: (name) => `Personen in „${name}“`,
-    inside: (n) => `${count(n, "Person", "Personen")}. Änderungen gelten sofort.`,
-    find_hint: "Name",
-    put_in: "Hinzugefügt.",
-    taken_out: "Entfernt.",
-    rename: "Umbenennen …",
-    rename_title: (name) => `„${name}“ umbenennen`,
-    delete_title: (name) => `Gruppe „${name}“ löschen?`,
-    delete_lead: (losing, people) =>
-      (losing === 0
-        ? "Niemand verliert den Zugriff: Alle Personen der Gruppe haben dieselben Rollen auch auf anderem Weg."
-        : `${count(losing, "Person", "Personen")} von ${formatCount(people)} ${plural(losing, "verliert", "verlieren")} den Zugriff oder ${plural(losing, "hat", "haben")} danach eine niedrigere Rolle.`) +
-      " Die Rollen der Gruppe in Projekten werden gelöscht. Dies kann nicht rückgängig gemacht werden.",
-  },
-
-  project_roles: {
-    title: (name) => `Rollen von ${name} in Projekten`,
-    lead: (role) => `Rolle in allen Projekten: ${role}. In jedem Projekt gilt die höhere Rolle.`,
-    role_in: (project) => `Rolle in ${project}`,
-    none: "Keine eigene Rolle",
-    removed: "Rolle entfernt.",
-    by_groups: (role, groups) => `Rolle über Gruppe: ${role} (${groups}).`,
-    by_groups_also: (role, groups) => `Auch ${role} über Gruppe: ${groups}.`,
-    group_lead: "Alle Personen in der Gruppe haben im Projekt mindestens diese Rolle.",
-    group_none: "Keine Rolle",
-    group_removed: "Rolle entfernt.",
   },
 
   projects: {
@@ -684,72 +582,6 @@ export const texts = {
     gone: (name) => `Die Form „${name}“ wurde gelöscht. Der Pinsel ist jetzt rund.`,
   },
 
-  expressions: {
-    computed: (layer) => `„${layer}“ ist berechnet.`,
-    names: "Verwendbare Namen",
-    holds: (area, share) => `Wahr auf ${area}, ${share} der Oberfläche.`,
-    known: (area, share) => `Hat einen Wert auf ${area}, ${share} der Oberfläche.`,
-    column: (column, layer) => `${column} des Datensatzes in ${layer}`,
-    corrections: "Korrekturen",
-    use: (by) => `Durch ${by} ersetzen`,
-    insert: "Namen einfügen",
-    search: "Ebenen, Spalten und Funktionen suchen",
-    no_name: "Kein Name enthält diesen Text.",
-    range: (low, high, unit) => `${low} bis ${high}${unit ? ` ${unit}` : ""}`,
-    kinds: { presence: "Ja/Nein-Fläche", classes: "Klassen", records: "Datensätze" },
-    groups: {
-      layers: "Ebenen",
-      classes: (layer) => `Klassen von ${layer}`,
-      columns: (layer) => `Spalten der Datensätze in ${layer}`,
-      surface: "Oberfläche",
-      functions: "Funktionen und Operatoren",
-    },
-    examples: {
-      title: "Beispiele mit den Ebenen dieses Modells",
-      take: "Dieses Beispiel verwenden",
-      above: (layer, amount) => `wo ${layer} über ${amount} liegt`,
-      above_outside: (_layer, _amount, area) => `dasselbe, außerhalb von ${area}`,
-      painted: (layer) => `wo ${layer} kartiert ist`,
-      class: (name, value) => `wo ${name} ${value} ist`,
-      filled: (column, _layer) => `wo ${column} einen Wert hat`,
-      difference: (a, b) => `${a} minus ${b}`,
-      twice: (layer) => `${layer} mal zwei`,
-      upper: "die obere Hälfte des Modells",
-    },
-    surface: {
-      x: "Weltkoordinate",
-      y: "Weltkoordinate",
-      z: "Weltkoordinate",
-      area: "m² an dieser Stelle",
-      nx: "der Normalen",
-      ny: "der Normalen",
-      nz: "der Normalen",
-      height: "über dem tiefsten Punkt",
-      slope: "0° waagerecht, 90° senkrecht",
-      curvature: "positiv: konvex",
-    },
-    functions: [
-      ["valid(", "wo die Ebene kartiert ist"],
-      ["if(", "if(Bedingung, Zahl, Zahl)"],
-      ["case when ", "case when … then … else … end"],
-      ["reclass(", "reclass(Zahl, darunter, Grenze, Wert, …)"],
-      ["min(", "kleinster Wert"],
-      ["max(", "größter Wert"],
-      ["abs(", "Absolutwert"],
-      ["sqrt(", "Quadratwurzel"],
-      ["round(", "auf eine ganze Zahl gerundet"],
-      ["between ", "between 1 and 3"],
-      ["like ", "like 'Riss%'"],
-      ["is null", "kein Wert vorhanden"],
-      ["is not null", "Wert vorhanden"],
-      ["and ", "beides ist wahr"],
-      ["or ", "mindestens eines ist wahr"],
-      ["not ", "ist nicht wahr"],
-      ["t_before(", "ein Zeitraum vor einem anderen"],
-      ["t_during(", "ein Zeitraum innerhalb eines anderen"],
-    ],
-  },
-
   areas: {
     how: {
       polygon:
@@ -992,67 +824,6 @@ export const texts = {
     no_records: "Jeder Datensatz hat eine eigene Farbe.",
   },
 
-  layer_dialog: {
-    create_title: "Neue Ebene",
-    edit_title: (name) => `Ebene „${name}“`,
-    question: "Was hält die Ebene fest?",
-    presence: "Vorkommen",
-    presence_lead: "Wo etwas vorhanden ist und wo nicht: Risse, Salze, Retuschen.",
-    classes: "Klassen",
-    classes_lead: "Eine von mehreren Klassen: Stücke, Materialien, Phasen.",
-    measurement: "Messwerte",
-    measurement_lead: "Eine Zahl an jeder Stelle: Feuchte, Tiefe, Farbveränderung.",
-    records: "Objekte mit Datensätzen",
-    records_lead: "Einzelne Objekte, jedes mit eigenem Datensatz: Funde, Proben, Ergänzungen.",
-    table: "Datensätze von",
-    own_table: "einer neuen Tabelle mit dem Namen der Ebene",
-    table_of_terms: (table, n) => `${table} (${count(n, "Begriff", "Begriffe")})`,
-    table_of_records: (table, n) => `${table} (${records(n)})`,
-    formula: "Aus einem Ausdruck",
-    formula_lead:
-      "Berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche: Risiko = Feuchte × Salz.",
-    formula_hint: "Risiko",
-    expression: "Ausdruck: eine Zahl oder eine Bedingung (kartiert, wo sie wahr ist)",
-    expression_missing: "Geben Sie einen Ausdruck ein.",
-    follows: "Automatisch aktualisieren, wenn sich die Eingangsdaten ändern",
-    shape: "Aus der Geometrie",
-    shape_lead: "Berechnet aus dem Netz: Krümmung, Rauheit, Höhe, Abstände.",
-    compute: "Ebene berechnen",
-    name: "Name",
-    name_hint: {
-      presence: "Risse",
-      classes: "Materialien",
-      measurement: "Feuchte",
-      records: "Funde",
-    },
-    description: "Beschreibung",
-    description_hint: "Optional: wie und nach welchen Regeln beobachtet wurde",
-    color: "Farbe",
-    classes_title: "Klassen",
-    class_label: (n) => `Bezeichnung der Klasse ${n}`,
-    class_color: (n) => `Farbe der Klasse ${n}`,
-    class_remove: (label) => `${label} entfernen`,
-    class_add: "Klasse hinzufügen",
-    class_default: (n) => `Klasse ${n}`,
-    class_kept:
-      "Mit einer Klasse wird nur ihre Bezeichnung entfernt. Ihre Kartierung bleibt erhalten.",
-    unit: "Einheit",
-    unit_hint: "%, mm …",
-    range: "Farben von",
-    range_to: "bis",
-    stepped: "In Stufen darstellen",
-    detail: "Kleinstes Detail",
-    detail_hint:
-      "Feinere Details benötigen mehr Speicher auf dem Server. Sie können dies später nicht ändern.",
-    create: "Ebene erstellen",
-    name_missing: "Geben Sie einen Namen für die Ebene ein.",
-    range_wrong: "Die zweite Zahl muss größer sein als die erste.",
-    classes_missing: "Geben Sie für mindestens eine Klasse eine Bezeichnung ein.",
-    too_many: "Eine Ebene kann höchstens 255 Klassen haben.",
-    changed: "Nicht gespeichert: Jemand anderes hat diese Ebene geändert.",
-    reload: "Andere Version anzeigen",
-  },
-
   shape: {
     kind: "Was berechnet wird",
     groups: {
@@ -1210,56 +981,6 @@ export const texts = {
     sending: (n, of) => `Datei ${Math.min(n, of)} von ${of} wird hochgeladen …`,
     sent: (n) => `${files(n)} ${plural(n, "wurde", "wurden")} an Datensätze angehängt.`,
     add_menu: "Fotos nach Dateinamen hinzufügen …",
-  },
-  measure: {
-    title: "Messen",
-    how: "Klicken oder tippen Sie Punkte auf der Oberfläche an. Ziehen dreht das Modell, auch zwischen zwei Punkten. M setzt einen Punkt in die Mitte der Ansicht.",
-    how_on:
-      "Ein Klick auf den letzten Punkt oder Enter beendet die Linie. Die Rücktaste entfernt den letzten Punkt, Esc löscht alle.",
-    how_anew: "Beendet. Klicken oder tippen Sie, um eine neue Linie zu beginnen.",
-    most: (n) => `Eine Linie kann höchstens ${formatCount(n)} Punkte haben.`,
-    set_in_middle: "Punkt in die Mitte setzen",
-    end: "Beenden",
-    take_back: "Letzten entfernen",
-    backspace: "Rücktaste",
-    clear: "Alle löschen",
-    places: (n) => count(n, "Punkt", "Punkte"),
-    straight: "Gerade",
-    ends: "Erster bis letzter Punkt, gerade",
-    along: "Entlang der Oberfläche",
-    along_parts: (n) => `Entlang der Oberfläche, in ${formatCount(n)} Teilen`,
-    no_way:
-      "Die geraden Linien gehen durch das Objekt, daher gibt es keinen Weg entlang der nächsten Oberfläche. Drehen Sie das Modell, bis alle Punkte sichtbar sind, und wählen Sie dann „Sichtbare Oberfläche“.",
-    rise: (axis) => `Höhenunterschied (${axis})`,
-    area: "Ebene Fläche des Polygons",
-    perimeter: "Umfang des Polygons",
-    area_hint: "Fläche des ebenen Polygons durch die Punkte, nicht der Oberfläche darin.",
-    off_plane: (length) =>
-      `Die Punkte liegen bis zu ${length} neben der Ebene. Die Fläche ist die ihrer Projektion.`,
-    gaps: (n) =>
-      `Die Linie verlässt die Oberfläche ${n === 1 ? "einmal" : `${formatCount(n)}-mal`}. Lücken zählen nicht mit.`,
-    busy: "…",
-    unconfirmed:
-      "Die Einheit des Modells ist nicht bestätigt. Längen und Flächen können daher falsch sein.",
-    profile: "Profil",
-    plot: "Position entlang des Profils",
-    plot_hint:
-      "Zeigen Sie auf die Kurve, oder drücken Sie die Pfeiltasten, um die Position auf dem Modell zu markieren.",
-    none_pointed: "keine",
-    sample: (along, name, value) => `Bei ${along} · ${name} ${value}`,
-    no_value: "kein Wert",
-    shows: "Zeigt",
-    height: (axis) => `Höhe (${axis})`,
-    equal: "Gleicher Maßstab (1:1)",
-    way: "Linienführung",
-    ways: { seen: "Sichtbare Oberfläche", nearest: "Nächste Oberfläche" },
-    way_hints: {
-      seen: "Die Oberfläche, die unter den geraden Linien sichtbar ist. Wählen Sie dies erneut, um die aktuelle Ansicht zu verwenden.",
-      nearest:
-        "Die Oberfläche, die den geraden Linien am nächsten liegt. Eignet sich für fast ebene Oberflächen und wird verwendet, wenn nicht alle Punkte sichtbar sind.",
-    },
-    save_csv: "Als CSV speichern",
-    save_svg: "Als SVG speichern",
   },
 
   marks: {
@@ -1454,29 +1175,6 @@ export const texts = {
     saving_first:
       "Ihre letzten Änderungen werden noch gespeichert. Versuchen Sie es gleich noch einmal.",
     paint_refused: "Sie sehen einen früheren Stand. Gehen Sie zurück zu jetzt, um zu kartieren.",
-  },
-
-  snapshots: {
-    title: "Schnappschüsse",
-    name_now: "Jetzigen Stand benennen…",
-    name_then: "Diesen Stand benennen…",
-    none: "Noch kein Stand dieses Modells hat einen Namen.",
-    failed: "Die Schnappschüsse konnten nicht geladen werden.",
-    compare: "Mit jetzt vergleichen",
-    rename: "Umbenennen…",
-    new_title: "Stand benennen",
-    new_lead:
-      "Alle finden den Stand unter seinem Namen wieder. Spätere Bearbeitungen ändern ihn nicht.",
-    rename_title: "Schnappschuss umbenennen",
-    save: "Namen speichern",
-    fields: {
-      name: "Name",
-      name_hint: "Vor der Reinigung, Mai 2026",
-      name_empty: "Geben Sie einen Namen ein.",
-      text: "Notiz",
-    },
-    delete_title: (name) => `Schnappschuss „${name}“ löschen?`,
-    delete_lead: "Er wird für alle gelöscht. Die Bearbeitungen des Modells bleiben.",
   },
 
   activity: {
@@ -1713,28 +1411,6 @@ export const texts = {
       `${records(created)} erstellt, ${formatCount(changed)} geändert.`,
   },
 
-  reports: {
-    created: "Neu",
-    changed: "Geändert",
-    unchanged: "Unverändert",
-    left_out: (n) =>
-      `${count(n, "weitere Bezeichnung oder weiterer Oberbegriff kann", "weitere Bezeichnungen oder Oberbegriffe können")} nicht gespeichert werden und ${plural(n, "wird", "werden")} ignoriert.`,
-    good: "Die Datei ist gültig. Es wurde noch nichts importiert.",
-    same: "Die Tabelle enthält dies alles bereits.",
-    wrong: (n) =>
-      `${plural(n, "Eine Zeile ist", `${formatCount(n)} Zeilen sind`)} fehlerhaft, daher wurde nichts importiert. Korrigieren Sie die Datei, und versuchen Sie es erneut.`,
-    line: "Zeile",
-    term: "Begriff",
-    column: "Spalte",
-    what: "Problem",
-  },
-
-  file_choice: {
-    choose: "Datei auswählen",
-    choose_several: "Dateien auswählen",
-    drop: "oder hier ablegen",
-    drop_several: "oder hier ablegen",
-  },
   terms_dialog: {
     open: "Begriffsliste importieren …",
     open_more: "Begriffe importieren …",
@@ -1759,95 +1435,11 @@ export const texts = {
     no_layer: (list) => `„${list}“ wurde erstellt, aber ohne Ebene`,
   },
 
-  column_dialog: {
-    create_title: (table) => `Neue Spalte von ${table}`,
-    edit_title: (column) => `Spalte „${column}“`,
-    create: "Spalte erstellen",
-    name: "Name",
-    name_missing: "Geben Sie einen Namen für die Spalte ein.",
-    kind: "Typ",
-    kinds: {
-      text: "Text",
-      integer: "Ganze Zahlen",
-      numeric: "Zahlen",
-      boolean: "Ja oder nein",
-      date: "Datum",
-      timestamp: "Datum und Uhrzeit",
-      period: "Zeitraum (EDTF: 1560~, 1560/1580)",
-      enumeration: "Eine von mehreren Möglichkeiten",
-      url: "Adresse (URL)",
-      term: "Ein Datensatz einer Tabelle, etwa ein Begriff",
-      relation: "Mehrere Datensätze einer Tabelle: liegt über, schneidet, gleich",
-      picture: "Bilder",
-      document: "Dokumente",
-      line: "Linien auf der Oberfläche, mit ihrer Länge",
-      point: "Punkte auf der Oberfläche",
-    },
-    retype_hint:
-      "Werte, die nicht zum neuen Typ passen, werden entfernt. Sie sehen, wie viele es sind, und können dies rückgängig machen.",
-    unit: "Einheit",
-    minimum: "Minimum",
-    maximum: "Maximum",
-    choices: "Möglichkeiten, eine je Zeile",
-    target: "Datensätze von",
-    required: "Pflichtfeld",
-    unique: "Eindeutig",
-    comment: "Hilfetext",
-    comment_hint: "Was in diese Spalte gehört; wird neben dem Feld angezeigt",
-    lost: (lost, converted) =>
-      `${count(lost, "Wert passte", "Werte passten")} nicht zum neuen Typ und ${plural(lost, "wurde", "wurden")} entfernt. ${count(converted, "Wert wurde", "Werte wurden")} umgewandelt.`,
-    lost_of: (keys) => `Datensätze ${keys}`,
-    take_back: "Rückgängig",
-    keep: "Neuen Typ behalten",
-  },
-
-  labels: {
-    title: "In anderen Sprachen",
-    add: "Sprache hinzufügen",
-    language: (row) => `Sprache ${row}`,
-    language_example: "es, pt-BR",
-    label: (language) => `Name auf ${language}`,
-    description: (language) => `Beschreibung auf ${language}`,
-    remove: (language) => `Namen${language ? ` auf ${language}` : ""} entfernen`,
-    no_language: "Geben Sie die Sprache dieses Namens ein.",
-    twice: "Für diese Sprache gibt es bereits einen Namen.",
-  },
-
   layer_jobs: {
     queued: "In der Warteschlange",
     running: "Wird berechnet",
     cancel: (name) => `${name} abbrechen`,
     dismiss: (name) => `Hinweis zu ${name} schließen`,
-  },
-
-  scale: {
-    title: (size) => `Ist dieses Objekt ${size} groß?`,
-    lead: "Pinselbreiten, Flächen und Maßstabsleisten hängen davon ab. Das Bild und seine Maßstabsleiste zeigen Ihre Wahl.",
-    unit_unknown: "Die Datei nennt keine Einheit.",
-    given: "Beim Import des Modells festgelegt.",
-    format: "glTF-Dateien sind in Metern.",
-    format_up: "In glTF-Dateien ist +Y oben.",
-    comment: (comment) => `Aus einem Kommentar in der Datei: „${comment}“.`,
-    comment_up: (comment) => `Aus einem Kommentar in der Datei: „${comment}“.`,
-    coordinates: "Dies sind Kartenkoordinaten: Meter, mit +Z oben.",
-    size: (unit) => `Die Datei nennt keine Einheit. Aus der Größe geschätzt: vermutlich ${unit}.`,
-    size_unsure:
-      "Die Datei nennt keine Einheit, und die Größe passt zu mehreren. Wählen Sie eine Einheit.",
-    shape: (up) => `Die Datei nennt keine Richtung. Aus der Form geschätzt: vermutlich ${up}.`,
-    shape_unsure: (up) =>
-      `Die Datei nennt keine Richtung, und die Form gibt keinen Hinweis: ${up} ist nur geraten. Wählen Sie eine Richtung.`,
-    until_then: (unit, up) =>
-      `„Später entscheiden“ behält ${unit} und ${up} (oben) bei und markiert beides als nicht bestätigt. Beim nächsten Öffnen des Modells werden Sie erneut gefragt.`,
-    unit: "Einheit der Datei",
-    mm: "Millimeter",
-    cm: "Zentimeter",
-    m: "Meter",
-    up: "Richtung nach oben",
-    yes: "Ja, das stimmt",
-    later: "Später entscheiden",
-    saved: "Größe und Richtung nach oben sind bestätigt.",
-    changed:
-      "Jemand anderes hat dieses Modell geändert. Die neuen Werte werden angezeigt. Prüfen Sie sie noch einmal.",
   },
 
   view: {
@@ -2154,13 +1746,6 @@ export const texts = {
     saved: (name) => `Führung „${name}“ gespeichert.`,
   },
 
-  ordered_choice: {
-    up: (name) => `${name} nach oben`,
-    down: (name) => `${name} nach unten`,
-    remove: (name) => `${name} entfernen`,
-    gone: (value) => `${value} (gelöscht)`,
-  },
-
   kiosks: {
     open: "Kioske …",
     of_tour: "Kiosk-Links …",
@@ -2220,68 +1805,6 @@ export const texts = {
     position: "Position",
     picked: (value, layer) => `Der Pinsel malt jetzt ${value} in „${layer}“.`,
     picked_nothing: (layer) => `„${layer}“ ist hier nicht kartiert.`,
-  },
-
-  statistics: {
-    copy: "Kopieren",
-    copied: "Kopiert. Fügen Sie es in einen Text oder eine Tabellenkalkulation ein.",
-    not_copied: "Der Browser hat das Kopieren blockiert.",
-    save: { csv: "Als CSV speichern", xlsx: "Als XLSX speichern (Excel)" },
-    class: "Klasse",
-    area: "Fläche",
-    share: "Anteil an der Oberfläche",
-    sum: "Gesamt",
-    from: "Von",
-    to: "Bis",
-    title: (name) => `Flächen von „${name}“`,
-    of_surface: (share) => `${share} der Oberfläche`,
-    nothing: "In dieser Ebene ist noch nichts kartiert.",
-    mean: "Mittelwert",
-    min: "Minimum",
-    max: "Maximum",
-    std: "Standardabweichung",
-    refresh: "Aktualisieren",
-    spread: "Fläche nach Wert",
-    range_from: "Farben von",
-    range_to: "Farben bis",
-    range: (from, to) => `Die Farben reichen von ${from} bis ${to}, für alle.`,
-  },
-
-  cross_table: {
-    title: "Überschneidung mit einer anderen Ebene",
-    other: "Andere Ebene",
-    choose: "Ebene auswählen",
-    no_other: "Das Modell hat keine andere Ebene mit Klassen oder Datensätzen.",
-    of: (layer, other) => `Überschneidung von „${layer}“ und „${other}“`,
-    nothing: (layer) => `nicht in ${layer}`,
-    empty: "In keiner der beiden Ebenen ist etwas kartiert.",
-    sum: "Gesamt",
-    cut: (n) =>
-      `Es werden die ersten ${formatCount(n)} Zeilen und Spalten angezeigt. Kopien und Dateien enthalten alle.`,
-  },
-
-  column_filter: {
-    title: (column) => `Nach ${column} filtern`,
-    open: (column) => `Nach ${column} filtern`,
-    open_on: (column) => `Nach ${column} filtern (aktiv)`,
-    show: "Datensätze anzeigen",
-    kinds: {
-      one_of: "mit einem dieser Werte",
-      range: "in einem Bereich",
-      contains: "mit einem Text, der enthält",
-      filled: "mit beliebigem Wert",
-      empty: "ohne Wert",
-    },
-    remove: "Entfernen",
-    apply: "Filtern",
-    search: "Werte suchen",
-    no_value: "ohne Wert",
-    more: (n) => `${count(n, "weiterer Wert", "weitere Werte")}. Verwenden Sie die Suche.`,
-    counted: (n, all) =>
-      `Gezählt in den ersten ${formatCount(n)} von ${formatCount(all)} Datensätzen.`,
-    from: "Von",
-    to: "Bis",
-    contains: "Text",
   },
 
   help: {
@@ -2404,4 +1927,4 @@ export const texts = {
       "Laden Sie die Seite neu. Gespeicherte Änderungen sind auf dem Server sicher.",
     picture: "Ein Bild vom Server konnte nicht dargestellt werden",
   },
-} satisfies Texts;
+} satisfies FirstTexts;

@@ -1,7 +1,7 @@
 // English, the reference for the other languages: see index.ts.
 
 import { formatCount } from "../core/locale";
-import { count, plural } from "./count";
+import { count } from "./count";
 
 const whatChanged = (created: number, changed: number, deleted: number): string =>
   [
@@ -162,110 +162,6 @@ export const texts = {
     button: "Copy",
     copied: "Copied",
     by_hand: "Press Ctrl + C",
-  },
-
-  site_people: {
-    parts: "Show",
-    people: "People",
-    title: "People of this site",
-    filter: "Find people",
-    filter_hint: "Name, role or group",
-    count: (n: number) => count(n, "person", "people"),
-    count_of: (n: number, all: number) => `${formatCount(n)} of ${count(all, "person", "people")}`,
-    none_found: "No matching people.",
-    user: "User name",
-    full_name: "Full name",
-    role: "Role",
-    role_of: (name: string) => `Role of ${name}`,
-    state: "State",
-    states: { invited: "invited", active: "active", disabled: "disabled" },
-    no_password: "no password",
-    no_password_hint: "Signs in with the link that the server prints",
-    state_hints: {
-      invited: "Has not set a password yet",
-      active: "Can sign in",
-      disabled: "Cannot sign in",
-    },
-    last_seen: "Last seen",
-    never: "never",
-    you: "you",
-    options: (name: string) => `Options for ${name}`,
-    invite: "Invite someone",
-    invite_lead: "You get a link to send. The person opens it and sets a password.",
-    invite_user: "User name",
-    invite_user_hint: "ada",
-    user_missing: "Enter a user name.",
-    user_wrong:
-      "Use letters without accents, digits and . _ - @. Begin with a letter or digit. At most 64 characters.",
-    invite_button: "Create link",
-    link: (name: string) => `Link for ${name}`,
-    link_lead: (until: string) =>
-      `Send it only to this person: anyone with the link can set the password. The link is shown only once: copy it now. It works once and expires ${until}.`,
-    link_done: "Done",
-    new_link: "New link…",
-    new_link_title: (name: string) => `New link for ${name}?`,
-    new_link_lead:
-      "The link lets them set a new password. Earlier links stop working. The current password works until then.",
-    new_link_button: "Create link",
-    disable: "Disable…",
-    disable_title: (name: string) => `Disable the account of ${name}?`,
-    disable_lead:
-      "All sessions are signed out and all tokens stop working. The person cannot sign in until you enable the account again.",
-    disable_button: "Disable",
-    enable: "Enable",
-    projects: "Roles in projects…",
-    delete: "Delete…",
-    delete_title: (name: string) => `Delete the account of ${name}?`,
-    delete_lead:
-      "The person is signed out and cannot return. Their work stays in the history under an anonymous name. This cannot be undone.",
-    role_changed: (role: string) => `Role changed to ${role.toLowerCase()}.`,
-    disabled: "Account disabled.",
-    enabled: "Account enabled.",
-  },
-
-  groups: {
-    title: "Groups",
-    lead: "A role of a group applies to all its people. If someone has several roles, the highest applies.",
-    new_name: "New group",
-    name: "Name",
-    name_hint: "Excavation 2026",
-    name_empty: "Enter a name for the group.",
-    make: "Create group",
-    none: "No groups yet.",
-    about: (people: number, projects: number) =>
-      `${count(people, "person", "people")} · ${projects === 0 ? "no role in any project" : `a role in ${count(projects, "project", "projects")}`}`,
-    options: (name: string) => `Options for the group ${name}`,
-    of: (name: string) => `Groups of ${name}`,
-    members: "People…",
-    members_of: (name: string) => `People in “${name}”`,
-    inside: (n: number) => `${count(n, "person", "people")}. Changes take effect at once.`,
-    find_hint: "Name",
-    put_in: "Added.",
-    taken_out: "Removed.",
-    rename: "Rename…",
-    rename_title: (name: string) => `Rename “${name}”`,
-    delete_title: (name: string) => `Delete the group “${name}”?`,
-    delete_lead: (losing: number, people: number) =>
-      (losing === 0
-        ? "Nobody loses access: its people have the same roles in other ways."
-        : `${count(losing, "person", "people")} of ${formatCount(people)} will lose access or have a lower role.`) +
-      " Its roles in projects are deleted. This cannot be undone.",
-  },
-
-  project_roles: {
-    title: (name: string) => `Project roles of ${name}`,
-    lead: (role: string) =>
-      `Role in all projects: ${role.toLowerCase()}. In each project the higher role applies.`,
-    role_in: (project: string) => `Role in ${project}`,
-    none: "No own role",
-    removed: "Role removed.",
-    by_groups: (role: string, groups: string) =>
-      `Role through group: ${role.toLowerCase()} (${groups}).`,
-    by_groups_also: (role: string, groups: string) =>
-      `Also ${role.toLowerCase()} through group: ${groups}.`,
-    group_lead: "Everyone in the group has at least this role in the project.",
-    group_none: "No role",
-    group_removed: "Role removed.",
   },
 
   projects: {
@@ -655,73 +551,6 @@ export const texts = {
     gone: (name: string) => `The shape “${name}” was deleted. The brush is now round.`,
   },
 
-  expressions: {
-    computed: (layer: string) => `“${layer}” is computed.`,
-    names: "Names to use",
-    holds: (area: string, share: string) => `True on ${area}, ${share} of the surface.`,
-    known: (area: string, share: string) => `Has a value on ${area}, ${share} of the surface.`,
-    column: (column: string, layer: string) => `${column} of the record in ${layer}`,
-    corrections: "Corrections",
-    use: (by: string) => `Replace by ${by}`,
-    insert: "Insert a name",
-    search: "Search layers, columns and functions",
-    no_name: "No name contains this.",
-    range: (low: string, high: string, unit: string) =>
-      `${low} to ${high}${unit ? ` ${unit}` : ""}`,
-    kinds: { presence: "yes/no area", classes: "classes", records: "records" },
-    groups: {
-      layers: "Layers",
-      classes: (layer: string) => `Classes of ${layer}`,
-      columns: (layer: string) => `Columns of the records in ${layer}`,
-      surface: "Surface",
-      functions: "Functions and operators",
-    },
-    examples: {
-      title: "Examples with this model’s layers",
-      take: "Use this example",
-      above: (layer: string, amount: string) => `where ${layer} is above ${amount}`,
-      above_outside: (_layer: string, _amount: string, area: string) => `the same, outside ${area}`,
-      painted: (layer: string) => `where ${layer} is painted`,
-      class: (name: string, value: string) => `where ${name} is ${value}`,
-      filled: (column: string, _layer: string) => `where ${column} has a value`,
-      difference: (a: string, b: string) => `${a} minus ${b}`,
-      twice: (layer: string) => `${layer} times two`,
-      upper: "the upper half of the model",
-    },
-    surface: {
-      x: "world coordinate",
-      y: "world coordinate",
-      z: "world coordinate",
-      area: "m² at that place",
-      nx: "of the normal",
-      ny: "of the normal",
-      nz: "of the normal",
-      height: "above the lowest point",
-      slope: "0° flat, 90° vertical",
-      curvature: "positive: convex",
-    },
-    functions: [
-      ["valid(", "where the layer is painted"],
-      ["if(", "if(condition, number, number)"],
-      ["case when ", "case when … then … else … end"],
-      ["reclass(", "reclass(number, below, limit, value, …)"],
-      ["min(", "smallest value"],
-      ["max(", "largest value"],
-      ["abs(", "absolute value"],
-      ["sqrt(", "square root"],
-      ["round(", "to a whole number"],
-      ["between ", "between 1 and 3"],
-      ["like ", "like 'crack%'"],
-      ["is null", "no value there"],
-      ["is not null", "has a value there"],
-      ["and ", "both are true"],
-      ["or ", "at least one is true"],
-      ["not ", "is not true"],
-      ["t_before(", "one period before another"],
-      ["t_during(", "one period within another"],
-    ] as [string, string][],
-  },
-
   areas: {
     how: {
       polygon:
@@ -956,64 +785,6 @@ export const texts = {
     no_records: "Each record has its own color.",
   },
 
-  layer_dialog: {
-    create_title: "New layer",
-    edit_title: (name: string) => `Layer “${name}”`,
-    question: "What does it record?",
-    presence: "Yes/no area",
-    presence_lead: "Where something is present: cracks, salt, retouching.",
-    classes: "Classes",
-    classes_lead: "One of several classes: pieces, materials, phases.",
-    measurement: "Measurement",
-    measurement_lead: "A number at each place: moisture, depth, color shift.",
-    records: "Objects with records",
-    records_lead: "Single objects, each with its own record: finds, samples, repairs.",
-    table: "Records of",
-    own_table: "a new table with the layer's name",
-    table_of_terms: (table: string, n: number) => `${table} (${count(n, "term", "terms")})`,
-    table_of_records: (table: string, n: number) => `${table} (${count(n, "record", "records")})`,
-    formula: "From an expression",
-    formula_lead: "Computed from other layers, their records and the surface: risk = damp × salt.",
-    formula_hint: "Risk",
-    expression: "Expression: a number, or a condition (painted where true)",
-    expression_missing: "Enter an expression.",
-    follows: "Update automatically when its inputs change",
-    shape: "From the shape",
-    shape_lead: "Computed from the mesh: curvature, roughness, height, distances.",
-    compute: "Compute layer",
-    name: "Name",
-    name_hint: {
-      presence: "Cracks",
-      classes: "Materials",
-      measurement: "Moisture",
-      records: "Finds",
-    },
-    description: "Description",
-    description_hint: "Optional: how it was observed, and by which rules",
-    color: "Color",
-    classes_title: "Classes",
-    class_label: (n: number) => `Label of class ${n}`,
-    class_color: (n: number) => `Color of class ${n}`,
-    class_remove: (label: string) => `Remove ${label}`,
-    class_add: "Add a class",
-    class_default: (n: number) => `Class ${n}`,
-    class_kept: "Removing a class removes its label. Its paint stays.",
-    unit: "Unit",
-    unit_hint: "%, mm…",
-    range: "Colors from",
-    range_to: "to",
-    stepped: "Show in steps",
-    detail: "Smallest detail",
-    detail_hint: "Finer detail uses more server memory. You cannot change it later.",
-    create: "Create layer",
-    name_missing: "Enter a name for the layer.",
-    range_wrong: "The second number must be larger than the first.",
-    classes_missing: "Enter a label for at least one class.",
-    too_many: "A layer can have at most 255 classes.",
-    changed: "Not saved: somebody else has changed this layer.",
-    reload: "Show their version",
-  },
-
   shape: {
     kind: "What to compute",
     groups: {
@@ -1166,54 +937,6 @@ export const texts = {
     sending: (n: number, of: number) => `Uploading ${Math.min(n, of)} of ${of}…`,
     sent: (n: number) => `${count(n, "file was", "files were")} attached to records.`,
     add_menu: "Add photos by file name…",
-  },
-  measure: {
-    title: "Measure",
-    how: "Click or tap places on the surface. Drag to orbit, also between two places. Press M to set a place in the middle of the view.",
-    how_on:
-      "Click the last place or press Enter to finish. Backspace removes the last place, Escape clears all.",
-    how_anew: "Finished. Click or tap to start another line.",
-    most: (n: number) => `A line can have at most ${formatCount(n)} places.`,
-    set_in_middle: "Place in the middle",
-    end: "Finish",
-    take_back: "Remove last",
-    backspace: "Backspace",
-    clear: "Clear",
-    places: (n: number) => count(n, "place", "places"),
-    straight: "Straight",
-    ends: "First to last place, straight",
-    along: "Along the surface",
-    along_parts: (n: number) => `Along the surface, in ${formatCount(n)} parts`,
-    no_way:
-      "The straight lines pass through the object, so there is no path along the nearest surface. Turn the model until you see all places, then choose “Visible surface”.",
-    rise: (axis: string) => `Height difference (${axis})`,
-    area: "Flat area of the polygon",
-    perimeter: "Perimeter of the polygon",
-    area_hint: "Area of the flat polygon through the places, not of the surface inside it.",
-    off_plane: (length: string) =>
-      `The places are up to ${length} off the plane. The area is that of their projection.`,
-    gaps: (n: number) =>
-      `The line leaves the surface ${n === 1 ? "once" : `${formatCount(n)} times`}. Gaps are not counted.`,
-    busy: "…",
-    unconfirmed: "The model's unit is not confirmed, so lengths and areas may be wrong.",
-    profile: "Profile",
-    plot: "Position along the profile",
-    plot_hint: "Point at the curve or use the arrow keys to mark the position on the model.",
-    none_pointed: "none",
-    sample: (along: string, name: string, value: string) => `At ${along} · ${name} ${value}`,
-    no_value: "no value",
-    shows: "Shows",
-    height: (axis: string) => `Height (${axis})`,
-    equal: "Same scale (1:1)",
-    way: "The line follows",
-    ways: { seen: "Visible surface", nearest: "Nearest surface" },
-    way_hints: {
-      seen: "The surface visible under the straight lines. Choose it again to use the current view.",
-      nearest:
-        "The surface nearest to the straight lines. Works where the surface is nearly flat, and is used when not all places are visible.",
-    },
-    save_csv: "Save as CSV",
-    save_svg: "Save as SVG",
   },
 
   marks: {
@@ -1407,28 +1130,6 @@ export const texts = {
     restored_hint: "You can undo this.",
     saving_first: "Your last changes are still being saved. Try again in a moment.",
     paint_refused: "You are looking at an earlier state. Go back to now to paint.",
-  },
-
-  snapshots: {
-    title: "Snapshots",
-    name_now: "Name the state of now…",
-    name_then: "Name this state…",
-    none: "No state of this model has a name yet.",
-    failed: "The snapshots could not be loaded.",
-    compare: "Compare with now",
-    rename: "Rename…",
-    new_title: "Name a state",
-    new_lead: "Everyone finds the state again by its name. Later edits do not change it.",
-    rename_title: "Rename the snapshot",
-    save: "Save the name",
-    fields: {
-      name: "Name",
-      name_hint: "Before cleaning, May 2026",
-      name_empty: "Enter a name.",
-      text: "Note",
-    },
-    delete_title: (name: string) => `Delete the snapshot “${name}”?`,
-    delete_lead: "It is deleted for everyone. The edits of the model stay.",
   },
 
   activity: {
@@ -1664,28 +1365,6 @@ export const texts = {
       `${count(created, "record", "records")} created, ${formatCount(changed)} changed.`,
   },
 
-  reports: {
-    created: "New",
-    changed: "Changed",
-    unchanged: "Unchanged",
-    left_out: (n: number) =>
-      `${count(n, "additional label or broader term", "additional labels or broader terms")} cannot be stored and will be ignored.`,
-    good: "The file is valid. Nothing has been imported yet.",
-    same: "The table already contains all of this.",
-    wrong: (n: number) =>
-      `${plural(n, "One row has an error", `${formatCount(n)} rows have errors`)}, so nothing was imported. Correct the file and try again.`,
-    line: "Line",
-    term: "Term",
-    column: "Column",
-    what: "Problem",
-  },
-
-  file_choice: {
-    choose: "Choose a file",
-    choose_several: "Choose files",
-    drop: "or drop it here",
-    drop_several: "or drop them here",
-  },
   terms_dialog: {
     open: "Import a term list…",
     open_more: "Import terms…",
@@ -1710,95 +1389,11 @@ export const texts = {
     no_layer: (list: string) => `“${list}” was created, but without a layer`,
   },
 
-  column_dialog: {
-    create_title: (table: string) => `New column of ${table}`,
-    edit_title: (column: string) => `Column “${column}”`,
-    create: "Create column",
-    name: "Name",
-    name_missing: "Enter a name for the column.",
-    kind: "Type",
-    kinds: {
-      text: "Text",
-      integer: "Whole numbers",
-      numeric: "Numbers",
-      boolean: "Yes or no",
-      date: "Date",
-      timestamp: "Date and time",
-      period: "Period (EDTF: 1560~, 1560/1580)",
-      enumeration: "One of several choices",
-      url: "Address (URL)",
-      term: "A record of a table, such as a term",
-      relation: "Several records of a table: above, cuts, same as",
-      picture: "Pictures",
-      document: "Documents",
-      line: "Lines on the surface, with their length",
-      point: "Points on the surface",
-    },
-    retype_hint:
-      "Values that do not fit the new type are removed. You will see how many, and can undo this.",
-    unit: "Unit",
-    minimum: "Minimum",
-    maximum: "Maximum",
-    choices: "Choices, one per line",
-    target: "Records of",
-    required: "Required",
-    unique: "Unique",
-    comment: "Help text",
-    comment_hint: "What belongs in this column; shown next to the field",
-    lost: (lost: number, converted: number) =>
-      `${count(lost, "value", "values")} did not fit the new type and ${plural(lost, "was", "were")} removed. ${count(converted, "value was", "values were")} converted.`,
-    lost_of: (keys: string) => `Records ${keys}`,
-    take_back: "Undo",
-    keep: "Keep the new type",
-  },
-
-  labels: {
-    title: "In other languages",
-    add: "Add a language",
-    language: (row: number) => `Language ${row}`,
-    language_example: "es, pt-BR",
-    label: (language: string) => `Name in ${language}`,
-    description: (language: string) => `Description in ${language}`,
-    remove: (language: string) => `Remove the name${language ? ` in ${language}` : ""}`,
-    no_language: "Enter the language of this name.",
-    twice: "This language already has a name.",
-  },
-
   layer_jobs: {
     queued: "Waiting in the queue",
     running: "Computing",
     cancel: (name: string) => `Cancel ${name}`,
     dismiss: (name: string) => `Dismiss the note about ${name}`,
-  },
-
-  scale: {
-    title: (size: string) => `Is this object ${size}?`,
-    lead: "Brush widths, areas and scale bars depend on it. The picture and its scale bar show your choice.",
-    unit_unknown: "The file does not name a unit.",
-    given: "Set when the model was imported.",
-    format: "glTF files are in meters.",
-    format_up: "In glTF files +Y is up.",
-    comment: (comment: string) => `From a comment in the file: “${comment}”.`,
-    comment_up: (comment: string) => `From a comment in the file: “${comment}”.`,
-    coordinates: "These are map coordinates: meters, with +Z up.",
-    size: (unit: string) =>
-      `The file does not name a unit. Guessed from the size: probably ${unit}.`,
-    size_unsure: "The file does not name a unit, and the size fits more than one. Please choose.",
-    shape: (up: string) =>
-      `The file does not name a direction. Guessed from the shape: probably ${up}.`,
-    shape_unsure: (up: string) =>
-      `The file does not name a direction, and the shape does not help: ${up} is only a guess. Please choose.`,
-    until_then: (unit: string, up: string) =>
-      `“Decide later” keeps ${unit} and ${up} up, marked as not confirmed. You are asked again when you open the model next time.`,
-    unit: "Unit of the file",
-    mm: "millimeters",
-    cm: "centimeters",
-    m: "meters",
-    up: "Up direction",
-    yes: "Yes, this is right",
-    later: "Decide later",
-    saved: "Size and up direction are confirmed.",
-    changed: "Somebody else has changed this model. The new values are shown. Check them again.",
   },
 
   view: {
@@ -2094,13 +1689,6 @@ export const texts = {
     saved: (name: string) => `Tour “${name}” saved.`,
   },
 
-  ordered_choice: {
-    up: (name: string) => `Move ${name} up`,
-    down: (name: string) => `Move ${name} down`,
-    remove: (name: string) => `Remove ${name}`,
-    gone: (value: string) => `${value} (deleted)`,
-  },
-
   kiosks: {
     open: "Kiosks…",
     of_tour: "Kiosk links…",
@@ -2159,68 +1747,6 @@ export const texts = {
     position: "Position",
     picked: (value: string, layer: string) => `The brush now paints ${value} in “${layer}”.`,
     picked_nothing: (layer: string) => `“${layer}” is not painted here.`,
-  },
-
-  statistics: {
-    copy: "Copy",
-    copied: "Copied. Paste it into a text or a spreadsheet.",
-    not_copied: "The browser blocked copying.",
-    save: { csv: "Save as CSV", xlsx: "Save as XLSX (Excel)" },
-    class: "Class",
-    area: "Area",
-    share: "Share of the surface",
-    sum: "Total",
-    from: "From",
-    to: "To",
-    title: (name: string) => `Areas of “${name}”`,
-    of_surface: (share: string) => `${share} of the surface`,
-    nothing: "Nothing is painted in this layer yet.",
-    mean: "Mean",
-    min: "Minimum",
-    max: "Maximum",
-    std: "Standard deviation",
-    refresh: "Refresh",
-    spread: "Area by value",
-    range_from: "Colors from",
-    range_to: "Colors to",
-    range: (from: string, to: string) => `Colors range from ${from} to ${to}, for everyone.`,
-  },
-
-  cross_table: {
-    title: "Overlap with another layer",
-    other: "Other layer",
-    choose: "Choose a layer",
-    no_other: "The model has no other layer of classes or records.",
-    of: (layer: string, other: string) => `Overlap of “${layer}” and “${other}”`,
-    nothing: (layer: string) => `not in ${layer}`,
-    empty: "Nothing is painted in either layer.",
-    sum: "Total",
-    cut: (n: number) =>
-      `Showing the first ${formatCount(n)} rows and columns. Copies and files contain all.`,
-  },
-
-  column_filter: {
-    title: (column: string) => `Filter by ${column}`,
-    open: (column: string) => `Filter by ${column}`,
-    open_on: (column: string) => `Filter by ${column} (active)`,
-    show: "Show records",
-    kinds: {
-      one_of: "with one of these values",
-      range: "in a range",
-      contains: "with a text that contains",
-      filled: "with any value",
-      empty: "without a value",
-    },
-    remove: "Remove",
-    apply: "Filter",
-    search: "Search values",
-    no_value: "without a value",
-    more: (n: number) => `${formatCount(n)} more values. Use the search.`,
-    counted: (n: number, all: number) =>
-      `Counts are from the first ${formatCount(n)} of ${formatCount(all)} records.`,
-    from: "From",
-    to: "To",
-    contains: "Text",
   },
 
   help: {

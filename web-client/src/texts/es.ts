@@ -10,12 +10,8 @@
 //   roughness rugosidad · hatch rayado · orthophoto ortofoto · site (of a server) servidor · invitation invitación
 
 import { formatCount } from "../core/locale";
-import type { Texts } from "./shape";
-import { count as countOf, plural } from "./count";
-
-/** Whole millions take "de": "1.000.000 de capas". */
-const count = (n: number, one: string, other: string): string =>
-  countOf(n, one, other, `de ${other}`);
+import type { FirstTexts } from "./shape";
+import { countInSpanish as count, plural } from "./count";
 
 const whatChanged = (created: number, changed: number, deleted: number): string =>
   (
@@ -186,108 +182,6 @@ export const texts = {
     button: "Copiar",
     copied: "Copiado",
     by_hand: "Pulse Ctrl + C",
-  },
-
-  site_people: {
-    parts: "Mostrar",
-    people: "Personas",
-    title: "Personas de este servidor",
-    filter: "Buscar personas",
-    filter_hint: "Nombre, rol o grupo",
-    count: (n) => count(n, "persona", "personas"),
-    count_of: (n, all) => `${formatCount(n)} de ${count(all, "persona", "personas")}`,
-    none_found: "No se han encontrado personas.",
-    user: "Nombre de usuario",
-    full_name: "Nombre completo",
-    role: "Rol",
-    role_of: (name) => `Rol de ${name}`,
-    state: "Estado",
-    states: { invited: "pendiente", active: "activa", disabled: "desactivada" },
-    no_password: "sin contraseña",
-    no_password_hint: "Inicia sesión con el enlace que muestra el servidor",
-    state_hints: {
-      invited: "Todavía no ha establecido una contraseña",
-      active: "Puede iniciar sesión",
-      disabled: "No puede iniciar sesión",
-    },
-    last_seen: "Última conexión",
-    never: "nunca",
-    you: "usted",
-    options: (name) => `Opciones de ${name}`,
-    invite: "Invitar a alguien",
-    invite_lead: "Obtendrá un enlace para enviarlo. La persona lo abre y establece una contraseña.",
-    invite_user: "Nombre de usuario",
-    invite_user_hint: "ada",
-    user_missing: "Introduzca un nombre de usuario.",
-    user_wrong:
-      "Use letras sin acentos, cifras y . _ - @. Empiece por una letra o una cifra. Como máximo, 64 caracteres.",
-    invite_button: "Crear enlace",
-    link: (name) => `Enlace para ${name}`,
-    link_lead: (until) =>
-      `Envíelo solo a esa persona: quien tenga el enlace puede establecer la contraseña. Solo se muestra ahora y sirve una sola vez. Caducidad: ${until}.`,
-    link_done: "Listo",
-    new_link: "Nuevo enlace…",
-    new_link_title: (name) => `¿Crear un enlace nuevo para ${name}?`,
-    new_link_lead:
-      "Con el enlace podrá establecer una contraseña nueva. Los enlaces anteriores dejan de servir. La contraseña actual sirve hasta entonces.",
-    new_link_button: "Crear enlace",
-    disable: "Desactivar…",
-    disable_title: (name) => `¿Desactivar la cuenta de ${name}?`,
-    disable_lead:
-      "Se cierran todas sus sesiones y sus tokens dejan de funcionar. No podrá iniciar sesión hasta que la cuenta se vuelva a activar.",
-    disable_button: "Desactivar",
-    enable: "Activar",
-    projects: "Roles en proyectos…",
-    delete: "Eliminar…",
-    delete_title: (name) => `¿Eliminar la cuenta de ${name}?`,
-    delete_lead:
-      "Se cierra su sesión y no podrá volver. Su trabajo permanece en el historial con un nombre anónimo. Esta acción no se puede deshacer.",
-    role_changed: (role) => `El rol es ahora «${role}».`,
-    disabled: "Cuenta desactivada.",
-    enabled: "Cuenta activada.",
-  },
-
-  groups: {
-    title: "Grupos",
-    lead: "El rol de un grupo se aplica a todas sus personas. Si alguien tiene varios roles, se aplica el más alto.",
-    new_name: "Nuevo grupo",
-    name: "Nombre",
-    name_hint: "Excavación 2026",
-    name_empty: "Introduzca un nombre para el grupo.",
-    make: "Crear grupo",
-    none: "Todavía no hay grupos.",
-    about: (people, projects) =>
-      `${count(people, "persona", "personas")} · ${projects === 0 ? "sin rol en ningún proyecto" : `con un rol en ${count(projects, "proyecto", "proyectos")}`}`,
-    options: (name) => `Opciones del grupo ${name}`,
-    of: (name) => `Grupos de ${name}`,
-    members: "Personas…",
-    members_of: (name) => `Personas de «${name}»`,
-    inside: (n) => `${count(n, "persona", "personas")}. Los cambios se aplican de inmediato.`,
-    find_hint: "Nombre",
-    put_in: "Se ha añadido al grupo.",
-    taken_out: "Se ha quitado del grupo.",
-    rename: "Cambiar nombre…",
-    rename_title: (name) => `Cambiar el nombre de «${name}»`,
-    delete_title: (name) => `¿Eliminar el grupo «${name}»?`,
-    delete_lead: (losing, people) =>
-      (losing === 0
-        ? "Nadie pierde el acceso: sus personas tienen los mismos roles por otras vías."
-        : `${count(losing, "persona", "personas")} de ${formatCount(people)} ${plural(losing, "perderá el acceso o tendrá", "perderán el acceso o tendrán")} un rol inferior.`) +
-      " Se eliminan sus roles en proyectos. Esta acción no se puede deshacer.",
-  },
-
-  project_roles: {
-    title: (name) => `Roles de ${name} en proyectos`,
-    lead: (role) =>
-      `Rol en todos los proyectos: «${role}». En cada proyecto se aplica el rol más alto.`,
-    role_in: (project) => `Rol en ${project}`,
-    none: "Sin rol propio",
-    removed: "Rol quitado.",
-    by_groups: (role, groups) => `Rol a través del grupo: «${role}» (${groups}).`,
-    by_groups_also: (role, groups) => `También «${role}» a través del grupo: ${groups}.`,
-    group_lead: "Todas las personas del grupo tienen al menos este rol en el proyecto.",
-    group_none: "Sin rol",
-    group_removed: "Rol quitado.",
   },
 
   projects: {
@@ -684,72 +578,6 @@ export const texts = {
     gone: (name) => `Se ha eliminado la forma «${name}». El pincel es ahora redondo.`,
   },
 
-  expressions: {
-    computed: (layer) => `Se ha calculado «${layer}».`,
-    names: "Nombres disponibles",
-    holds: (area, share) => `Se cumple en ${area}, ${share} de la superficie.`,
-    known: (area, share) => `Tiene un valor en ${area}, ${share} de la superficie.`,
-    column: (column, layer) => `${column} del registro en ${layer}`,
-    corrections: "Correcciones",
-    use: (by) => `Reemplazar por ${by}`,
-    insert: "Insertar un nombre",
-    search: "Buscar capas, columnas y funciones",
-    no_name: "Ningún nombre contiene este texto.",
-    range: (low, high, unit) => `${low} a ${high}${unit ? ` ${unit}` : ""}`,
-    kinds: { presence: "área de sí o no", classes: "clases", records: "registros" },
-    groups: {
-      layers: "Capas",
-      classes: (layer) => `Clases de ${layer}`,
-      columns: (layer) => `Columnas de los registros de ${layer}`,
-      surface: "Superficie",
-      functions: "Funciones y operadores",
-    },
-    examples: {
-      title: "Ejemplos con las capas de este modelo",
-      take: "Usar este ejemplo",
-      above: (layer, amount) => `donde ${layer} supera ${amount}`,
-      above_outside: (_layer, _amount, area) => `lo mismo, fuera de ${area}`,
-      painted: (layer) => `donde ${layer} está pintada`,
-      class: (name, value) => `donde ${name} es ${value}`,
-      filled: (column, _layer) => `donde ${column} tiene un valor`,
-      difference: (a, b) => `${a} menos ${b}`,
-      twice: (layer) => `${layer} por dos`,
-      upper: "la mitad superior del modelo",
-    },
-    surface: {
-      x: "coordenada global",
-      y: "coordenada global",
-      z: "coordenada global",
-      area: "m² en ese lugar",
-      nx: "de la normal",
-      ny: "de la normal",
-      nz: "de la normal",
-      height: "sobre el punto más bajo",
-      slope: "0° horizontal, 90° vertical",
-      curvature: "positiva: convexa",
-    },
-    functions: [
-      ["valid(", "donde la capa está pintada"],
-      ["if(", "if(condición, número, número)"],
-      ["case when ", "case when … then … else … end"],
-      ["reclass(", "reclass(número, debajo, límite, valor, …)"],
-      ["min(", "el valor menor"],
-      ["max(", "el valor mayor"],
-      ["abs(", "valor absoluto"],
-      ["sqrt(", "raíz cuadrada"],
-      ["round(", "a un número entero"],
-      ["between ", "between 1 and 3"],
-      ["like ", "like 'grieta%'"],
-      ["is null", "sin valor allí"],
-      ["is not null", "con un valor allí"],
-      ["and ", "se cumplen ambas"],
-      ["or ", "se cumple al menos una"],
-      ["not ", "no se cumple"],
-      ["t_before(", "un período antes de otro"],
-      ["t_during(", "un período dentro de otro"],
-    ],
-  },
-
   areas: {
     how: {
       polygon:
@@ -988,67 +816,6 @@ export const texts = {
     no_records: "Cada registro tiene su propio color.",
   },
 
-  layer_dialog: {
-    create_title: "Nueva capa",
-    edit_title: (name) => `Capa «${name}»`,
-    question: "¿Qué documenta?",
-    presence: "Presencia (sí o no)",
-    presence_lead: "Dónde hay algo: grietas, sales, retoques.",
-    classes: "Clases",
-    classes_lead: "Una de varias clases: piezas, materiales, fases.",
-    measurement: "Medición",
-    measurement_lead: "Un número en cada lugar: humedad, profundidad, cambio de color.",
-    records: "Elementos con registros",
-    records_lead:
-      "Elementos individuales, cada uno con su registro: hallazgos, muestras, reparaciones.",
-    table: "Registros de",
-    own_table: "una tabla nueva con el nombre de la capa",
-    table_of_terms: (table, n) => `${table} (${count(n, "término", "términos")})`,
-    table_of_records: (table, n) => `${table} (${records(n)})`,
-    formula: "A partir de una expresión",
-    formula_lead:
-      "Calculada a partir de otras capas, sus registros y la superficie: riesgo = humedad × sal.",
-    formula_hint: "Riesgo",
-    expression: "Expresión: un número o una condición (se pinta donde se cumple)",
-    expression_missing: "Introduzca una expresión.",
-    follows: "Actualizar automáticamente cuando cambien los datos de los que depende",
-    shape: "A partir de la geometría",
-    shape_lead: "Calculada a partir de la malla: curvatura, rugosidad, altura, distancias.",
-    compute: "Calcular capa",
-    name: "Nombre",
-    name_hint: {
-      presence: "Grietas",
-      classes: "Materiales",
-      measurement: "Humedad",
-      records: "Hallazgos",
-    },
-    description: "Descripción",
-    description_hint: "Opcional: cómo se observó y con qué criterios",
-    color: "Color",
-    classes_title: "Clases",
-    class_label: (n) => `Nombre de la clase ${n}`,
-    class_color: (n) => `Color de la clase ${n}`,
-    class_remove: (label) => `Quitar ${label}`,
-    class_add: "Añadir una clase",
-    class_default: (n) => `Clase ${n}`,
-    class_kept: "Al quitar una clase se quita su nombre. Lo pintado se conserva.",
-    unit: "Unidad",
-    unit_hint: "%, mm…",
-    range: "Colores desde",
-    range_to: "hasta",
-    stepped: "Mostrar por intervalos",
-    detail: "Detalle mínimo",
-    detail_hint:
-      "Un detalle más fino ocupa más memoria en el servidor. No se puede cambiar después.",
-    create: "Crear capa",
-    name_missing: "Introduzca un nombre para la capa.",
-    range_wrong: "El segundo número debe ser mayor que el primero.",
-    classes_missing: "Introduzca el nombre de al menos una clase.",
-    too_many: "Una capa puede tener como máximo 255 clases.",
-    changed: "No se ha guardado: otra persona ha cambiado esta capa.",
-    reload: "Mostrar la otra versión",
-  },
-
   shape: {
     kind: "Qué se calcula",
     groups: {
@@ -1208,55 +975,6 @@ export const texts = {
     sending: (n, of) => `Subiendo ${Math.min(n, of)} de ${of}…`,
     sent: (n) => `${plural(n, "Se ha adjuntado", "Se han adjuntado")} ${files(n)} a registros.`,
     add_menu: "Añadir fotos por nombre de archivo…",
-  },
-  measure: {
-    title: "Medir",
-    how: "Haga clic o toque puntos de la superficie. Arrastre para girar, también entre dos puntos. Pulse M para poner un punto en el centro de la vista.",
-    how_on:
-      "Haga clic en el último punto o pulse Intro para terminar. Retroceso quita el último punto, Esc lo borra todo.",
-    how_anew: "Línea terminada. Haga clic o toque para empezar otra.",
-    most: (n) => `Una línea puede tener como máximo ${formatCount(n)} puntos.`,
-    set_in_middle: "Punto en el centro",
-    end: "Terminar",
-    take_back: "Quitar el último",
-    backspace: "Retroceso",
-    clear: "Borrar",
-    places: (n) => count(n, "punto", "puntos"),
-    straight: "En línea recta",
-    ends: "Del primer al último punto, en línea recta",
-    along: "Por la superficie",
-    along_parts: (n) => `Por la superficie, en ${formatCount(n)} partes`,
-    no_way:
-      "Las líneas rectas atraviesan el objeto, así que no hay un camino por la superficie más próxima. Gire el modelo hasta ver todos los puntos y elija «Superficie visible».",
-    rise: (axis) => `Diferencia de altura (${axis})`,
-    area: "Área plana del polígono",
-    perimeter: "Perímetro del polígono",
-    area_hint: "Área del polígono plano que pasa por los puntos, no de la superficie que encierra.",
-    off_plane: (length) =>
-      `Los puntos se apartan hasta ${length} del plano. El área es la de su proyección.`,
-    gaps: (n) =>
-      `La línea sale de la superficie ${n === 1 ? "una vez" : `${formatCount(n)} veces`}. Los huecos no se cuentan.`,
-    busy: "…",
-    unconfirmed:
-      "La unidad del modelo no está confirmada: las longitudes y las áreas pueden ser incorrectas.",
-    profile: "Perfil",
-    plot: "Posición en el perfil",
-    plot_hint: "Señale la curva o use las flechas para marcar la posición en el modelo.",
-    none_pointed: "ninguna",
-    sample: (along, name, value) => `A ${along} · ${name} ${value}`,
-    no_value: "sin valor",
-    shows: "Mostrar",
-    height: (axis) => `Altura (${axis})`,
-    equal: "Misma escala (1:1)",
-    way: "La línea sigue",
-    ways: { seen: "Superficie visible", nearest: "Superficie más próxima" },
-    way_hints: {
-      seen: "La superficie visible bajo las líneas rectas. Elíjala otra vez para usar la vista actual.",
-      nearest:
-        "La superficie más próxima a las líneas rectas. Sirve donde la superficie es casi plana, y se usa cuando no se ven todos los puntos.",
-    },
-    save_csv: "Guardar como CSV",
-    save_svg: "Guardar como SVG",
   },
 
   marks: {
@@ -1447,29 +1165,6 @@ export const texts = {
     restored_hint: "Puede deshacerlo.",
     saving_first: "Sus últimos cambios aún se están guardando. Inténtelo de nuevo en un momento.",
     paint_refused: "Está viendo un estado anterior. Vuelva a ahora para pintar.",
-  },
-
-  snapshots: {
-    title: "Instantáneas",
-    name_now: "Dar nombre al estado de ahora…",
-    name_then: "Dar nombre a este estado…",
-    none: "Ningún estado de este modelo tiene nombre todavía.",
-    failed: "No se han podido cargar las instantáneas.",
-    compare: "Comparar con ahora",
-    rename: "Cambiar el nombre…",
-    new_title: "Dar nombre a un estado",
-    new_lead:
-      "Todos vuelven a encontrar el estado por su nombre. Las ediciones posteriores no lo cambian.",
-    rename_title: "Cambiar el nombre de la instantánea",
-    save: "Guardar el nombre",
-    fields: {
-      name: "Nombre",
-      name_hint: "Antes de la limpieza, mayo de 2026",
-      name_empty: "Introduzca un nombre.",
-      text: "Nota",
-    },
-    delete_title: (name) => `¿Eliminar la instantánea «${name}»?`,
-    delete_lead: "Se elimina para todos. Las ediciones del modelo se conservan.",
   },
 
   activity: {
@@ -1706,28 +1401,6 @@ export const texts = {
       `${records(created)} ${plural(created, "creado", "creados")}, ${formatCount(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
   },
 
-  reports: {
-    created: "Nuevos",
-    changed: "Cambiados",
-    unchanged: "Sin cambios",
-    left_out: (n) =>
-      `${count(n, "etiqueta o término genérico adicional no se puede guardar y se omitirá", "etiquetas o términos genéricos adicionales no se pueden guardar y se omitirán")}.`,
-    good: "El archivo es válido. Todavía no se ha importado nada.",
-    same: "La tabla ya contiene todo esto.",
-    wrong: (n) =>
-      `${plural(n, "Una fila tiene un error", `${formatCount(n)} filas tienen errores`)}, así que no se ha importado nada. Corrija el archivo e inténtelo de nuevo.`,
-    line: "Línea",
-    term: "Término",
-    column: "Columna",
-    what: "Problema",
-  },
-
-  file_choice: {
-    choose: "Elegir un archivo",
-    choose_several: "Elegir archivos",
-    drop: "o suéltelo aquí",
-    drop_several: "o suéltelos aquí",
-  },
   terms_dialog: {
     open: "Importar una lista de términos…",
     open_more: "Importar términos…",
@@ -1752,96 +1425,11 @@ export const texts = {
     no_layer: (list) => `Se ha creado «${list}», pero sin capa`,
   },
 
-  column_dialog: {
-    create_title: (table) => `Nueva columna de ${table}`,
-    edit_title: (column) => `Columna «${column}»`,
-    create: "Crear columna",
-    name: "Nombre",
-    name_missing: "Introduzca un nombre para la columna.",
-    kind: "Tipo",
-    kinds: {
-      text: "Texto",
-      integer: "Números enteros",
-      numeric: "Números",
-      boolean: "Sí o no",
-      date: "Fecha",
-      timestamp: "Fecha y hora",
-      period: "Período (EDTF: 1560~, 1560/1580)",
-      enumeration: "Una de varias opciones",
-      url: "Dirección (URL)",
-      term: "Un registro de una tabla, como un término",
-      relation: "Varios registros de una tabla: cubre, corta, igual a",
-      picture: "Imágenes",
-      document: "Documentos",
-      line: "Líneas en la superficie, con su longitud",
-      point: "Puntos en la superficie",
-    },
-    retype_hint:
-      "Los valores que no encajan en el nuevo tipo se quitan. Verá cuántos son y podrá deshacerlo.",
-    unit: "Unidad",
-    minimum: "Mínimo",
-    maximum: "Máximo",
-    choices: "Opciones, una por línea",
-    target: "Registros de",
-    required: "Obligatorio",
-    unique: "Único",
-    comment: "Texto de ayuda",
-    comment_hint: "Qué va en esta columna; se muestra junto al campo",
-    lost: (lost, converted) =>
-      `${count(lost, "valor", "valores")} no ${plural(lost, "encajaba en el nuevo tipo y se ha quitado", "encajaban en el nuevo tipo y se han quitado")}. ${plural(converted, "Se ha convertido", "Se han convertido")} ${count(converted, "valor", "valores")}.`,
-    lost_of: (keys) => `Registros ${keys}`,
-    take_back: "Deshacer",
-    keep: "Conservar el nuevo tipo",
-  },
-
-  labels: {
-    title: "En otros idiomas",
-    add: "Añadir un idioma",
-    language: (row) => `Idioma ${row}`,
-    language_example: "es, pt-BR",
-    label: (language) => `Nombre en ${language}`,
-    description: (language) => `Descripción en ${language}`,
-    remove: (language) => `Quitar el nombre${language ? ` en ${language}` : ""}`,
-    no_language: "Introduzca el idioma de este nombre.",
-    twice: "Este idioma ya tiene un nombre.",
-  },
-
   layer_jobs: {
     queued: "En cola",
     running: "Calculando",
     cancel: (name) => `Cancelar ${name}`,
     dismiss: (name) => `Descartar el aviso sobre ${name}`,
-  },
-
-  scale: {
-    title: (size) => `¿Mide este objeto ${size}?`,
-    lead: "De ello dependen los anchos del pincel, las áreas y las escalas gráficas. La imagen y su escala gráfica muestran lo que elija.",
-    unit_unknown: "El archivo no indica la unidad.",
-    given: "Definido al importar el modelo.",
-    format: "Los archivos glTF están en metros.",
-    format_up: "En los archivos glTF, +Y apunta hacia arriba.",
-    comment: (comment) => `Según un comentario del archivo: «${comment}».`,
-    comment_up: (comment) => `Según un comentario del archivo: «${comment}».`,
-    coordinates: "Son coordenadas de un mapa: en metros, con +Z hacia arriba.",
-    size: (unit) =>
-      `El archivo no indica la unidad. Estimación según el tamaño: probablemente ${unit}.`,
-    size_unsure: "El archivo no indica la unidad, y el tamaño encaja con más de una. Elija una.",
-    shape: (up) =>
-      `El archivo no indica el eje vertical. Estimación según la forma: probablemente ${up}.`,
-    shape_unsure: (up) =>
-      `El archivo no indica el eje vertical, y la forma no permite deducirlo: ${up} es solo una suposición. Elija uno.`,
-    until_then: (unit, up) =>
-      `«Decidir después» mantiene ${unit} y ${up} hacia arriba, sin confirmar. Se le volverá a preguntar la próxima vez que abra el modelo.`,
-    unit: "Unidad del archivo",
-    mm: "milímetros",
-    cm: "centímetros",
-    m: "metros",
-    up: "Eje vertical",
-    yes: "Sí, es correcto",
-    later: "Decidir después",
-    saved: "El tamaño y el eje vertical están confirmados.",
-    changed:
-      "Otra persona ha cambiado este modelo. Se muestran los valores nuevos. Compruébelos otra vez.",
   },
 
   view: {
@@ -1893,7 +1481,7 @@ export const texts = {
       box: "Mostrar solo el interior de una caja",
     },
     section_of_view: (planes) =>
-      `Sección de la vista guardada, con ${countOf(planes, "plano", "planos")}`,
+      `Sección de la vista guardada, con ${count(planes, "plano", "planos")}`,
     section_remove: "Desactivar",
     cut_area: (area) =>
       area === null
@@ -2146,13 +1734,6 @@ export const texts = {
     saved: (name) => `Se ha guardado el recorrido «${name}».`,
   },
 
-  ordered_choice: {
-    up: (name) => `Subir ${name}`,
-    down: (name) => `Bajar ${name}`,
-    remove: (name) => `Quitar ${name}`,
-    gone: (value) => `${value} (ya no existe)`,
-  },
-
   kiosks: {
     open: "Quioscos…",
     of_tour: "Enlaces para quioscos…",
@@ -2212,68 +1793,6 @@ export const texts = {
     position: "Posición",
     picked: (value, layer) => `El pincel pinta ahora ${value} en «${layer}».`,
     picked_nothing: (layer) => `«${layer}» no está pintada aquí.`,
-  },
-
-  statistics: {
-    copy: "Copiar",
-    copied: "Copiado. Péguelo en un texto o en una hoja de cálculo.",
-    not_copied: "El navegador ha bloqueado la copia.",
-    save: { csv: "Guardar como CSV", xlsx: "Guardar como XLSX (Excel)" },
-    class: "Clase",
-    area: "Área",
-    share: "Parte de la superficie",
-    sum: "Total",
-    from: "Desde",
-    to: "Hasta",
-    title: (name) => `Áreas de «${name}»`,
-    of_surface: (share) => `${share} de la superficie`,
-    nothing: "Todavía no hay nada pintado en esta capa.",
-    mean: "Media",
-    min: "Mínimo",
-    max: "Máximo",
-    std: "Desviación estándar",
-    refresh: "Actualizar",
-    spread: "Área por valor",
-    range_from: "Colores desde",
-    range_to: "Colores hasta",
-    range: (from, to) => `Los colores van de ${from} a ${to}, para todos.`,
-  },
-
-  cross_table: {
-    title: "Solapamiento con otra capa",
-    other: "Otra capa",
-    choose: "Elija una capa",
-    no_other: "El modelo no tiene otra capa de clases o de registros.",
-    of: (layer, other) => `Solapamiento de «${layer}» y «${other}»`,
-    nothing: (layer) => `fuera de ${layer}`,
-    empty: "No hay nada pintado en ninguna de las dos capas.",
-    sum: "Total",
-    cut: (n) =>
-      `Se muestran las primeras ${formatCount(n)} filas y columnas. Las copias y los archivos las contienen todas.`,
-  },
-
-  column_filter: {
-    title: (column) => `Filtrar por ${column}`,
-    open: (column) => `Filtrar por ${column}`,
-    open_on: (column) => `Filtrar por ${column} (activo)`,
-    show: "Mostrar registros",
-    kinds: {
-      one_of: "con uno de estos valores",
-      range: "en un intervalo",
-      contains: "con un texto que contiene",
-      filled: "con algún valor",
-      empty: "sin valor",
-    },
-    remove: "Quitar",
-    apply: "Filtrar",
-    search: "Buscar valores",
-    no_value: "sin valor",
-    more: (n) => `${formatCount(n)} valores más. Use la búsqueda.`,
-    counted: (n, all) =>
-      `Recuento de los primeros ${formatCount(n)} de ${formatCount(all)} registros.`,
-    from: "Desde",
-    to: "Hasta",
-    contains: "Texto",
   },
 
   help: {
@@ -2390,4 +1909,4 @@ export const texts = {
     unexpected_detail: "Recargue la página. Los cambios guardados están a salvo en el servidor.",
     picture: "No se ha podido dibujar una imagen del servidor",
   },
-} satisfies Texts;
+} satisfies FirstTexts;

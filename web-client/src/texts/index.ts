@@ -6,7 +6,7 @@
 
 import { setLocale, type PageLanguage } from "../core/locale";
 import { sayOwnProblemsIn } from "../core/problems";
-import type { HelpTexts, Texts } from "./shape";
+import type { FirstTexts, HelpTexts, LaterTexts, Texts } from "./shape";
 
 /**
  * The number of arguments of each text. TypeScript allows a function to omit arguments; a
@@ -18,15 +18,29 @@ type Arity<T> = T extends (...args: infer Arguments) => unknown
     ? 0
     : { readonly [Key in keyof T]: Arity<T[Key]> };
 
-type Translation<Module extends { texts: Texts }> =
-  Arity<Module["texts"]> extends Arity<Texts> ? () => Promise<Module> : never;
+type Translation<Translated, English> =
+  Arity<Translated> extends Arity<English> ? () => Promise<Translated> : never;
 
-const loadDe: Translation<typeof import("./de")> = () => import("./de");
-const loadEs: Translation<typeof import("./es")> = () => import("./es");
-const loads: Record<PageLanguage, () => Promise<{ texts: Texts }>> = {
+interface First {
+  texts: FirstTexts;
+}
+const loadDe: Translation<typeof import("./de"), First> = () => import("./de");
+const loadEs: Translation<typeof import("./es"), First> = () => import("./es");
+const loads: Record<PageLanguage, () => Promise<First>> = {
   en: () => import("./en"),
   de: loadDe,
   es: loadEs,
+};
+
+interface Later {
+  laterTexts: LaterTexts;
+}
+const loadLaterDe: Translation<typeof import("./later-de"), Later> = () => import("./later-de");
+const loadLaterEs: Translation<typeof import("./later-es"), Later> = () => import("./later-es");
+const laterLoads: Record<PageLanguage, () => Promise<Later>> = {
+  en: () => import("./later-en"),
+  de: loadLaterDe,
+  es: loadLaterEs,
 };
 
 const helpLoads: Record<PageLanguage, () => Promise<{ help: HelpTexts }>> = {
@@ -39,7 +53,11 @@ let loadedLanguage: PageLanguage = "en";
 /** The rows of the help, which are not loaded with the page. */
 export const loadHelp = async (): Promise<HelpTexts> => (await helpLoads[loadedLanguage]()).help;
 
-/** Set by loadTexts(), which runs before the import of all modules that show texts. */
+/**
+ * Set by loadTexts(), which runs before the import of all modules that show texts. Those of
+ * `LaterTexts` are missing until loadLaterTexts(), which runs before the import of the parts that
+ * are loaded later: `later-texts.test.ts` checks that no other module reads them.
+ */
 export let texts: Texts;
 
 /** Loads the texts of one language. `chosen`: by the user, not by the browser's languages. */
@@ -50,6 +68,11 @@ export async function loadTexts(
 ): Promise<void> {
   setLocale(language, chosen, browser);
   loadedLanguage = language;
-  texts = (await loads[language]()).texts;
+  texts = (await loads[language]()).texts as Texts;
   sayOwnProblemsIn(texts.calls);
+}
+
+export async function loadLaterTexts(): Promise<void> {
+  const { laterTexts } = await laterLoads[loadedLanguage]();
+  if (!("measure" in texts)) texts = { ...(texts as FirstTexts), ...laterTexts };
 }

@@ -14,4 +14,10 @@ type Shape<T> = T extends string
 
 export type HelpTexts = Shape<typeof import("./help-en").help>;
 
-export type Texts = Shape<typeof import("./en").texts>;
+/** Of all parts of the page that are shown first. */
+export type FirstTexts = Shape<typeof import("./en").texts>;
+
+/** Of the parts of the page that are loaded later. */
+export type LaterTexts = Shape<typeof import("./later-en").laterTexts>;
+
+export type Texts = FirstTexts & LaterTexts;

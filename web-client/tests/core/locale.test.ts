@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it } from "vitest";
 
 import { toldDate, toldTime } from "../../src/domain/times";
-import { loadTexts, texts } from "../../src/texts";
+import { loadLaterTexts, loadTexts, texts } from "../../src/texts";
 import type { Texts } from "../../src/texts/shape";
 import { cellText, labelOf, parseCell } from "../../src/domain/cells";
 import {
@@ -18,7 +18,10 @@ import {
 } from "../../src/core/locale";
 import { formatArea, formatLength, formatNumber } from "../../src/domain/measure";
 
-afterEach(() => loadTexts("en", true, []));
+afterEach(async () => {
+  await loadTexts("en", true, []);
+  await loadLaterTexts();
+});
 
 describe("the language of the page", () => {
   it("is the one that was chosen, else the first of the browser's that there is, else English", () => {
@@ -141,6 +144,7 @@ const takesWords = new Set([
 
 async function inLanguage(language: (typeof kPageLanguages)[number]): Promise<Map<string, string>> {
   await loadTexts(language, true, []);
+  await loadLaterTexts();
   return new Map(leaves(texts satisfies Texts));
 }
 

@@ -7,6 +7,7 @@ export function texts_of(language) {
   const contents = `
     import { setLocale } from "./core/locale";
     export { texts } from "./texts/${language}";
+    export { laterTexts } from "./texts/later-${language}";
     export { help } from "./texts/help-${language}";
     setLocale("${language}", true, []);`;
   const stdin = { contents, resolveDir: join(kRoot, "web-client", "src"), loader: "ts" };
@@ -19,6 +20,6 @@ export function texts_of(language) {
   }).outputFiles;
   const made = { exports: {} };
   new Function("module", "exports", text)(made, made.exports);
-  const { texts, help } = made.exports;
-  return { ...texts, help: { ...texts.help, ...help } };
+  const { texts, laterTexts, help } = made.exports;
+  return { ...texts, ...laterTexts, help: { ...texts.help, ...help } };
 }

@@ -30,7 +30,7 @@ export class StrataSnapshotList extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "past");
+    followSession(this, "past", "saving");
   }
 
   static override styles = [

@@ -33,7 +33,7 @@ export class StrataStepList extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "layers", "past");
+    followSession(this, "layers", "past", "saving", "tables");
   }
 
   static override styles = [
