@@ -2,6 +2,7 @@
 and refusals."""
 import pytest
 from support.cameras import camera_from
+from support.live_client import LiveClient
 from support.meshes import folded_grid
 
 M = "/models/sheet"
@@ -95,6 +96,18 @@ def test_a_state_gets_a_name_and_a_note(ask, painted, story):
     tag = {"If-None-Match": ask("vera", "GET", at).headers["ETag"]}
     again = ask("vera", "GET", at, headers=tag)
     assert again.status == 304, again
+
+
+def test_open_pages_are_told(server, ask):
+    with LiveClient(server, "sheet") as live:
+        live.hello()
+        made = ask("ada", "POST", ALL, {"name": "Told"}).json()
+        told = {"op": "snapshot", "snapshot": made["id"], "user": "ada"}
+        assert live.receive_until("snapshot") == {**told, "event": "created"}
+        ask("ada", "PATCH", ALL + "/told", {"text": "To all"})
+        assert live.receive_until("snapshot") == {**told, "event": "changed"}
+        ask("carl", "DELETE", ALL + "/told")
+        assert live.receive_until("snapshot") == {**told, "event": "deleted", "user": "carl"}
 
 
 def test_authors_and_curators_rename_and_delete(ask, story):

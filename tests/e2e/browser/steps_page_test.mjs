@@ -158,7 +158,8 @@ test("others see the snapshot, but only its author changes it", async () => {
   const dialog = naming(ada);
   await dialog.getByLabel(snapshots.fields.name).fill("Before all");
   await dialog.getByRole("button", { name: words.save, exact: true }).click();
-  await bar(ada).locator("[data-snapshot]").getByText("Before all").waitFor();
+  for (const who of [ada, ben])
+    await bar(who).locator("[data-snapshot]").getByText("Before all").waitFor();
 });
 
 test("what changed since a state is lit on the surface", async () => {
@@ -188,7 +189,7 @@ test("a snapshot is deleted after a question", async () => {
   await button(ada, words.layers.options("Before all")).click();
   await bar(ada).getByRole("menuitem", { name: words.layers.delete }).click();
   await ada.page.getByRole("button", { name: words.delete, exact: true }).click();
-  await bar(ada).getByText(snapshots.none).waitFor();
+  for (const who of [ada, ben]) await bar(who).getByText(snapshots.none).waitFor();
   assert.equal((await server.json("GET", `/models/${model.id}/snapshots`)).total, 0);
 });
 

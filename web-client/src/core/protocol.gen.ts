@@ -1070,6 +1070,15 @@ export interface ViewEvent {
   user?: string;
 }
 
+/** A snapshot was created, changed or deleted. For snapshots of the model. Clients that list snapshots read the snapshot again. */
+export interface SnapshotEvent {
+  op: "snapshot";
+  event: "created" | "changed" | "deleted";
+  /** Id of the snapshot. */
+  snapshot: number;
+  user?: string;
+}
+
 /** Place where a pointer touches the surface. World coordinates. */
 export interface PresencePointer {
   position: Point3;
@@ -3235,6 +3244,7 @@ export type ServerMessage =
   | TableEvent
   | CommentEvent
   | ViewEvent
+  | SnapshotEvent
   | Presence
   | Picked
   | ProblemMessage;
@@ -3255,6 +3265,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "table",
   "comment",
   "view",
+  "snapshot",
   "presence",
   "picked",
   "problem",

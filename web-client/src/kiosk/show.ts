@@ -248,6 +248,7 @@ export class KioskShow {
           ),
         saving: nothing,
         applied: nothing,
+        snapshot: nothing,
         saved: nothing,
         takenUp: nothing,
         tool: nothing,

@@ -34,6 +34,7 @@ import {
   type RecordEvent,
   type Saved,
   type ServerMessage,
+  type SnapshotEvent,
   type TableEvent,
   type ToolEvent,
   type ViewEvent,
@@ -64,6 +65,7 @@ export interface ConnectionCallbacks {
   editors(message: RecordEditors): void;
   comment(message: CommentEvent): void;
   view(message: ViewEvent): void;
+  snapshot(message: SnapshotEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
   /** A refusal. A permanently refused change is not waiting anymore. */
@@ -352,6 +354,8 @@ export class Connection {
         return this._callbacks.comment(message);
       case "view":
         return this._callbacks.view(message);
+      case "snapshot":
+        return this._callbacks.snapshot(message);
       case "presence":
         return this._callbacks.presence(message);
       case "picked":

@@ -54,6 +54,10 @@ export function eventsOfParts(session: ModelSession): EventsOfParts {
       session.activity.outdated(event.user);
     },
     view: (event) => session.views.onEvent(event),
+    snapshot: (event) => {
+      session.past.onSnapshot();
+      session.activity.outdated(event.user);
+    },
     editors: (message) => session.editors.onMessage(message),
     presence: ({ users }) => {
       session.together.receive(users);

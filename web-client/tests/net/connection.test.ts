@@ -55,6 +55,7 @@ beforeEach(() => {
     editors: vi.fn(),
     comment: vi.fn(),
     view: vi.fn(),
+    snapshot: vi.fn(),
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),

@@ -473,6 +473,24 @@ void read(const nlohmann::json& json, ViewEventEvent& value) {
 
 nlohmann::json to_json(const ViewEventEvent& value) { return name(value); }
 
+std::string_view name(SnapshotEventEvent value) {
+  switch (value) {
+    case SnapshotEventEvent::created: return "created";
+    case SnapshotEventEvent::changed: return "changed";
+    case SnapshotEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, SnapshotEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "created") value = SnapshotEventEvent::created;
+  if (text == "changed") value = SnapshotEventEvent::changed;
+  if (text == "deleted") value = SnapshotEventEvent::deleted;
+}
+
+nlohmann::json to_json(const SnapshotEventEvent& value) { return name(value); }
+
 std::string_view name(PersonState value) {
   switch (value) {
     case PersonState::invited: return "invited";
@@ -1884,6 +1902,21 @@ nlohmann::json to_json(const ViewEvent& value) {
   json["op"] = "view";
   write_member(json, "event", value.event);
   write_member(json, "view", value.view);
+  write_optional_member(json, "user", value.user);
+  return json;
+}
+
+void read(const nlohmann::json& json, SnapshotEvent& value) {
+  read_member(json, "event", value.event);
+  read_member(json, "snapshot", value.snapshot);
+  read_optional_member(json, "user", value.user);
+}
+
+nlohmann::json to_json(const SnapshotEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "snapshot";
+  write_member(json, "event", value.event);
+  write_member(json, "snapshot", value.snapshot);
   write_optional_member(json, "user", value.user);
   return json;
 }
@@ -3886,6 +3919,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == TableEvent::kOp) return Schema::TableEvent;
   if (op == CommentEvent::kOp) return Schema::CommentEvent;
   if (op == ViewEvent::kOp) return Schema::ViewEvent;
+  if (op == SnapshotEvent::kOp) return Schema::SnapshotEvent;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
   if (op == ProblemMessage::kOp) return Schema::ProblemMessage;
@@ -3944,6 +3978,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == ViewEvent::kOp) {
     read(json, value.emplace<ViewEvent>());
+    return;
+  }
+  if (op == SnapshotEvent::kOp) {
+    read(json, value.emplace<SnapshotEvent>());
     return;
   }
   if (op == Presence::kOp) {

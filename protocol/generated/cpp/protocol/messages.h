@@ -147,6 +147,7 @@ enum class Schema {
   TableEvent,
   CommentEvent,
   ViewEvent,
+  SnapshotEvent,
   PresencePointer,
   PresenceUser,
   Presence,
@@ -350,7 +351,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 324;
+constexpr int kSchemaCount = 325;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1367,6 +1368,24 @@ void read(const nlohmann::json& json, ViewEvent& value);
 nlohmann::json to_json(const ViewEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<ViewEvent> = Schema::ViewEvent;
+
+enum class SnapshotEventEvent { created, changed, deleted };
+std::string_view name(SnapshotEventEvent value);
+void read(const nlohmann::json& json, SnapshotEventEvent& value);
+nlohmann::json to_json(const SnapshotEventEvent& value);
+
+// A snapshot was created, changed or deleted. For snapshots of the model. Clients that list snapshots read the snapshot again.
+struct SnapshotEvent {
+  static constexpr std::string_view kOp = "snapshot";
+  SnapshotEventEvent event{};
+  std::int64_t snapshot = 0;  // Id of the snapshot.
+  std::optional<std::string> user;
+  bool operator==(const SnapshotEvent&) const = default;
+};
+void read(const nlohmann::json& json, SnapshotEvent& value);
+nlohmann::json to_json(const SnapshotEvent& value);
+template <>
+inline constexpr Schema kSchemaOf<SnapshotEvent> = Schema::SnapshotEvent;
 
 // Place where a pointer touches the surface. World coordinates.
 struct PresencePointer {
@@ -3033,7 +3052,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, SnapshotEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

@@ -127,6 +127,7 @@ std::string_view name(Schema schema) {
     case Schema::TableEvent: return "TableEvent";
     case Schema::CommentEvent: return "CommentEvent";
     case Schema::ViewEvent: return "ViewEvent";
+    case Schema::SnapshotEvent: return "SnapshotEvent";
     case Schema::PresencePointer: return "PresencePointer";
     case Schema::PresenceUser: return "PresenceUser";
     case Schema::Presence: return "Presence";
@@ -457,6 +458,7 @@ std::string_view schema_bundle() {
 "TableEvent":{"type":"object","additionalProperties":false,"required":["op","event","table_id"],"properties":{"op":{"const":"table"},"event":{"type":"string","enum":["created","changed","deleted"]},"table_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"table":{"$ref":"#/definitions/Table"},"user":{"type":"string","maxLength":200}}},
 "CommentEvent":{"type":"object","additionalProperties":false,"required":["op","event","comment_id"],"properties":{"op":{"const":"comment"},"event":{"type":"string","enum":["created","changed","deleted"]},"comment_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"comment":{"$ref":"#/definitions/Comment"},"user":{"type":"string","maxLength":200}}},
 "ViewEvent":{"type":"object","additionalProperties":false,"required":["op","event","view"],"properties":{"op":{"const":"view"},"event":{"type":"string","enum":["created","changed","deleted"]},"view":{"type":"integer","minimum":1,"maximum":9007199254740991},"user":{"type":"string","maxLength":200}}},
+"SnapshotEvent":{"type":"object","additionalProperties":false,"required":["op","event","snapshot"],"properties":{"op":{"const":"snapshot"},"event":{"type":"string","enum":["created","changed","deleted"]},"snapshot":{"type":"integer","minimum":1,"maximum":9007199254740991},"user":{"type":"string","maxLength":200}}},
 "PresencePointer":{"type":"object","additionalProperties":false,"required":["position"],"properties":{"position":{"$ref":"#/definitions/Point3"},"radius":{"type":"number","exclusiveMinimum":0,"maximum":1000000000.0}}},
 "PresenceUser":{"type":"object","additionalProperties":false,"required":["session","name","color"],"properties":{"session":{"$ref":"#/definitions/Uuid"},"name":{"type":"string","minLength":1,"maxLength":200},"full_name":{"type":"string","minLength":1,"maxLength":200},"color":{"$ref":"#/definitions/PersonColor"},"pointer":{"$ref":"#/definitions/PresencePointer"},"leading":{"type":"boolean"},"following":{"$ref":"#/definitions/Uuid"},"camera":{"$ref":"#/definitions/Camera"}}},
 "Presence":{"type":"object","additionalProperties":false,"required":["op","users"],"properties":{"op":{"const":"presence"},"users":{"type":"array","minItems":0,"maxItems":10000,"items":{"$ref":"#/definitions/PresenceUser"}}}},

@@ -8,6 +8,7 @@
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/serialization/as_of.h"
 #include "room/edits.h"
 #include "room/room.h"
@@ -18,6 +19,7 @@
 namespace strata::net {
 namespace {
 
+using protocol::SnapshotEventEvent;
 using store::NamedPart;
 
 nlohmann::json to_json(const Request& request, const NamedPart& snapshot) {
@@ -84,6 +86,15 @@ Result<nlohmann::json> content_of(const RouteContext& context, const room::Room&
   return content;
 }
 
+void tell(const RouteContext& context, SnapshotEventEvent event, const NamedPart& snapshot,
+          const std::string& user) {
+  protocol::SnapshotEvent message;
+  message.event = event;
+  message.snapshot = snapshot.id.number();
+  message.user = user;
+  context.live_sockets.tell_model(snapshot.model_id, message);
+}
+
 Result<Response> create_snapshot(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::SnapshotCreate>(request));
   const auto room = STRATA_TRY(open_room(context, request));
@@ -100,6 +111,7 @@ Result<Response> create_snapshot(const RouteContext& context, const Request& req
   };
   const auto made = STRATA_TRY(
       context.store.snapshots().create(snapshot, idempotent_response<NamedPart>(request, answer)));
+  tell(context, SnapshotEventEvent::created, made, request.user());
   return answer(made);
 }
 
@@ -113,6 +125,7 @@ Result<Response> change_snapshot(const RouteContext& context, const Request& req
   };
   const auto changed = STRATA_TRY(
       context.store.snapshots().update(snapshot, idempotent_response<NamedPart>(request, answer)));
+  tell(context, SnapshotEventEvent::changed, changed, request.user());
   return answer(changed);
 }
 
@@ -120,6 +133,7 @@ Result<Response> delete_snapshot(const RouteContext& context, const Request& req
   const auto snapshot = STRATA_TRY(find_own_snapshot(context, request));
   const auto answer = [] { return empty_response(204); };
   STRATA_TRY(context.store.snapshots().remove(snapshot, idempotent_response<>(request, answer)));
+  tell(context, SnapshotEventEvent::deleted, snapshot, request.user());
   return answer();
 }
 

@@ -31,6 +31,7 @@ export class StrataPastBar extends LitElement {
   @state() private _restores = false;
   @state() private _listsSnapshots = false;
   private _snapshots!: Snapshots;
+  private _snapshotChanges = 0;
   private _changed!: ChangedArea;
   /** The picture ends above the bar. */
   private readonly _observer = new ResizeObserver(() =>
@@ -130,12 +131,17 @@ export class StrataPastBar extends LitElement {
       canCurate: () => session.canCurate,
       changed: () => this.requestUpdate(),
     });
+    this._snapshotChanges = session.past.snapshotChanges;
     void this._snapshots.load();
     this._changed = new ChangedArea(session.lit, () => this.requestUpdate());
   }
 
   override updated(): void {
     const { layers, past } = this.session;
+    if (this._snapshotChanges !== past.snapshotChanges) {
+      this._snapshotChanges = past.snapshotChanges;
+      void this._snapshots.load();
+    }
     const visible = layers.all.filter((layer) => layers.visible(layer));
     this._changed.follow(
       past.changesFrom,

@@ -63,6 +63,8 @@ export class Past {
   divider = 0.5;
   /** The state whose differences from now are lit on the surface; null: none. */
   changesFrom: number | null = null;
+  /** The number of times that somebody changed the snapshots. */
+  snapshotChanges = 0;
   /** The part to restore; null: the whole layer. */
   part: PastPart | null = null;
   drawsPart = false;
@@ -114,6 +116,11 @@ export class Past {
   }
 
   // ── opening ────────────────────────────────────────────────────────────────────────────────────
+
+  onSnapshot(): void {
+    ++this.snapshotChanges;
+    this._host.changed();
+  }
 
   toggle(): void {
     if (this.isOpen) this.close();
