@@ -1,7 +1,7 @@
 // The commands with keys. `more-commands` has those without, which are loaded later.
 
 import { kStandardViews } from "../math/view-cube";
-import { kChangingTools, kRailTools } from "../tools/tool";
+import { hasOptions, kChangingTools, kRailTools } from "../tools/tool";
 import type { ModelSession } from "../session/model-session";
 import { kCommandKeys, keyCapsOf, type KeyedCommand } from "../ui/keys/command-keys";
 import { texts } from "../texts";
@@ -44,7 +44,11 @@ export function keyCommands(host: PageHost): Command[] {
       title: texts.tools[tool],
       glyph: tool,
       problem: kChangingTools.includes(tool) ? changing : undefined,
-      run: () => session.chooseTool(tool),
+      // once more: its options, if another tab hides them
+      run: () =>
+        session.tools.active === tool && hasOptions(tool)
+          ? host.panel("layers")
+          : session.chooseTool(tool),
     }),
   );
   const edit = { group: words.edit };

@@ -9,7 +9,7 @@ import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
 import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Me, Model, Role } from "../core/types";
-import { kPaintingTools, type ToolName } from "../tools/tool";
+import { hasOptions, kPaintingTools, type ToolName } from "../tools/tool";
 import { askAccount } from "../ui/account-menu";
 import "../ui/status-page";
 import type { WhereRequest } from "../features/painting/brush-panel";
@@ -76,7 +76,6 @@ const kMaxPanelWidth = 620;
 const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
 
 const paints = (tool: ToolName): boolean => kPaintingTools.includes(tool);
-const hasOptions = (tool: ToolName): boolean => paints(tool) || tool === "measure";
 
 @customElement("strata-model-page")
 export class StrataModelPage extends LitElement {

@@ -86,3 +86,7 @@ export interface Outline {
   /** Whether it encloses an area; otherwise it is a line. */
   area: boolean;
 }
+
+/** Whether the side panel has options of the tool, at the top of the layers. */
+export const hasOptions = (tool: ToolName): boolean =>
+  kPaintingTools.includes(tool) || tool === "measure";

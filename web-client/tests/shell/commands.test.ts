@@ -131,6 +131,16 @@ describe("A key", () => {
     expect(shown).toEqual([{ dialog: "help" }]);
   });
 
+  it("of the active tool shows its options again", () => {
+    press("b");
+    expect(panels).toEqual([]);
+    press("b");
+    expect(panels).toEqual(["layers"]);
+    press("v");
+    press("v");
+    expect(panels).toEqual(["layers"]);
+  });
+
   it("with Ctrl or Cmd is another one, and with Alt the browser's", () => {
     expect(press("k", { ctrlKey: true })).toBe(true);
     expect(press("k", { metaKey: true })).toBe(true);
