@@ -479,6 +479,8 @@ CREATE TABLE public.all_layers (
     labels jsonb DEFAULT '{}'::jsonb NOT NULL,
     descriptions jsonb DEFAULT '{}'::jsonb NOT NULL,
     group_name text,
+    blend text DEFAULT 'normal'::text NOT NULL,
+    CONSTRAINT all_layers_blend_check CHECK ((blend = ANY (ARRAY['normal'::text, 'multiply'::text, 'screen'::text]))),
     CONSTRAINT all_layers_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT all_layers_group_name_check CHECK (((char_length(group_name) >= 1) AND (char_length(group_name) <= 60))),
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
@@ -567,7 +569,8 @@ CREATE VIEW public.layers AS
     all_layers.review,
     all_layers.labels,
     all_layers.descriptions,
-    all_layers.group_name
+    all_layers.group_name,
+    all_layers.blend
    FROM public.all_layers
   WHERE ((all_layers.binned IS NULL) AND (EXISTS ( SELECT 1
            FROM public.all_models m

@@ -20,9 +20,14 @@ layout(binding = 2) uniform sampler2D palettes;
 layout(binding = 3) uniform usampler2DArray chunk_values[CHUNK_COUNT];
 layout(binding = 9) uniform usampler2DArray chunk_valid[CHUNK_COUNT];
 #endif
-// The first draw replaces the content; later ones blend over it: alpha is the share of it that
-// stays visible.
-layout(location = 0) out vec4 picture;
+// The first draw replaces the content; later ones draw over it: picture + kept * content.
+layout(location = 0, index = 0) out vec4 picture;
+layout(location = 0, index = 1) out vec4 kept;
+
+// What is drawn over the content: added + kept * content.
+struct Color {
+  vec3 added, kept;
+};
 
 const uint kTypeU8 = 0u, kTypeU16 = 1u, kTypeU32 = 2u, kTypeI8 = 3u, kTypeI16 = 4u, kTypeI32 = 5u, kTypeF16 = 6u, kTypeF32 = 7u;
 
@@ -142,18 +147,22 @@ float outline_cover(ShadeLayer layer, uint units, uint bits) {
   return inside ? 0.0 : 1.0;
 }
 
-// Blends the layer over `below`.
-vec4 add_layer(vec4 below, ShadeLayer layer, uint mode, uint type, uint units, uint patterned, uint q, float light) {
+// Blends the layer over `color`.
+void add_layer(inout Color color, ShadeLayer layer, uint mode, uint type, uint units, uint patterns, uint blend, uint q, float light) {
   uvec2 texel = texel_of(layer, units, q);
-  if (texel.y == 0u) return below;
+  if (texel.y == 0u) return;
   Ink ink = ink_of(layer, mode, type, texel.x);
   float cover = ink.color.a * layer.opacity;
-  if (patterned != 0u && (ink.pattern & 3u) != kPatternSolid) {
-    bool is_outline = (ink.pattern & 3u) == kPatternOutline, is_bare = layer.bare != 0u && !is_outline;
+  if (patterns != kNoPatterns && (ink.pattern & 3u) != kPatternSolid) {
+    bool is_outline = (ink.pattern & 3u) == kPatternOutline, is_bare = patterns == kBarePatterns && !is_outline;
     float border = is_bare ? 0.0 : outline_cover(layer, units, texel.x);
     cover *= is_outline ? border : mix(is_bare ? 0.0 : kPatternGround, 1.0, max(border, pattern_cover(ink.pattern)));
   }
-  return vec4(mix(below.rgb, ink.color.rgb * light, cover), below.a * (1.0 - cover));
+  vec3 lit = ink.color.rgb * light;
+  // What is below is lit already: multiplied, the ink filters it.
+  vec3 kept = blend == kBlendMultiply ? 1.0 - cover + cover * ink.color.rgb : blend == kBlendScreen ? 1.0 - cover * lit : vec3(1.0 - cover);
+  color.added = color.added * kept + (blend == kBlendMultiply ? vec3(0.0) : cover * lit);
+  color.kept *= kept;
 }
 #endif
 
@@ -180,20 +189,21 @@ void main() {
 #ifdef CUT
   if (texelFetch(surface_uv, pixel, 0).r == kBackground) surface.rgb = cut_color(pixel);
 #endif
-  vec4 color = vec4(shade.first_pass != 0u ? surface.rgb : vec3(0.0), 1.0);
+  Color color = Color(shade.first_pass != 0u ? surface.rgb : vec3(0.0), vec3(1.0));
 #if CHUNK_COUNT > 0
   uint q = texelFetch(surface_uv, pixel, 0).r;
   if (q != kBackground) {  // not the inside of a cut solid
 #ifdef LAYERS
-#define SHADE_LAYER(index, mode, type, units, patterned) \
-  color = add_layer(color, layers[index], mode, type, units, patterned, q, surface.a);
+#define SHADE_LAYER(index, mode, type, units, patterns, blend) \
+  add_layer(color, layers[index], mode, type, units, patterns, blend, q, surface.a);
   LAYERS
 #else
   for (uint i = 0u; i < shade.layer_count; ++i) {
-    color = add_layer(color, layers[i], layers[i].mode, layers[i].type, 0x3fu, layers[i].patterned, q, surface.a);
+    add_layer(color, layers[i], layers[i].mode, layers[i].type, 0x3fu, layers[i].patterns, layers[i].blend, q, surface.a);
   }
 #endif
   }
 #endif
-  picture = vec4(color.rgb, shade.first_pass != 0u ? 1.0 : color.a);
+  picture = vec4(color.added, 1.0);
+  kept = vec4(color.kept, 1.0);
 }

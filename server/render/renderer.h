@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "domain/layers/layer_blend.h"
 #include "domain/layers/palette.h"
 #include "domain/layers/tile.h"
 #include "domain/layers/tile_mirror.h"
@@ -79,6 +80,7 @@ struct LayerStyle {  // one layer in a view, bottom to top
   LayerHandle layer = 0;
   std::shared_ptr<const Palette> palette;  // identified by its address: it must not change
   float opacity = 1;
+  LayerBlend blend = LayerBlend::normal;
   // its hatch and dots have neither tint nor border: a mark over another layer, not a class
   bool bare = false;
   bool operator==(const LayerStyle&) const = default;

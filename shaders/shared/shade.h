@@ -11,6 +11,12 @@ const uint kPatternSolid = 0u;  // values of strata::Pattern
 const uint kPatternHatch = 1u;
 const uint kPatternDots = 2u;
 const uint kPatternOutline = 3u;
+const uint kBlendNormal = 0u;  // values of strata::LayerBlend
+const uint kBlendMultiply = 1u;
+const uint kBlendScreen = 2u;
+const uint kNoPatterns = 0u;  // all points are solid
+const uint kPatterns = 1u;
+const uint kBarePatterns = 2u;  // hatch and dots have neither tint nor border
 // Sizes of patterns, in pixels of the camera's window: on a figure these are hundredths of an inch
 // of paper.
 const float kPatternPixels = 7.0;         // between lines or dots without a spacing of their own
@@ -36,8 +42,8 @@ struct ShadeLayer {
   uint units_high;
   uint others;            // color of unlisted values, red in the low byte
   uint has_others;        // 0: unlisted values get a generated color
-  uint patterned;         // some point is not solid
-  uint bare;              // hatch and dots have neither tint nor border
+  uint patterns;          // kNoPatterns, kPatterns or kBarePatterns
+  uint blend;
 };
 
 // A palette point: the bits of the value and the color, red in the low byte. Step: `key` is a

@@ -71,6 +71,9 @@ void read_core(const nlohmann::json& json, strata::LayerKind& value) {
 void read_core(const nlohmann::json& json, strata::Unit& value) {
   if (auto unit = parse_unit(json.get_ref<const std::string&>())) value = *unit;
 }
+void read_core(const nlohmann::json& json, strata::LayerBlend& value) {
+  if (auto blend = parse_layer_blend(json.get_ref<const std::string&>())) value = *blend;
+}
 void read_core(const nlohmann::json& json, strata::Visibility& value) {
   if (auto visibility = parse_visibility(json.get_ref<const std::string&>())) value = *visibility;
 }
@@ -118,6 +121,7 @@ nlohmann::json write_core(const strata::LayerKind& value) {
   return value == LayerKind::database ? "database" : "numeric";
 }
 nlohmann::json write_core(const strata::Unit& value) { return name(value); }
+nlohmann::json write_core(const strata::LayerBlend& value) { return name(value); }
 nlohmann::json write_core(const strata::Visibility& value) { return name(value); }
 nlohmann::json write_core(const IdOrSlug& value) {
   return std::visit([](const auto& v) { return nlohmann::json(v); }, value);

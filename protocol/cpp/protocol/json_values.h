@@ -47,6 +47,7 @@ void read_core(const nlohmann::json& json, strata::Light& value);
 void read_core(const nlohmann::json& json, strata::ValueType& value);
 void read_core(const nlohmann::json& json, strata::LayerKind& value);
 void read_core(const nlohmann::json& json, strata::Unit& value);
+void read_core(const nlohmann::json& json, strata::LayerBlend& value);
 void read_core(const nlohmann::json& json, strata::Visibility& value);
 void read_core(const nlohmann::json& json, IdOrSlug& value);
 nlohmann::json write_core(const Uuid& value);
@@ -60,6 +61,7 @@ nlohmann::json write_core(const strata::Light& value);
 nlohmann::json write_core(const strata::ValueType& value);
 nlohmann::json write_core(const strata::LayerKind& value);
 nlohmann::json write_core(const strata::Unit& value);
+nlohmann::json write_core(const strata::LayerBlend& value);
 nlohmann::json write_core(const strata::Visibility& value);
 nlohmann::json write_core(const IdOrSlug& value);
 

@@ -24,6 +24,7 @@ nlohmann::json to_json(const Layer& layer) {
                       {"visibility", name(layer.visibility)},
                       {"order", layer.order},
                       {"sequence", layer.sequence}};
+  if (layer.blend != LayerBlend::normal) json["blend"] = name(layer.blend);
   if (layer.group) json["group"] = *layer.group;
   if (layer.origin) {
     json["computed"] = *layer.origin == LayerOrigin::shape ? "shape" : "expression";

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/ids.h"
+#include "domain/layers/layer_blend.h"
 #include "domain/layers/palette.h"
 #include "domain/people/visibility.h"
 #include "domain/tables/labels.h"
@@ -54,6 +55,7 @@ struct Layer {
   // follows the colors of its table's terms, and is not stored
   bool palette_of_terms = false;
   double opacity = 1;
+  LayerBlend blend = LayerBlend::normal;
   bool visible = true;
   // users below curator can change neither its texels nor its metadata
   bool locked = false;

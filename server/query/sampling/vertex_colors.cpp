@@ -36,6 +36,16 @@ double cover_of(const DrawnLayer& layer, double value, const Rgba& color) {
   return color[3] / 255.0 * std::clamp(layer.opacity, 0.0, 1.0);
 }
 
+// Colors from 0 to 255, as in shade_pass.frag.
+glm::dvec3 blended(LayerBlend blend, const glm::dvec3& below, const glm::dvec3& ink, double cover) {
+  switch (blend) {
+    case LayerBlend::normal: break;
+    case LayerBlend::multiply: return glm::mix(below, below * ink / 255.0, cover);
+    case LayerBlend::screen: return glm::mix(below, below + ink - below * ink / 255.0, cover);
+  }
+  return glm::mix(below, ink, cover);
+}
+
 }  // namespace
 
 void VertexColors::add_photo(const Picture& photo, double opacity) {
@@ -66,7 +76,8 @@ Rgb VertexColors::at(std::span<const std::uint32_t> vertices) const {
     if (!bits) continue;
     const double value = decode_value(layer.type, *bits);
     const Rgba ink = color_of(*layer.palette, value);
-    color = glm::mix(color, glm::dvec3(ink[0], ink[1], ink[2]), cover_of(layer, value, ink));
+    color =
+        blended(layer.blend, color, {ink[0], ink[1], ink[2]}, cover_of(layer, value, ink));
   }
   return rounded(color);
 }

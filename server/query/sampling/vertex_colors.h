@@ -21,6 +21,7 @@ struct DrawnLayer {
   // by the texel's value: never a palette that colors by a column
   std::shared_ptr<const Palette> palette;
   double opacity = 1;
+  LayerBlend blend = LayerBlend::normal;
 };
 
 // The colors of a model's vertices, composed as in pictures but without light

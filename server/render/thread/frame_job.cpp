@@ -365,7 +365,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
     const double factor = style.bare ? 1 : opacity_of_layers(request.style.light);
     input.layers.push_back({&layer->textures(), style.palette,
-                            style.opacity * static_cast<float>(factor), style.bare});
+                            style.opacity * static_cast<float>(factor), style.blend, style.bare});
   }
   STRATA_TRY(scene.tables().flush());
   STRATA_TRY(scene.shade_pass().shade(input, scene.tables()));

@@ -25,6 +25,15 @@ std::uint32_t mode_of(PaletteMode mode) {
   return shader::kPaletteLinear;
 }
 
+std::uint32_t blend_of(LayerBlend blend) {
+  switch (blend) {
+    case LayerBlend::normal: return shader::kBlendNormal;
+    case LayerBlend::multiply: return shader::kBlendMultiply;
+    case LayerBlend::screen: return shader::kBlendScreen;
+  }
+  return shader::kBlendNormal;
+}
+
 void set_unit(shader::ShadeLayer& layer, std::uint32_t chunk, std::uint32_t unit) {
   auto& units = chunk < 8 ? layer.units_low : layer.units_high;
   const std::uint32_t shift = (chunk % 8) * 4;
@@ -53,7 +62,7 @@ Result<const gl::Program*> ShadePass::program(const Batch& batch, bool shows_ins
     const auto& layer = batch.layers[i];
     kinds += "SHADE_LAYER(" + std::to_string(i) + "u, " + std::to_string(layer.mode) + "u, " +
              std::to_string(layer.type) + "u, " + std::to_string(batch.units[i]) + "u, " +
-             std::to_string(layer.patterned) + "u) ";
+             std::to_string(layer.patterns) + "u, " + std::to_string(layer.blend) + "u) ";
   }
   const std::tuple key{batch.chunks.size(), kinds, shows_inside};
   const auto built = programs_.find(key);
@@ -90,8 +99,10 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   out.palette_max = static_cast<float>(layer.palette->max);
   out.has_others = layer.palette->others ? 1 : 0;
   out.others = packed(layer.palette->others.value_or(Rgba{}));
-  out.patterned = entry.patterned ? 1 : 0;
-  out.bare = layer.bare ? 1 : 0;
+  out.patterns = !entry.patterned ? shader::kNoPatterns
+                 : layer.bare     ? shader::kBarePatterns
+                                  : shader::kPatterns;
+  out.blend = blend_of(layer.blend);
   // Without a range every value maps to an end; the shader divides by the range.
   const bool has_range = out.palette_max > out.palette_min;
   if (!has_range && layer.palette->mode == PaletteMode::linear)
@@ -155,8 +166,8 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
       for (const Batch& batch : plan(group)) {
         STRATA_TRY(draw_surface(input, batch, first, tables));
         first = false;
-        // The next draw outputs `color + alpha * destination`; the picture stays opaque.
-        glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
+        // The next draw outputs `picture + kept * destination`; the picture stays opaque.
+        glBlendFuncSeparate(GL_ONE, GL_SRC1_COLOR, GL_ZERO, GL_ONE);
         glEnable(GL_BLEND);
       }
     } while (!left.empty());

@@ -22,6 +22,7 @@ struct ShadeInput {
     const LayerTextures* textures;
     std::shared_ptr<const Palette> palette;
     float opacity;
+    LayerBlend blend = LayerBlend::normal;
     bool bare = false;  // patterns without tint and border
   };
   // Placement of patterns on the picture's plane.

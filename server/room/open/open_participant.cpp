@@ -60,7 +60,8 @@ OpenParticipant::Appearance OpenParticipant::appearance(std::uint32_t view_id, V
   for (const auto& state : states) {
     render::LayerStyle shown{
         state.handles.content, palette(view_id, view, state),
-        static_cast<float>(mine(state.layer.id).opacity.value_or(state.layer.opacity))};
+        static_cast<float>(mine(state.layer.id).opacity.value_or(state.layer.opacity)),
+        state.layer.blend};
     if (past) {
       const auto then = past->layers.find(state.layer.id);
       if (then == past->layers.end()) continue;  // its state is being read

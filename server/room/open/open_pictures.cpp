@@ -90,7 +90,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& picture,
   };
   for (const auto& item : shown) {
     render::LayerStyle style{item.handles.content, item.palette,
-                             static_cast<float>(item.layer.opacity)};
+                             static_cast<float>(item.layer.opacity), item.layer.blend};
     std::optional<render::LayerHandle> waiting = item.waiting();
     if (picture.at) {
       auto past = STRATA_TRY(room_.services_.store.journal().load_tiles(item.layer, picture.at));

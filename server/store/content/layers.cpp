@@ -16,7 +16,7 @@ constexpr auto kLayerStale = sql(
     "l.sequence > layers.computed_sequence OR t.sequence > i.table_sequence))))");
 constexpr auto kLayerColumns = sql(
     "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, "
-    "table_id, sequence, version, locked, visibility, review, labels, descriptions, group_name, "
+    "table_id, sequence, version, locked, visibility, review, labels, descriptions, group_name, blend, "
     "(SELECT o.origin FROM layer_origins o WHERE o.layer_id = layers.id), "
     "coalesce((SELECT o.edited_by_hand FROM layer_origins o WHERE o.layer_id = layers.id), false), "
     "expression, automatic, computed_sequence, "
@@ -81,6 +81,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.labels = row.json().get<Labels>();
   layer.descriptions = row.json().get<Labels>();
   layer.group = row.optional_text();
+  layer.blend = parse_layer_blend(row.text()).value_or(LayerBlend::normal);
   if (const auto origin = row.optional_text())
     layer.origin = *origin == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
   layer.edited_by_hand = row.boolean();
@@ -256,8 +257,8 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
         [&](const std::string& slug) {
           return connection.query(
               sql("INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
-                  "draw_order, table_id, locked, visibility, review, labels, descriptions, group_name) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
-                  "$15, $16, $17, $18, $19) "
+                  "draw_order, table_id, locked, visibility, review, labels, descriptions, group_name, blend) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
+                  "$15, $16, $17, $18, $19, $20) "
                   "ON CONFLICT DO NOTHING RETURNING ",
                   kLayerColumns),
               Params()
@@ -279,7 +280,8 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
                   .boolean(layer.review)
                   .json(layer.labels)
                   .json(layer.descriptions)
-                  .optional_text(layer.group));
+                  .optional_text(layer.group)
+                  .text(name(layer.blend)));
         });
     if (!row || (!layer.formula && !layer.origin))
       return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
@@ -296,7 +298,7 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
         sql("UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
-            "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, group_name = $16, version = version + 1 WHERE id = $1 AND version = $2 "
+            "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, group_name = $16, blend = $17, version = version + 1 WHERE id = $1 AND version = $2 "
             "RETURNING ",
             kLayerColumns),
         Params()
@@ -315,7 +317,8 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
             .boolean(layer.review)
             .json(layer.labels)
             .json(layer.descriptions)
-            .optional_text(layer.group)));
+            .optional_text(layer.group)
+            .text(name(layer.blend))));
     if (row.rows() > 0) {
       auto now = STRATA_TRY(read_layer(connection, row, 0));
       const bool same_origin =

@@ -1,5 +1,7 @@
-"""Groups of layers: created, changed, removed, told to open pages, and set by templates."""
+"""Groups of layers: created, changed, removed, told to open pages, and set by templates. Their
+blending mode."""
 import pytest
+from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 
@@ -48,6 +50,29 @@ def test_a_bad_group_is_refused(server, group):
     answer = server.request("PATCH", L + "/cracks", {"group": group})
     assert answer.status in (400, 422) and answer.json()["field"] == "group", answer
     assert groups(server)["cracks"] == "Damage"
+
+
+def test_the_blending_mode_changes_the_picture(server):
+    assert "blend" not in server.get(L + "/cracks").json()
+    camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+    palette = {"mode": "step", "min": 0, "max": 1, "points": [{"at": 0, "color": "#c08040ff"}]}
+    server.ok("PATCH", L + "/cracks", {"palette": palette})
+    stroke = {"op": "stroke", "value": 1, "camera": camera, "radius_px": 200, "path": [[320, 240]]}
+    server.ok("POST", L + "/cracks/edits", stroke)
+
+    def picture():
+        body = {"camera": camera, "format": "png", "layers": [{"layer": "cracks"}]}
+        return server.ok("POST", M + "/frame", body).body
+
+    pictures = {"normal": picture()}
+    for mode in ("multiply", "screen"):
+        assert server.ok("PATCH", L + "/cracks", {"blend": mode}).json()["blend"] == mode
+        pictures[mode] = picture()
+    assert len(set(pictures.values())) == 3
+    refused = server.request("PATCH", L + "/cracks", {"blend": "overlay"})
+    assert refused.status in (400, 422) and refused.json()["field"] == "blend", refused
+    now = server.ok("PATCH", L + "/cracks", {"blend": "normal"}).json()
+    assert "blend" not in now and picture() == pictures["normal"]
 
 
 def test_a_template_names_its_group_in_the_language_of_the_user(server):

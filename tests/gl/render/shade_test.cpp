@@ -246,7 +246,8 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
       Palette::Point point{7, {0, 0, 255, 255}};
       point.pattern = c.pattern, point.angle = c.angle, point.spacing_mm = c.spacing_mm;
       auto inked = std::make_shared<Palette>(Palette{mode, 0, 10, {point}, {}});
-      request_.style.layers = {{lower, red, 1}, {upper, inked, 1, c.bare}};
+      request_.style.layers = {
+          {lower, red, 1}, {.layer = upper, .palette = inked, .opacity = 1, .bare = c.bare}};
       const auto frame = renderer_.draw(request_);
       double worst = 0;
       std::size_t covered = 0;
@@ -376,6 +377,43 @@ TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
       expected[c] = i == 0 ? color[c] : expected[c] * 0.7 + color[c] * 0.3;
   }
   expect_color(layers, expected, lit);
+}
+
+// One channel of a layer over what is below, both from 0 to 1, in plain C++. `ink` is without light.
+double blended(LayerBlend blend, double below, double ink, double lit, double cover) {
+  const double over = blend == LayerBlend::multiply ? below * ink
+                      : blend == LayerBlend::screen ? 1 - (1 - below) * (1 - ink * lit)
+                                                    : ink * lit;
+  return below * (1 - cover) + over * cover;
+}
+
+TEST_F(Shade, layers_filter_and_lighten_what_is_below_in_one_draw_and_in_several) {
+  const double lit = light();
+  constexpr std::array kBlends{LayerBlend::normal, LayerBlend::multiply, LayerBlend::screen};
+  // Two layers share a draw; the types of 24 have more chunks than fit into one.
+  for (const int count : {2, 3, 24}) {
+    for (int turn = 0; turn < 9; ++turn) {
+      SCOPED_TRACE(std::to_string(count) + " " + std::to_string(turn));
+      std::vector<render::LayerStyle> layers;
+      std::array<double, 3> expected{};
+      for (int i = 0; i < count; ++i) {
+        const Rgba color{static_cast<std::uint8_t>(255 - 37 * (i % 6)),
+                         static_cast<std::uint8_t>(70 + 60 * ((i + turn) % 4)),
+                         static_cast<std::uint8_t>(10 * i + 5 * turn), 255};
+        const auto blend = i == 0   ? LayerBlend::normal
+                           : i == 1 ? kBlends[turn % 3]
+                                    : kBlends[(i + turn / 3) % 3];
+        const float opacity = i == 0 ? 1.0f : 0.3f + 0.05f * static_cast<float>(turn);
+        auto palette =
+            std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
+        layers.push_back(
+            {filled_layer(static_cast<ValueType>(i % 8), 1), palette, opacity, blend});
+        for (std::size_t c = 0; c < 3; ++c)
+          expected[c] = blended(blend, expected[c], color[c] / 255.0, lit, opacity);
+      }
+      expect_color(layers, {255 * expected[0], 255 * expected[1], 255 * expected[2]}, 1);
+    }
+  }
 }
 
 TEST_F(Shade, more_layers_than_one_draw_takes_are_all_shown) {

@@ -82,6 +82,23 @@ TEST(VertexColors, layers_cover_each_other_by_opacity_and_alpha_from_bottom_to_t
   EXPECT_EQ(at(turned, {0}), composed({0x60, 0x40, 0x20}, {{blue, 0.25}, {red, 1}}));
 }
 
+TEST(VertexColors, layers_filter_or_lighten_what_is_below) {
+  for (const auto& [blend, expected] :
+       {std::pair{LayerBlend::multiply, Rgb{0x60, 0x20, 0x10}},
+        std::pair{LayerBlend::screen, Rgb{0xff, 0x90, 0x60}}}) {
+    VertexColors colors(square());
+    auto layer = layer_at_origin(7, one_class({255, 0, 0, 255}));
+    layer.palette =
+        std::make_shared<const Palette>(one_class(blend == LayerBlend::multiply
+                                                      ? Rgba{255, 0x80, 0x80, 255}
+                                                      : Rgba{255, 0x6b, 0x49, 255}));
+    layer.blend = blend;
+    colors.add_layer(std::move(layer));
+    const Rgb got = at(colors, {0});
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(got[c], expected[c], 1) << int(c);
+  }
+}
+
 TEST(VertexColors, values_have_the_colours_of_every_kind_of_palette) {
   Palette linear{PaletteMode::linear, 0, 10, {{0, {0, 0, 0, 255}}, {10, {200, 100, 50, 255}}}, {}};
   VertexColors ramp(square());

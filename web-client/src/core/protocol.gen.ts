@@ -333,6 +333,9 @@ export type Resolution = 2048 | 4096 | 8192 | 16384;
 /** When a computed layer follows its inputs. manual: on request. automatic: within seconds after a change of something that the layer reads. */
 export type Recompute = "manual" | "automatic";
 
+/** How the colors of a layer are combined with what is below them. normal: they cover it; multiply: they filter it, so it only becomes darker; screen: it only becomes lighter. With multiply and screen, colors differ from those of the legend. */
+export type LayerBlend = "normal" | "multiply" | "screen";
+
 /** Layer. */
 export interface Layer {
   id: number;
@@ -350,6 +353,8 @@ export interface Layer {
   descriptions: Descriptions;
   palette: Palette;
   opacity: number;
+  /** Absent: normal. */
+  blend?: LayerBlend;
   visible: boolean;
   /** Nobody below curator can change the texels of the layer (403). */
   locked: boolean;
@@ -2240,6 +2245,8 @@ export interface LayerCreate {
   palette?: Palette;
   /** Default: 1. */
   opacity?: number;
+  /** Absent: normal. */
+  blend?: LayerBlend;
   /** Absent: true. For computed layers false, because they must not cover the view of others; the creator sees the layer at once. */
   visible?: boolean;
   /** Nobody below curator can change the texels of the layer. Absent: false. A computed layer is always locked when it is created (422 for false). */
@@ -2557,6 +2564,7 @@ export interface LayerPatch {
   group?: string;
   palette?: Palette;
   opacity?: number;
+  blend?: LayerBlend;
   visible?: boolean;
   /** true: from the answer on, nobody below curator can change the texels until the layer is unlocked. false, on a computed layer: from now on it is edited by hand, which stays marked (`edited_by_hand`), and the server does not compute it automatically. */
   locked?: boolean;

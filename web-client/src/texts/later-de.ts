@@ -170,6 +170,14 @@ export const laterTexts = {
     ],
   },
   layer_dialog: {
+    blend: "Mischmodus",
+    blend_hint:
+      "Mit „Multiplizieren“ und „Negativ multiplizieren“ bleiben Relief und Fotos darunter sichtbar. Die Farben weichen dann von der Legende ab.",
+    blends: {
+      normal: "Normal",
+      multiply: "Multiplizieren (dunkler)",
+      screen: "Negativ multiplizieren (heller)",
+    },
     create_title: "Neue Ebene",
     edit_title: (name) => `Ebene „${name}“`,
     question: "Was hält die Ebene fest?",

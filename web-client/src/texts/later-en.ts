@@ -172,6 +172,10 @@ export const laterTexts = {
     ] as [string, string][],
   },
   layer_dialog: {
+    blend: "Blending mode",
+    blend_hint:
+      "Multiply and Screen keep the relief and photographs below visible. Colors then differ from the legend.",
+    blends: { normal: "Normal", multiply: "Multiply (darkens)", screen: "Screen (lightens)" },
     create_title: "New layer",
     edit_title: (name: string) => `Layer “${name}”`,
     question: "What does it record?",

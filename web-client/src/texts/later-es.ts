@@ -170,6 +170,10 @@ export const laterTexts = {
     ],
   },
   layer_dialog: {
+    blend: "Modo de mezcla",
+    blend_hint:
+      "Con «Multiplicar» y «Pantalla» se siguen viendo el relieve y las fotos de debajo. Los colores difieren entonces de los de la leyenda.",
+    blends: { normal: "Normal", multiply: "Multiplicar (oscurece)", screen: "Pantalla (aclara)" },
     create_title: "Nueva capa",
     edit_title: (name) => `Capa «${name}»`,
     question: "¿Qué documenta?",

@@ -111,6 +111,7 @@ describe("a changed layer", () => {
     descriptions: {},
     group: "",
     palette: classPalette(classes.points as never),
+    blend: "normal" as const,
     visibility: "public" as const,
   };
   it("sends only what was changed", () => {
@@ -120,6 +121,8 @@ describe("a changed layer", () => {
     });
     expect(layerChanges(old, { ...same, group: "Salts" })).toEqual({ group: "Salts" });
     expect(layerChanges({ ...old, group: "Salts" }, same)).toEqual({ group: "" });
+    expect(layerChanges(old, { ...same, blend: "multiply" })).toEqual({ blend: "multiply" });
+    expect(layerChanges({ ...old, blend: "screen" }, same)).toEqual({ blend: "normal" });
     expect(layerChanges(old, { ...same, visibility: "team" })).toEqual({ visibility: "team" });
     expect(
       layerChanges(old, {

@@ -2662,6 +2662,7 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "group", value.group);
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
+  read_optional_member(json, "blend", value.blend);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "locked", value.locked);
   read_optional_member(json, "review", value.review);
@@ -2688,6 +2689,7 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_optional_member(json, "group", value.group);
   write_optional_member(json, "palette", value.palette);
   write_member(json, "opacity", value.opacity);
+  write_optional_member(json, "blend", value.blend);
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "locked", value.locked);
   write_member(json, "review", value.review);
@@ -2954,6 +2956,7 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "group", value.group);
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
+  read_optional_member(json, "blend", value.blend);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "locked", value.locked);
   read_optional_member(json, "review", value.review);
@@ -2974,6 +2977,7 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "group", value.group);
   write_optional_member(json, "palette", value.palette);
   write_optional_member(json, "opacity", value.opacity);
+  write_optional_member(json, "blend", value.blend);
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "locked", value.locked);
   write_optional_member(json, "review", value.review);

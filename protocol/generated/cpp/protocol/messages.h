@@ -75,6 +75,7 @@ enum class Schema {
   ReviewReason,
   Resolution,
   Recompute,
+  LayerBlend,
   Layer,
   Look,
   Highlight,
@@ -351,7 +352,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 325;
+constexpr int kSchemaCount = 326;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -560,6 +561,8 @@ enum class Recompute { manual, automatic };
 std::string_view name(Recompute value);
 void read(const nlohmann::json& json, Recompute& value);
 nlohmann::json to_json(const Recompute& value);
+
+using LayerBlend = strata::LayerBlend;
 
 // Records that a view highlights. For a layer of records. The texels of these records keep their colors. Those of other records become gray, or with `isolate` are not drawn.
 struct Highlight {
@@ -2059,6 +2062,7 @@ struct LayerCreate {
   std::optional<std::string> group;
   std::optional<nlohmann::json> palette;
   double opacity = 1;
+  std::optional<strata::LayerBlend> blend;  // Absent: normal.
   // Absent: true. For computed layers false, because they must not cover the view of others; the
   // creator sees the layer at once.
   std::optional<bool> visible;
@@ -2310,6 +2314,7 @@ struct LayerPatch {
   std::optional<std::string> group;
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
+  std::optional<strata::LayerBlend> blend;
   std::optional<bool> visible;
   // true: from the answer on, nobody below curator can change the texels until the layer is
   // unlocked. false, on a computed layer: from now on it is edited by hand, which stays marked

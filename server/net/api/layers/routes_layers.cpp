@@ -137,6 +137,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
                      : palette_of(body.palette, layer.type, layer.kind == LayerKind::database));
   layer.palette = std::move(palette);
   layer.opacity = body.opacity;
+  layer.blend = body.blend.value_or(LayerBlend::normal);
   // A computed layer must not cover the layers that other people look at.
   layer.visible = body.visible.value_or(!is_computed);
   layer.locked = body.locked.value_or(is_computed);
@@ -276,6 +277,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
     layer->palette_of_terms = false;
   }
   if (body.opacity) layer->opacity = *body.opacity;
+  if (body.blend) layer->blend = *body.blend;
   if (body.visible) layer->visible = *body.visible;
   if (body.locked == false && is_as_computed(*layer)) layer->edited_by_hand = true;
   if (body.locked) layer->locked = *body.locked;

@@ -2,7 +2,7 @@
 
 import { rowsOf } from "../../core/languages";
 import { samePalette } from "../../domain/palette";
-import type { Labels, Visibility } from "../../core/protocol.gen";
+import type { Labels, LayerBlend, Visibility } from "../../core/protocol.gen";
 import type { Layer, LayerPatch, Palette } from "../../core/types";
 
 export interface LayerWanted {
@@ -13,6 +13,7 @@ export interface LayerWanted {
   descriptions: Labels;
   group: string; // empty: none
   palette: Palette;
+  blend: LayerBlend;
   visibility: Visibility;
   expression?: string; // for a computed layer
   recompute?: "manual" | "automatic";
@@ -29,6 +30,7 @@ export function layerChanges(
     descriptions,
     group,
     palette,
+    blend,
     visibility,
     expression,
     recompute,
@@ -42,6 +44,7 @@ export function layerChanges(
   if (!sameWords(descriptions, layer.descriptions)) change.descriptions = descriptions;
   if (group !== (layer.group ?? "")) change.group = group;
   if (!samePalette(palette, layer.palette)) change.palette = palette;
+  if (blend !== (layer.blend ?? "normal")) change.blend = blend;
   if (visibility !== layer.visibility) change.visibility = visibility;
   if (expression !== undefined && expression !== layer.expression) change.expression = expression;
   if (recompute !== undefined && recompute !== layer.recompute) change.recompute = recompute;

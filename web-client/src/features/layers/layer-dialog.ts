@@ -22,7 +22,7 @@ import { createRecord } from "../../net/records";
 import { createLayer, createLayerOrJob, readLayer, recomputeLayer } from "../../net/layers";
 import { labelOf } from "../../domain/cells";
 import { groupCalled } from "../../domain/layer-groups";
-import type { Labels, Table, Visibility } from "../../core/protocol.gen";
+import type { Labels, LayerBlend, Table, Visibility } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import "./expression-field";
 import { classRows, newClass, withNewClass, type ClassRow } from "./class-rows";
@@ -47,6 +47,7 @@ import { visibilityChoice } from "../../ui/visibility";
 type Purpose = LayerPurpose | "shape" | "formula";
 
 const kNoWords: Labels = {};
+const kBlends: readonly LayerBlend[] = ["normal", "multiply", "screen"];
 const words = texts.layer_dialog;
 
 @customElement("strata-layer-dialog")
@@ -188,6 +189,13 @@ export class StrataLayerDialog extends LitElement {
           <textarea name="description" maxlength="10000" placeholder=${words.description_hint} .value=${layer?.description ?? ""}></textarea>
         </label>
         ${groupField(this.session, layer)}
+        <label class="field">
+          <span>${words.blend}</span>
+          <select name="blend">
+            ${kBlends.map((each) => html`<option value=${each} ?selected=${each === (layer?.blend ?? "normal")}>${words.blends[each]}</option>`)}
+          </select>
+          <small>${words.blend_hint}</small>
+        </label>
         <strata-labels-field .labels=${layer?.labels ?? kNoWords} .descriptions=${layer?.descriptions ?? kNoWords}></strata-labels-field>
         ${visibilityChoice(this._visibility, (visibility) => (this._visibility = visibility))}
       </form>`,
@@ -326,7 +334,10 @@ export class StrataLayerDialog extends LitElement {
     const form = new FormData(this._form);
     const text = (name: string): string => String(form.get(name) ?? "").trim();
     this._problem = this._problemField = "";
-    const said = this.said(groupCalled(text("group"), this.session.layers.all));
+    const said = this.said(
+      groupCalled(text("group"), this.session.layers.all),
+      text("blend") as LayerBlend,
+    );
     if (!said) return;
     if (this._purpose === "shape")
       return this.compute(text("name") || this._shape.kindTitle, {
@@ -387,15 +398,18 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  /** Names in other languages, and the group; null: a field shows a problem. */
-  private said(group: string): { labels: Labels; descriptions: Labels; group: string } | null {
+  /** Names in other languages, with the group and the blending; null: a field shows a problem. */
+  private said(
+    group: string,
+    blend: LayerBlend,
+  ): Pick<LayerWanted, "labels" | "descriptions" | "group" | "blend"> | null {
     const labels = this._labels.read();
-    return labels && { labels, descriptions: this._labels.writtenDescriptions, group };
+    return labels && { labels, descriptions: this._labels.writtenDescriptions, group, blend };
   }
 
   private async compute(
     name: string,
-    said: Pick<LayerCreate, "description" | "labels" | "descriptions" | "group">,
+    said: Pick<LayerCreate, "description" | "labels" | "descriptions" | "group" | "blend">,
   ): Promise<void> {
     const compute = this._shape.recipe();
     if ("problem" in compute) return this.refuse(compute.field, compute.problem);
