@@ -2558,6 +2558,11 @@ export interface components {
         Layer: wire.Layer;
         /** Area of one key on one layer */
         LayerArea: wire.LayerArea;
+        /**
+         * How the colors of a layer are combined with what is below them
+         * @enum {string}
+         */
+        LayerBlend: wire.LayerBlend;
         /** New layer */
         LayerCreate: wire.LayerCreate;
         /** Highlighted records of a layer */
