@@ -1650,7 +1650,7 @@ CREATE TRIGGER layer_gone_is_activity AFTER DELETE ON public.all_layers FOR EACH
 
 CREATE TRIGGER layer_in_bin_is_activity AFTER UPDATE OF binned ON public.all_layers FOR EACH ROW WHEN (((old.binned IS NULL) <> (new.binned IS NULL))) EXECUTE FUNCTION public.bin_is_activity('layer');
 
-CREATE TRIGGER layer_is_activity AFTER INSERT OR UPDATE OF name, slug, type, unit, description, palette, opacity, visible, draw_order, expression, automatic, locked, review, visibility ON public.all_layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
+CREATE TRIGGER layer_is_activity AFTER INSERT OR UPDATE OF name, slug, type, unit, description, palette, opacity, blend, visible, draw_order, group_name, expression, automatic, locked, review, visibility ON public.all_layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
 
 CREATE TRIGGER look_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, description, opacity, visible, draw_order ON public.looks FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('look');
 

@@ -11,3 +11,8 @@ CREATE OR REPLACE VIEW layers AS
   FROM all_layers
   WHERE binned IS NULL AND EXISTS (
     SELECT 1 FROM all_models m WHERE m.id = all_layers.model_id AND m.binned IS NULL);
+
+DROP TRIGGER layer_is_activity ON all_layers;
+CREATE TRIGGER layer_is_activity AFTER INSERT OR UPDATE OF
+  name, slug, type, unit, description, palette, opacity, blend, visible, draw_order, group_name, expression, automatic, locked, review, visibility ON all_layers
+  FOR EACH ROW EXECUTE FUNCTION thing_is_activity('layer');

@@ -5,7 +5,10 @@
 #include <iterator>
 #include <set>
 
+#include "core/text/ascii.h"
 #include "core/text/slug.h"
+#include "core/text/utf8.h"
+#include "domain/layers/group_name.h"
 #include "domain/tables/term_list.h"
 #include "protocol/parse.h"
 #include "store/tables/tables.h"
@@ -103,6 +106,17 @@ Result<protocol::Template> read_template(const std::filesystem::path& file) {
                      [&](const auto& table) { return table.slug == layer.table; }))
       return fail(ErrorCode::invalid, "Table not found",
                   "The layer " + layer.name + " needs a table that the template does not contain.");
+  if (read.group) {
+    std::vector<std::string> names{read.group->name};
+    for (const auto& [language, label] : read.group->labels.value_or(protocol::Labels()))
+      names.push_back(label);
+    for (const std::string& name : names)
+      if (trimmed(name) != name || name.empty() || character_count(name) > kMaxGroupLength)
+        return fail(
+            ErrorCode::invalid, "Invalid group",
+            "The name of the group must have 1 to 60 characters, without blanks at its ends.",
+            "group");
+  }
   return read;
 }
 

@@ -109,6 +109,7 @@ class FilteredQueries final : public Queries {
   Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
                               StatisticsOptions options) override {
     STRATA_TRY(layers_.check(layers));
+    if (selection.changed) STRATA_TRY(layers_.check(selection.changed->layers));
     return queries_.select(seen_by(selection), layers, options);
   }
   Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,

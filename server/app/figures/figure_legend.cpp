@@ -43,12 +43,13 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
     };
     return cover;
   }
-  cover.of = [&palette, opacity](double value) {
+  const bool hides = layer.blend == LayerBlend::normal;  // what is below
+  cover.of = [&palette, opacity, hides](double value) {
     const double alpha = color_of(palette, value)[3] / 255.0 * opacity;
     if (alpha <= 0) return query::Cover::nothing;
     const Palette::Point* point = point_of(palette, value);
     const bool is_solid = !point || point->pattern == Pattern::solid;
-    return is_solid && alpha >= kOpaque ? query::Cover::all : query::Cover::some;
+    return hides && is_solid && alpha >= kOpaque ? query::Cover::all : query::Cover::some;
   };
   return cover;
 }

@@ -38,7 +38,7 @@ Result<query::DrawnLayer> drawn(const Services& services, Role role, const query
     palette = std::move(by_key);
   }
   return query::DrawnLayer{view.snapshot.tiles, view.layer.resolution, view.layer.type,
-                           std::move(palette), view.layer.opacity, view.layer.blend};
+                           std::move(palette),  view.layer.opacity,    view.layer.blend};
 }
 
 }  // namespace

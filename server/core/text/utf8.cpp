@@ -48,6 +48,12 @@ std::string mended_utf8(std::string_view text) {
   return mended;
 }
 
+std::size_t character_count(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;  // not inside a character
+  }));
+}
+
 std::string_view first_bytes(std::string_view text, std::size_t most) {
   std::size_t end = std::min(text.size(), most);
   while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)

@@ -13,6 +13,9 @@ bool is_utf8(std::string_view text);
 // Replaces each byte that belongs to no character by U+FFFD.
 std::string mended_utf8(std::string_view text);
 
+// Returns the number of characters (code points), as PostgreSQL's char_length does.
+std::size_t character_count(std::string_view text);
+
 // Returns at most `most` first bytes, without a partial character at the end.
 std::string_view first_bytes(std::string_view text, std::size_t most);
 

@@ -1,7 +1,7 @@
 #include "query/conditions/changed_texels.h"
 
+#include <algorithm>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "domain/layers/tile_difference.h"
@@ -52,7 +52,20 @@ class ChangedTiles {
   std::vector<std::unique_ptr<TileMask>> masks_;
 };
 
+std::uint64_t bytes_without(const TileMap& tiles, const TileMap& others) {
+  std::uint64_t bytes = 0;
+  for (const auto& [address, tile] : tiles) {
+    const auto other = others.find(address);
+    if (tile && (other == others.end() || other->second != tile)) bytes += tile->values.size();
+  }
+  return bytes;
+}
+
 }  // namespace
+
+std::uint64_t bytes_apart(const TileMap& from, const TileMap& to) {
+  return bytes_without(from, to) + bytes_without(to, from);
+}
 
 void add_changed_texels(const Layer& layer, const TileMap& from, const TileMap& to,
                         const mesh::SurfaceMap& map, int threads, TexelSelection& selection) {

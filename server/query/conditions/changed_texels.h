@@ -7,6 +7,9 @@
 
 namespace strata::query {
 
+// Returns the bytes of tiles that only one of two contents has.
+std::uint64_t bytes_apart(const TileMap& from, const TileMap& to);
+
 // Adds to `selection` (of `map`) the surface texels at whose place the value or the validity of the
 // layer differs between two contents of it. The layer may have another resolution than the map:
 // then the texel that contains the center of the map's texel counts, as in conditions. Tiles that

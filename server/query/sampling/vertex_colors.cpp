@@ -76,8 +76,7 @@ Rgb VertexColors::at(std::span<const std::uint32_t> vertices) const {
     if (!bits) continue;
     const double value = decode_value(layer.type, *bits);
     const Rgba ink = color_of(*layer.palette, value);
-    color =
-        blended(layer.blend, color, {ink[0], ink[1], ink[2]}, cover_of(layer, value, ink));
+    color = blended(layer.blend, color, {ink[0], ink[1], ink[2]}, cover_of(layer, value, ink));
   }
   return rounded(color);
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "domain/layers/layer_blend.h"
 #include "domain/layers/palette.h"
 #include "domain/layers/tile_mirror.h"
 #include "media/picture.h"

@@ -134,49 +134,72 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::texels_withi
 // The state of a layer that is far back differs in few tiles from a near one: the journal reads
 // only these.
 Result<OpenRoom::QueriesPart::ChangedLayer> OpenRoom::QueriesPart::changed_layer(
-    const std::string& slug, const Selection::Changed& states) {
+    const std::string& slug, const ChangedSequences& last) {
   const auto found = STRATA_TRY(room_.state(slug));
   store::Journal& journal = room_.services_.store.journal();
-  const auto state_after =
-      [&](std::int64_t sequence,
-          const std::optional<TileMirror::Snapshot>& near) -> Result<TileMirror::Snapshot> {
-    STRATA_TRY(room_.check_durable(sequence));
-    const auto last = STRATA_TRY(journal.layer_sequences(room_.model().id, sequence));
-    const auto of_layer = last.find(found.layer.id);
-    const std::int64_t edit = of_layer == last.end() ? 0 : of_layer->second;
-    return near ? journal.load_tiles_near(found.layer, edit, *near)
-                : journal.load_tiles(found.layer, edit);
+  const auto edit_of = [&](const std::map<LayerId, std::int64_t>& edits) {
+    const auto of_layer = edits.find(found.layer.id);
+    return of_layer == edits.end() ? 0 : of_layer->second;
   };
-  auto to = STRATA_TRY(state_after(states.to, room_.durable_tiles(found.layer)));
-  auto from = STRATA_TRY(state_after(states.from, to));
+  const auto near = room_.durable_tiles(found.layer);
+  auto to = STRATA_TRY(near ? journal.load_tiles_near(found.layer, edit_of(last.to), *near)
+                            : journal.load_tiles(found.layer, std::optional(edit_of(last.to))));
+  auto from = STRATA_TRY(journal.load_tiles_near(found.layer, edit_of(last.from), to));
   return ChangedLayer{found.layer, std::move(from), std::move(to)};
 }
 
-// Returns nothing if the selection does not ask for changes. Reads one layer at a time.
-Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::changed_texels(
-    const Selection& selection, const mesh::SurfaceMap& map) {
-  if (!selection.changed) return std::nullopt;
-  query::TexelSelection changed(map.block_of_slot.size(), 0);
-  for (const std::string& slug : selection.changed->layers) {
+Result<std::vector<query::TexelSelection>> OpenRoom::QueriesPart::changed_texels(
+    const Selection::Changed& states, std::span<const mesh::SurfaceMap* const> maps) {
+  STRATA_TRY(room_.check_durable(states.from));
+  STRATA_TRY(room_.check_durable(states.to));
+  store::Journal& journal = room_.services_.store.journal();
+  ChangedSequences last;
+  last.from = STRATA_TRY(journal.layer_sequences(room_.model().id, states.from));
+  last.to = STRATA_TRY(journal.layer_sequences(room_.model().id, states.to));
+  std::vector<query::TexelSelection> changed;
+  for (const mesh::SurfaceMap* map : maps) changed.emplace_back(map->block_of_slot.size(), 0);
+  for (const std::string& slug : std::set(states.layers.begin(), states.layers.end())) {
     check_question();
-    const auto states = STRATA_TRY(changed_layer(slug, *selection.changed));
-    query::add_changed_texels(states.layer, states.from.tiles, states.to.tiles, map,
-                              mesh::background_threads(), changed);
+    const auto layer = STRATA_TRY(changed_layer(slug, last));
+    const QuestionMemory memory(query::bytes_apart(layer.from.tiles, layer.to.tiles));
+    check_question();
+    for (std::size_t i = 0; i < maps.size(); ++i)
+      query::add_changed_texels(layer.layer, layer.from.tiles, layer.to.tiles, *maps[i],
+                                mesh::background_threads(), changed[i]);
   }
   return changed;
 }
 
-// Returns nothing for the whole surface. A condition is evaluated only within the place, so that a
-// small place is answered quickly.
 Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texels(
     const Selection& selection, const mesh::SurfaceMap& map) {
+  const mesh::SurfaceMap* const maps[] = {&map};
+  auto selected = STRATA_TRY(select_texels(selection, maps));
+  return std::move(selected.front());
+}
+
+Result<std::vector<std::optional<query::TexelSelection>>> OpenRoom::QueriesPart::select_texels(
+    const Selection& selection, std::span<const mesh::SurfaceMap* const> maps) {
+  std::vector<query::TexelSelection> changed;
+  if (selection.changed) changed = STRATA_TRY(changed_texels(*selection.changed, maps));
+  std::vector<std::optional<query::TexelSelection>> selected;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    auto texels =
+        STRATA_TRY(select_texels(selection, *maps[i], selection.changed ? &changed[i] : nullptr));
+    selected.push_back(std::move(texels));
+  }
+  return selected;
+}
+
+// A condition is evaluated only within the place and the changed texels, so that a small place is
+// answered quickly.
+Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texels(
+    const Selection& selection, const mesh::SurfaceMap& map, const query::TexelSelection* changed) {
   auto inside = texels_within(selection, map);
   if (!inside) return inside;
-  if (auto changed = STRATA_TRY(changed_texels(selection, map))) {
-    if (*inside)
-      for (std::size_t slot = 0; slot < changed->size(); ++slot)
-        (*changed)[slot] &= (**inside)[slot];
-    *inside = std::move(changed);
+  if (changed && *inside) {
+    for (std::size_t slot = 0; slot < changed->size(); ++slot) (**inside)[slot] &= (*changed)[slot];
+  } else if (changed) {
+    *inside = *changed;
   }
   if (!selection.where) return inside;
   std::vector<std::string> slugs;
@@ -257,11 +280,16 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
   std::map<int, Selected> of_resolution;  // layers of one resolution share it
   std::set<int> resolutions{area.resolution};
   for (const auto& view : views) resolutions.insert(view.layer.resolution);
+  std::vector<std::shared_ptr<const mesh::SurfaceMap>> maps;
+  std::vector<const mesh::SurfaceMap*> of_maps;
   for (const int resolution : resolutions) {
     auto map = STRATA_TRY(room_.surface_map(resolution));
-    auto selected = STRATA_TRY(select_texels(selection, *map));
-    of_resolution[resolution] = {std::move(map), std::move(selected)};
+    of_maps.push_back(map.get());
+    maps.push_back(std::move(map));
   }
+  auto selected = STRATA_TRY(select_texels(selection, of_maps));
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    of_resolution[maps[i]->resolution] = {maps[i], std::move(selected[i])};
   const Selected& finest = of_resolution.at(area.resolution);
   const double m2_per_unit2 = room_.model().metres() * room_.model().metres();
   const auto extent =

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,14 +54,26 @@ class OpenRoom::QueriesPart final : public Queries {
     Layer layer;
     TileMirror::Snapshot from, to;
   };
-  Result<std::optional<query::TexelSelection>> changed_texels(const Selection& selection,
-                                                              const mesh::SurfaceMap& map);
-  Result<ChangedLayer> changed_layer(const std::string& slug, const Selection::Changed& states);
+  // The last edit of each layer up to the two states.
+  struct ChangedSequences {
+    std::map<LayerId, std::int64_t> from, to;
+  };
+  Result<ChangedLayer> changed_layer(const std::string& slug, const ChangedSequences& last);
+  // Returns a selection for each map. Reads one layer at a time, once for all maps.
+  Result<std::vector<query::TexelSelection>> changed_texels(
+      const Selection::Changed& states, std::span<const mesh::SurfaceMap* const> maps);
   // Returns nothing for the whole surface.
   Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
+  // The same for each map.
+  Result<std::vector<std::optional<query::TexelSelection>>> select_texels(
+      const Selection& selection, std::span<const mesh::SurfaceMap* const> maps);
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
+  // `changed`: null if the selection does not ask for changes.
+  Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,
+                                                             const mesh::SurfaceMap& map,
+                                                             const query::TexelSelection* changed);
   // `within` is null for the whole surface; `is_now`: the view is the newest, whose sums are
   // cached.
   Result<query::Statistics> count(const query::LayerView& view, const mesh::SurfaceMap& map,

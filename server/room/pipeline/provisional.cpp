@@ -55,7 +55,8 @@ std::shared_ptr<const Palette> provisional_palette() {
 void add_styles(const render::LayerStyle& style, std::optional<render::LayerHandle> waiting,
                 std::vector<render::LayerStyle>& styles) {
   styles.push_back(style);
-  if (waiting) styles.push_back({.layer = *waiting,
+  if (waiting)
+    styles.push_back({.layer = *waiting,
                       .palette = provisional_palette(),
                       .opacity = style.opacity,
                       .bare = true});

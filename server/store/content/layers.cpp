@@ -1,4 +1,6 @@
 #include "store/content/layers.h"
+#include "core/text/utf8.h"
+#include "domain/layers/group_name.h"
 #include "domain/layers/revision.h"
 #include "domain/tables/term_list.h"
 #include "store/pg/pg_row.h"
@@ -143,7 +145,6 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
-constexpr std::size_t kMaxGroupLength = 240;          // bytes of 60 characters
 constexpr std::size_t kMaxDescriptionLength = 40000;  // bytes of 10000 characters
 Result<void> keep_origin(PgConnection& connection, LayerId layer_id, const Layer& layer) {
   if (!layer.origin) return {};
@@ -169,7 +170,7 @@ Result<void> check(const Layer& layer) {
       !good)
     return good;
   if (layer.group) {
-    if (layer.group->empty() || layer.group->size() > kMaxGroupLength)
+    if (layer.group->empty() || character_count(*layer.group) > kMaxGroupLength)
       return fail(ErrorCode::malformed, "Invalid group", "`group` must have 1 to 60 characters.",
                   "group");
     STRATA_TRY(check_text(*layer.group, "group"));

@@ -124,7 +124,8 @@ Result<std::optional<std::chrono::system_clock::time_point>> Journal::time_of_st
     ModelId model_id, std::int64_t sequence) {
   return pool_.read([&](PgConnection& connection) -> Result<std::optional<Time>> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT time FROM edits WHERE model_id = $1 AND sequence <= $2 ORDER BY sequence DESC LIMIT 1",
+        "SELECT e.time FROM edits e JOIN all_layers l ON l.id = e.layer_id "
+        "WHERE e.model_id = $1 AND e.sequence <= $2 AND l.visibility = 'public' ORDER BY e.sequence DESC LIMIT 1",
         Params().id(model_id).integer(sequence)));
     return rows.rows() == 0 ? std::nullopt : std::optional(rows.time(0, 0));
   });

@@ -91,7 +91,8 @@ class Journal {
   // Returns the sequence of the last edit until a time (the text of core/text/timestamp.h); 0
   // before the first edit.
   Result<std::int64_t> sequence_at(ModelId model_id, const std::string& utc);
-  // Returns when the last edit up to a sequence was made; nothing: no edit exists up to it.
+  // Returns when the last edit of a layer that everybody sees was made, up to a sequence; nothing:
+  // no such edit exists.
   Result<std::optional<std::chrono::system_clock::time_point>> time_of_state(ModelId model_id,
                                                                              std::int64_t sequence);
   Result<std::uint64_t> revision_bytes(ModelId model_id);

@@ -12,7 +12,9 @@
 namespace strata::store {
 namespace {
 
-constexpr int kMaxRows = 5000;  // journal rows that are read for each list
+// Rows of the journal that are read for a list of `limit` steps: a stroke has a row for each batch,
+// and a long one has hundreds.
+constexpr int most_rows_of(int limit) { return limit * 8 + 500; }
 
 constexpr auto kLayers = sql(
     "WITH l AS (SELECT id, id = any($2) AS pending FROM unnest($1::bigint[]) AS id) "
@@ -39,11 +41,12 @@ struct Row {
 
 // Joins the batches of each stroke, in the order of the rows.
 Result<std::vector<Row>> steps_of(PgConnection& connection, const char* statement,
-                                  const Params& params, bool& is_cut) {
+                                  const Params& params, int most_rows, bool& is_cut) {
   auto rows = STRATA_TRY(connection.query(statement, params));
-  is_cut = rows.rows() >= kMaxRows;
+  is_cut = rows.rows() >= most_rows;
   std::vector<Row> found;
   std::map<std::tuple<LayerId, Uuid, std::int64_t>, std::size_t> of_stroke;
+  std::size_t last = 0;  // step of the last row
   for (int i = 0; i < rows.rows(); ++i) {
     PgRow columns(rows, i);
     Row row;
@@ -57,6 +60,7 @@ Result<std::vector<Row>> steps_of(PgConnection& connection, const char* statemen
     row.undone_by = columns.integer();
     const auto [known, is_new] =
         of_stroke.try_emplace({row.step.layer, row.step.stroke, row.undone_by}, found.size());
+    last = known->second;
     if (is_new) {
       found.push_back(std::move(row));
       continue;
@@ -66,6 +70,8 @@ Result<std::vector<Row>> steps_of(PgConnection& connection, const char* statemen
     step.texels += row.step.texels;
     step.area_m2 += row.step.area_m2;
   }
+  // Rows of this step may be missing.
+  if (is_cut && found.size() > 1) found.erase(found.begin() + static_cast<std::ptrdiff_t>(last));
   return found;
 }
 
@@ -124,11 +130,12 @@ Result<UndoSteps> Journal::undo_steps(ModelId model_id, const std::string& user,
   for (const LayerId id : query.pending_only) pending.add(id);
   return pool_.read([&](PgConnection& connection) -> Result<UndoSteps> {
     Params params;
-    params.array(layers).array(pending).text(user).integer(kMaxRows);
+    const int most_rows = most_rows_of(query.limit);
+    params.array(layers).array(pending).text(user).integer(most_rows);
     UndoSteps steps;
     bool done_cut = false, undone_cut = false;
-    auto done = STRATA_TRY(steps_of(connection, kDone.c_str(), params, done_cut));
-    auto undone = STRATA_TRY(steps_of(connection, kUndone.c_str(), params, undone_cut));
+    auto done = STRATA_TRY(steps_of(connection, kDone.c_str(), params, most_rows, done_cut));
+    auto undone = STRATA_TRY(steps_of(connection, kUndone.c_str(), params, most_rows, undone_cut));
     steps.more = done_cut || static_cast<int>(done.size()) > query.limit;
     steps.done = first_of(std::move(done), query.limit);
     steps.undone = first_of(redos_in_order(std::move(undone)), query.limit);

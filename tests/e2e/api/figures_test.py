@@ -607,6 +607,9 @@ def test_legends(server):
     assert told(lang="es")[0] == "High", "it has no name in Spanish"
     figure(server, 422, lang="x" * 36, direction="top")
     assert told({"opacity": 0.5}) == ["High", "High 1", "Low", "Low 1", "Low 2"]
+    server.ok("PATCH", M + "/layers/high", {"blend": "multiply"})
+    assert told() == ["High", "High 1", "Low", "Low 1", "Low 2"], "multiplied, it hides nothing"
+    server.ok("PATCH", M + "/layers/high", {"blend": "normal"})
     assert told({"visible": False}) == ["Low", "Low 1", "Low 2"]
     hatched = {
         "palette": {

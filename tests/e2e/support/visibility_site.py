@@ -237,7 +237,11 @@ def reading_bodies(camera):
         "measure_section": [{"section": [[0, 0, -1, 0.0005]]}],
         "pick": [{"camera": camera, "x": 300, "y": 200}],
         "profile": [line],
-        "select": [{"where": "cracks > 0", "layers": ["cracks", "finds"]}],
+        "select": [
+            {"where": "cracks > 0", "layers": ["cracks", "finds"]},
+            {"changed": {"from": 0}},
+            {"changed": {"from": 0, "layers": ["cracks"]}},
+        ],
         "cross_table": [{"rows": "finds", "columns": "cracks"}],
         "frame": [
             {"camera": camera, "format": "png"},
@@ -375,6 +379,7 @@ def names_unknown(server, token, camera):
         ),
         ("POST", M + "/select", {"where": f'"{LAYER}" > 0'}),
         ("POST", M + "/select", {"where": "cracks > 0", "layers": [LAYER]}),
+        ("POST", M + "/select", {"changed": {"from": 0, "layers": [LAYER]}}),
         ("POST", M + "/select", {"where": f"finds.\"{COLUMN}\" = 'x'"}),
         ("GET", query(M + "/layers/cracks/statistics", where=f'valid("{LAYER}")'), None),
         ("GET", query(M + "/layers/finds/texels.csv", columns=COLUMN), None),

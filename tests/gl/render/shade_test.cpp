@@ -246,8 +246,8 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
       Palette::Point point{7, {0, 0, 255, 255}};
       point.pattern = c.pattern, point.angle = c.angle, point.spacing_mm = c.spacing_mm;
       auto inked = std::make_shared<Palette>(Palette{mode, 0, 10, {point}, {}});
-      request_.style.layers = {
-          {lower, red, 1}, {.layer = upper, .palette = inked, .opacity = 1, .bare = c.bare}};
+      request_.style.layers = {{lower, red, 1},
+                               {.layer = upper, .palette = inked, .opacity = 1, .bare = c.bare}};
       const auto frame = renderer_.draw(request_);
       double worst = 0;
       std::size_t covered = 0;
@@ -379,7 +379,8 @@ TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
   expect_color(layers, expected, lit);
 }
 
-// One channel of a layer over what is below, both from 0 to 1, in plain C++. `ink` is without light.
+// One channel of a layer over what is below, both from 0 to 1, in plain C++. `ink` is without
+// light.
 double blended(LayerBlend blend, double below, double ink, double lit, double cover) {
   const double over = blend == LayerBlend::multiply ? below * ink
                       : blend == LayerBlend::screen ? 1 - (1 - below) * (1 - ink * lit)
@@ -406,8 +407,7 @@ TEST_F(Shade, layers_filter_and_lighten_what_is_below_in_one_draw_and_in_several
         const float opacity = i == 0 ? 1.0f : 0.3f + 0.05f * static_cast<float>(turn);
         auto palette =
             std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
-        layers.push_back(
-            {filled_layer(static_cast<ValueType>(i % 8), 1), palette, opacity, blend});
+        layers.push_back({filled_layer(static_cast<ValueType>(i % 8), 1), palette, opacity, blend});
         for (std::size_t c = 0; c < 3; ++c)
           expected[c] = blended(blend, expected[c], color[c] / 255.0, lit, opacity);
       }

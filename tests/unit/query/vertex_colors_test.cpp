@@ -83,15 +83,12 @@ TEST(VertexColors, layers_cover_each_other_by_opacity_and_alpha_from_bottom_to_t
 }
 
 TEST(VertexColors, layers_filter_or_lighten_what_is_below) {
-  for (const auto& [blend, expected] :
-       {std::pair{LayerBlend::multiply, Rgb{0x60, 0x20, 0x10}},
-        std::pair{LayerBlend::screen, Rgb{0xff, 0x90, 0x60}}}) {
+  for (const auto& [blend, expected] : {std::pair{LayerBlend::multiply, Rgb{0x60, 0x20, 0x10}},
+                                        std::pair{LayerBlend::screen, Rgb{0xff, 0x90, 0x60}}}) {
     VertexColors colors(square());
     auto layer = layer_at_origin(7, one_class({255, 0, 0, 255}));
-    layer.palette =
-        std::make_shared<const Palette>(one_class(blend == LayerBlend::multiply
-                                                      ? Rgba{255, 0x80, 0x80, 255}
-                                                      : Rgba{255, 0x6b, 0x49, 255}));
+    layer.palette = std::make_shared<const Palette>(one_class(
+        blend == LayerBlend::multiply ? Rgba{255, 0x80, 0x80, 255} : Rgba{255, 0x6b, 0x49, 255}));
     layer.blend = blend;
     colors.add_layer(std::move(layer));
     const Rgb got = at(colors, {0});

@@ -37,6 +37,31 @@ export function groupCalled(text: string, layers: readonly Grouped[]): string {
 }
 
 /**
+ * The layers from top to bottom after `layer` moved to `index` of the list without it. Only this
+ * layer changes its place among the others: it follows a layer of its group that is listed above,
+ * else it precedes the one that is listed below.
+ */
+export function withMoved<L extends Grouped>(top: readonly L[], layer: L, index: number): L[] {
+  const listed = groupsOf(top)
+    .flatMap(({ layers }) => layers)
+    .filter(({ id }) => id !== layer.id);
+  const above = listed[index - 1];
+  const below = listed[index];
+  const others = top.filter(({ id }) => id !== layer.id);
+  const before = top.findIndex(({ id }) => id === layer.id);
+  const isWith = (other: L | undefined): boolean =>
+    other !== undefined && (other.group ?? "") === (layer.group ?? "");
+  let at = others.length;
+  if (above && isWith(above)) at = others.indexOf(above) + 1;
+  else if (below) at = others.indexOf(below);
+  // At the top of its group it stays where the group is listed.
+  if (layer.group && !isWith(above) && isWith(below) && isWith(top[before]))
+    at = Math.min(at, before);
+  others.splice(at, 0, layer);
+  return others;
+}
+
+/**
  * The place of a layer one step up (-1) or down (1) in the list without it. It stays in its group;
  * a layer without a group passes over whole groups. Null: it is the first or last one.
  */

@@ -1267,6 +1267,8 @@ export const texts = {
       opacity: "Deckkraft",
       visible: "Vorgabe der Sichtbarkeit",
       draw_order: "Reihenfolge",
+      group_name: "Gruppe",
+      blend: "Mischmodus",
       locked: "Sperre",
       review: "Prüfung",
       visibility: "Sichtbarkeit für Personen",

@@ -1222,6 +1222,8 @@ export const texts = {
       opacity: "opacity",
       visible: "visibility by default",
       draw_order: "order",
+      group_name: "group",
+      blend: "blending mode",
       locked: "lock",
       review: "review",
       visibility: "who can see it",

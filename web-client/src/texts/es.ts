@@ -1257,6 +1257,8 @@ export const texts = {
       opacity: "opacidad",
       visible: "visibilidad predeterminada",
       draw_order: "orden",
+      group_name: "grupo",
+      blend: "modo de mezcla",
       locked: "bloqueo",
       review: "revisión",
       visibility: "quién lo puede ver",

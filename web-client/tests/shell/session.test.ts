@@ -613,7 +613,7 @@ describe("how a person shows the layers", () => {
   it("has an order of their own, which changes no layer for others", async () => {
     await open("viewer");
     answers.set(kKeep, [200, { layers: [] }]);
-    session.layers.move(session.layers.all[0]!, 1);
+    session.layers.arrange([...session.layers.all].reverse());
     expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([
       [8, 1],
       [7, 0],

@@ -16,6 +16,7 @@ import {
   opaqueColor,
   rampColors,
   recordPalette,
+  samePalette,
   swatchStyle,
   type Ramp,
 } from "../../domain/palette";
@@ -438,7 +439,10 @@ export class StrataColorDialog extends LitElement {
     const { _before: before } = this;
     this._before = null;
     if (!before || !this.session.layers.find(this.layer.id)) return;
-    this.session.layers.setPalette(this.layer, before === this.layer.palette ? null : before);
+    this.session.layers.setPalette(
+      this.layer,
+      samePalette(before, this.layer.palette) ? null : before,
+    );
   }
 }
 

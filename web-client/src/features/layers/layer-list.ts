@@ -90,12 +90,6 @@ export class LayerList {
     }
     this.changedByHand();
   }
-  /** Moves the layer to the place `index` of the list, which is bottom to top, for this person. */
-  move(layer: Layer, index: number): void {
-    const wanted = this.all.filter((other) => other.id !== layer.id);
-    wanted.splice(Math.max(0, Math.min(index, wanted.length)), 0, layer);
-    this.arrange(wanted);
-  }
   /** Puts the layers, bottom to top, in this order, for this person. */
   arrange(wanted: readonly Layer[]): void {
     // Changes the order of as few layers as possible, so that a new layer appears at its default

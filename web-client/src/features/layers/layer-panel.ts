@@ -23,7 +23,7 @@ import {
   layerFilterStyles,
 } from "./layer-filter";
 import { groupRow, groupRowStyles, regroup } from "./group-row";
-import { groupsOf, placeAfterStep } from "../../domain/layer-groups";
+import { groupsOf, placeAfterStep, withMoved } from "../../domain/layer-groups";
 import { Kept } from "../../core/kept";
 import { layerNotes, whoIsLocked } from "./layer-notes";
 import { layerPanelStyles } from "./layer-panel-styles";
@@ -123,30 +123,52 @@ export class StrataLayerPanel extends LitElement {
     </li>`;
   }
 
-  /** `to`: in the list without the dragged row. It joins the group of the row under the pointer. */
+  /**
+   * `to`: in the list without the dragged row. It joins the group of the row under the pointer;
+   * between two rows of one group, it joins that group.
+   */
   private drop(id: number | string, to: number, over: number | null): void {
     const layer = this.session.layers.find(Number(id));
     if (!layer) return;
     const { rows } = this;
     const target = over === null ? null : rows[over]!;
-    const before = rows.filter((row) => row !== layer).slice(0, to);
+    const others = rows.filter((row) => row !== layer);
+    const before = others.slice(0, to);
+    const [above, below] = [before.at(-1), others[to]];
+    const groupOf = (row: Layer | string | undefined): string =>
+      typeof row === "string" ? row : (row?.group ?? "");
     // the upper half of a heading is the end of what is above it
     const isAbove = typeof target === "string" && !before.includes(target);
-    const beside = isAbove ? before.at(-1) : target;
-    const group = typeof beside === "string" ? beside : (beside?.group ?? "");
-    if (group !== (layer.group ?? "")) {
-      if (!this.session.canCurate) return;
-      void regroup(this.session, [layer], group);
+    const share = typeof below !== "string" && groupOf(above) === groupOf(below);
+    const wanted =
+      target !== null ? groupOf(isAbove ? above : target) : share ? groupOf(above) : layer.group;
+    const group = this.session.canCurate ? (wanted ?? "") : (layer.group ?? "");
+    if (group !== (layer.group ?? "")) void regroup(this.session, [layer], group);
+    this.move(
+      { ...layer, ...(group ? { group } : { group: undefined }) },
+      this.placeOf(layer, above, below),
+    );
+  }
+
+  /** The place of `layer` in the list without it, between two rows. */
+  private placeOf(
+    layer: Layer,
+    above: Layer | string | undefined,
+    below: Layer | string | undefined,
+  ): number {
+    const listed = this.listed.filter((each) => each !== layer);
+    const first = (name: string): number => listed.findIndex((each) => each.group === name);
+    if (above === undefined) return 0;
+    if (typeof above !== "string") return listed.indexOf(above) + 1;
+    if (first(above) >= 0) {
+      const isFolded = below === undefined || typeof below === "string" || below.group !== above;
+      return isFolded
+        ? first(above) + listed.filter((each) => each.group === above).length
+        : first(above);
     }
-    const last = before.at(-1);
-    const others = this.listed.filter((each) => each !== layer);
-    const at =
-      last === undefined
-        ? 0
-        : typeof last === "string"
-          ? others.findIndex((each) => each.group === last)
-          : others.indexOf(last) + 1;
-    this.move(layer, Math.max(0, at));
+    // the heading of the dragged layer alone
+    if (below === undefined) return listed.length;
+    return typeof below === "string" ? first(below) : listed.indexOf(below);
   }
 
   /** All layers in the order of the list, also those of folded groups. */
@@ -427,11 +449,14 @@ export class StrataLayerPanel extends LitElement {
     this.dispatchEvent(new CustomEvent<LayerPanelRequest>("request", { detail }));
   }
 
-  /** `index` counts from the top of the list of all layers, without the layer itself. */
+  /**
+   * `index` counts from the top of the list of all layers, without the layer itself, which has the
+   * group that it will have.
+   */
   private move(layer: Layer, index: number): void {
-    const others = this.listed.filter((each) => each !== layer);
-    others.splice(index, 0, layer);
-    this.session.layers.arrange(others.reverse());
+    const { layers } = this.session;
+    const top = withMoved([...layers.all].reverse(), layer, index);
+    layers.arrange(top.reverse().flatMap(({ id }) => layers.find(id) ?? []));
   }
 
   private async saveDefault(): Promise<void> {

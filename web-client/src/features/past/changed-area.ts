@@ -43,6 +43,7 @@ export class ChangedArea {
         );
       }, kWaitMs);
     }
+    this._changed();
   }
 
   stop(): void {

@@ -30,10 +30,6 @@ export class Snapshots {
   get all(): Snapshot[] {
     return this._known.all.sort((a, b) => a.sequence - b.sequence || a.id - b.id);
   }
-  /** Those of a state. */
-  of(sequence: number): Snapshot[] {
-    return this.all.filter((snapshot) => snapshot.sequence === sequence);
-  }
   mayChange({ user }: Snapshot): boolean {
     return user === this._host.user() || this._host.canCurate();
   }

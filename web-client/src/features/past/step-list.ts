@@ -132,9 +132,11 @@ export class StrataStepList extends LitElement {
       changed: () => this.requestUpdate(),
     });
     const seen = JSON.stringify(session.layers.all.map(({ id, sequence }) => [id, sequence]));
-    if (seen === this._read || this._steps.progress) return;
+    if (seen === this._read || this._steps.isGoing) return;
+    const isFirst = this._read === "";
     this._read = seen;
-    void this._steps.load();
+    if (isFirst) void this._steps.load();
+    else this._steps.loadSoon();
   }
 
   override firstUpdated(): void {
@@ -213,7 +215,7 @@ export class StrataStepList extends LitElement {
         class="quiet ${step.isUndone ? "undone" : ""}"
         data-step=${step.last}
         aria-current=${isCurrent ? "step" : nothing}
-        ?disabled=${this._steps.progress !== null}
+        ?disabled=${this._steps.isGoing}
         @click=${() => void this.goTo(step)}
       >
         ${color === null ? html`<span></span>` : html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>`}
@@ -231,7 +233,7 @@ export class StrataStepList extends LitElement {
         class="quiet"
         data-step="0"
         aria-current=${isCurrent ? "step" : nothing}
-        ?disabled=${this._steps.progress !== null}
+        ?disabled=${this._steps.isGoing}
         @click=${() => void this.goTo(null)}
       >
         <span></span><b>${words.before_first}</b>
@@ -245,8 +247,9 @@ export class StrataStepList extends LitElement {
       notices.show("info", texts.past[session.past.isActive ? "paint_refused" : "saving_first"]);
       return;
     }
-    const walked = await this._steps.goTo(step);
-    switch (walked.ended) {
+    const outcome = await this._steps.goTo(step);
+    switch (outcome?.ended) {
+      case undefined:
       case "there":
       case "stopped":
         break;
@@ -254,7 +257,7 @@ export class StrataStepList extends LitElement {
         notices.show("info", words.elsewhere);
         break;
       case "refused":
-        notices.show("problem", words.refused(walked.turns, walked.of), walked.why.message);
+        notices.show("problem", words.refused(outcome.done, outcome.of), outcome.why.message);
     }
   }
 

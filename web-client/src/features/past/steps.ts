@@ -8,6 +8,7 @@ import type { UndoStep, UndoSteps } from "../../core/protocol.gen";
 import { currentOf, listOf, onLayers, turnsTo, type ListedStep } from "../../domain/undo-steps";
 
 const kSteps = 100; // of each kind
+const kWaitMs = 300; // another edit follows
 
 export interface StepsHost {
   /** Whether the person can change the layer. */
@@ -15,10 +16,10 @@ export interface StepsHost {
   changed(): void;
 }
 
-/** How a walk to a step ended. */
-export type Walked =
-  | { ended: "there" | "stopped" | "elsewhere"; turns: number }
-  | { ended: "refused"; turns: number; of: number; why: ApiError };
+/** How the way to a step ended, and after how many undos or redos. */
+export type Outcome =
+  | { ended: "there" | "stopped" | "elsewhere"; done: number }
+  | { ended: "refused"; done: number; of: number; why: ApiError };
 
 export class Steps {
   /** Newest first; null: not read. */
@@ -26,11 +27,14 @@ export class Steps {
   failed = false;
   /** There are earlier steps that the list leaves out. */
   more = false;
-  /** While a walk goes on. */
+  /** Of the undos or redos that lead to a step. */
   progress: { done: number; of: number } | null = null;
+  /** On the way to a step, including the reads before and after it. */
+  isGoing = false;
   private _known: UndoSteps | null = null;
   private _asked = 0;
   private _stops = false;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
 
   constructor(
     private readonly _api: Api,
@@ -43,7 +47,20 @@ export class Steps {
     return this.list && currentOf(this.list);
   }
 
+  /** Reads the steps, unless they are read on the way to a step anyway. */
   async load(): Promise<void> {
+    if (!this.isGoing) await this.read();
+  }
+
+  /** Reads them once after several edits. */
+  loadSoon(): void {
+    this._timer ??= setTimeout(() => {
+      this._timer = null;
+      void this.load();
+    }, kWaitMs);
+  }
+
+  private async read(): Promise<void> {
     const question = ++this._asked;
     try {
       const steps = await this._api.json("GET /models/{model}/undo", {
@@ -63,15 +80,30 @@ export class Steps {
     this._host.changed();
   }
 
-  /** Makes `target` the newest step in force; null: none of the list. */
-  async goTo(target: UndoStep | null): Promise<Walked> {
-    await this.load(); // others may have undone or rejected some since
-    const turns = this._known && !this.failed ? turnsTo(this._known, target) : [];
+  /**
+   * Makes `target` the newest step in force; null: none of the list. Undefined: the way to another
+   * step has not ended.
+   */
+  async goTo(target: UndoStep | null): Promise<Outcome | undefined> {
+    if (this.isGoing) return undefined;
+    this.isGoing = true;
     this._stops = false;
+    this._host.changed();
+    try {
+      return await this.go(target);
+    } finally {
+      this.isGoing = false;
+      this._host.changed();
+    }
+  }
+
+  private async go(target: UndoStep | null): Promise<Outcome> {
+    await this.read(); // others may have undone or rejected some since
+    const turns = this._known && !this.failed ? turnsTo(this._known, target) : [];
     let done = 0;
     try {
       for (const { op, step } of turns) {
-        if (this._stops) return { ended: "stopped", turns: done };
+        if (this._stops) return { ended: "stopped", done };
         this.progress = { done, of: turns.length };
         this._host.changed();
         await this._api.json(`POST /models/{model}/layers/{layer}/${op}`, {
@@ -82,17 +114,19 @@ export class Steps {
       }
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      return { ended: "refused", turns: done, of: turns.length, why: error };
+      return { ended: "refused", done, of: turns.length, why: error };
     } finally {
       this.progress = null;
-      await this.load();
+      await this.read();
     }
     const there = (this.current?.last ?? 0) === (target?.last ?? 0);
-    return { ended: there ? "there" : "elsewhere", turns: done };
+    return { ended: there ? "there" : "elsewhere", done };
   }
 
-  /** Ends the walk after the current turn. */
+  /** Ends the way to a step after the current undo or redo, and waiting reads. */
   stop(): void {
     this._stops = true;
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
   }
 }

@@ -16,10 +16,12 @@ describe("the changed area", () => {
   let cleared: number;
   let show: (request: LitRequest) => Promise<SelectResponse>;
   let area: ChangedArea;
+  let told: unknown[]; // what was measured at each change
   beforeEach(() => {
     vi.useFakeTimers();
     asked = [];
     cleared = 0;
+    told = [];
     show = () => Promise.resolve(answer);
     area = new ChangedArea(
       {
@@ -29,7 +31,7 @@ describe("the changed area", () => {
         },
         clear: () => void (cleared += 1),
       },
-      () => {},
+      () => told.push(area.measured),
     );
   });
   afterEach(() => vi.useRealTimers());
@@ -61,7 +63,9 @@ describe("the changed area", () => {
     area.follow(3, []);
     await wait();
     expect(asked).toEqual([]);
-    expect(area.measured?.texels).toBe(0);
+    expect(told).toEqual([{ texels: 0, area_m2: 0, share: 0 }]);
+    area.follow(3, kLayers);
+    expect(told.at(-1)).toBeNull(); // no area of another state
   });
 
   it("tells a refusal, but not that a later request replaced it", async () => {

@@ -1,0 +1,9 @@
+#pragma once
+
+#include <cstddef>
+
+namespace strata {
+
+constexpr std::size_t kMaxGroupLength = 60;  // characters of the heading of layers
+
+}  // namespace strata
