@@ -20,9 +20,11 @@ layout(binding = 2) uniform sampler2D palettes;
 layout(binding = 3) uniform usampler2DArray chunk_values[CHUNK_COUNT];
 layout(binding = 9) uniform usampler2DArray chunk_valid[CHUNK_COUNT];
 #endif
-// The first draw replaces the content; later ones draw over it: picture + kept * content.
+// The first draw replaces the content. Later ones (OVER) draw over it: picture + kept * content.
 layout(location = 0, index = 0) out vec4 picture;
+#ifdef OVER
 layout(location = 0, index = 1) out vec4 kept;
+#endif
 
 // What is drawn over the content: added + kept * content.
 struct Color {
@@ -189,7 +191,11 @@ void main() {
 #ifdef CUT
   if (texelFetch(surface_uv, pixel, 0).r == kBackground) surface.rgb = cut_color(pixel);
 #endif
-  Color color = Color(shade.first_pass != 0u ? surface.rgb : vec3(0.0), vec3(1.0));
+#ifdef OVER
+  Color color = Color(vec3(0.0), vec3(1.0));
+#else
+  Color color = Color(surface.rgb, vec3(1.0));
+#endif
 #if CHUNK_COUNT > 0
   uint q = texelFetch(surface_uv, pixel, 0).r;
   if (q != kBackground) {  // not the inside of a cut solid
@@ -205,5 +211,7 @@ void main() {
   }
 #endif
   picture = vec4(color.added, 1.0);
+#ifdef OVER
   kept = vec4(color.kept, 1.0);
+#endif
 }

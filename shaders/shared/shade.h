@@ -64,8 +64,7 @@ struct ShadeUniforms {
   vec4 patterns;
   uint picture_height;
   uint layer_count;
-  uint first_pass;  // 1: start from the surface; 0: blend over earlier draws
-  uint unused;
+  uint unused_a, unused_b;
 };
 STRATA_SHARED_END
 #ifdef __cplusplus

@@ -52,11 +52,11 @@ Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir,
   auto background =
       STRATA_TRY(gl::Program::load(shader_dir, {"picture.vert", "background_pass.frag"}));
   pass.background_ = std::move(background);
-  STRATA_TRY(pass.program({}, false));
+  STRATA_TRY(pass.program({}, false, true));
   return pass;
 }
 
-Result<const gl::Program*> ShadePass::program(const Batch& batch, bool shows_inside) {
+Result<const gl::Program*> ShadePass::program(const Batch& batch, bool shows_inside, bool first) {
   std::string kinds;
   for (std::size_t i = 0; program_per_kinds_ && i < batch.layers.size(); ++i) {
     const auto& layer = batch.layers[i];
@@ -64,11 +64,12 @@ Result<const gl::Program*> ShadePass::program(const Batch& batch, bool shows_ins
              std::to_string(layer.type) + "u, " + std::to_string(batch.units[i]) + "u, " +
              std::to_string(layer.patterns) + "u, " + std::to_string(layer.blend) + "u) ";
   }
-  const std::tuple key{batch.chunks.size(), kinds, shows_inside};
+  const std::tuple key{batch.chunks.size(), kinds, shows_inside, first};
   const auto built = programs_.find(key);
   if (built != programs_.end()) return &built->second;
   std::vector<std::string> defines{"CHUNK_COUNT " + std::to_string(batch.chunks.size())};
   if (shows_inside) defines.emplace_back("CUT");
+  if (!first) defines.emplace_back("OVER");
   if (!kinds.empty()) defines.push_back("LAYERS " + kinds);
   auto program =
       STRATA_TRY(gl::Program::load(shader_dir_, {"picture.vert", "shade_pass.frag"}, defines));
@@ -176,6 +177,8 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
   auto drawn = draw_all();
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
+  // Drivers refuse draws to two textures while the function has two sources, also without blending.
+  glBlendFunc(GL_ONE, GL_ZERO);
   glDepthMask(GL_TRUE);
   return drawn;
 }
@@ -202,7 +205,7 @@ Result<void> ShadePass::draw_background(const ShadeInput& input) {
 Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch, bool first,
                                      const PageTables& tables) {
   if (input.surface_rect.width == 0) return {};
-  auto built = STRATA_TRY(program(batch, input.shows_inside));
+  auto built = STRATA_TRY(program(batch, input.shows_inside, first));
   STRATA_TRY(layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)));
   layers_.bind_uniform(1);
   tables.bind(0);
@@ -216,7 +219,6 @@ Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch
   }
   shader::ShadeUniforms uniforms{};
   uniforms.layer_count = static_cast<std::uint32_t>(batch.layers.size());
-  uniforms.first_pass = first ? 1 : 0;
   uniforms.patterns = {input.patterns.origin, input.patterns.mm_per_pixel,
                        input.patterns.pixel_scale};
   return draw(input, *built, input.surface_rect, uniforms);

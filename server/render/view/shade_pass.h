@@ -72,7 +72,7 @@ class ShadePass {
     std::vector<Chunk> chunks;
   };
   bool can_take(const Batch& batch, const Chunk& chunk, bool listed) const;
-  Result<const gl::Program*> program(const Batch& batch, bool shows_inside);
+  Result<const gl::Program*> program(const Batch& batch, bool shows_inside, bool first);
   std::vector<Batch> plan(std::span<const ShadeInput::Layer> layers);
   Result<void> draw_background(const ShadeInput& input);
   Result<void> draw_surface(const ShadeInput& input, const Batch& batch, bool first,
@@ -84,8 +84,8 @@ class ShadePass {
   std::filesystem::path shader_dir_;
   bool program_per_kinds_ = false;
   gl::Program background_;
-  // by chunks, kinds and whether they show insides, built on first use
-  std::map<std::tuple<std::size_t, std::string, bool>, gl::Program> programs_;
+  // by chunks, kinds, whether they show insides and whether they draw first, built on first use
+  std::map<std::tuple<std::size_t, std::string, bool, bool>, gl::Program> programs_;
   gl::VertexArray no_vertices_{"picture"};
   PaletteTextures palettes_;
   StreamBuffer uniforms_{"shade uniforms"}, layers_{"shade layers"};

@@ -128,8 +128,8 @@ test("a state gets a name, and a mark on the slider", async () => {
   await bar(ada).getByText(snapshots.none).waitFor();
   await button(ada, snapshots.name_now).click();
   const dialog = naming(ada);
-  await dialog.getByLabel(snapshots.fields.name).fill("Before cleaning");
-  await dialog.getByLabel(snapshots.fields.text).fill("With the poultice marks");
+  await dialog.getByRole("textbox", { name: snapshots.fields.name }).fill("Before cleaning");
+  await dialog.getByRole("textbox", { name: snapshots.fields.text }).fill("With the poultice marks");
   await shoot(ada, "naming");
   await dialog.getByRole("button", { name: snapshots.save }).click();
   await bar(ada).locator("[data-snapshot]").waitFor();
@@ -156,7 +156,7 @@ test("others see the snapshot, but only its author changes it", async () => {
   await button(ada, menu).click();
   await bar(ada).getByRole("menuitem", { name: snapshots.rename }).click();
   const dialog = naming(ada);
-  await dialog.getByLabel(snapshots.fields.name).fill("Before all");
+  await dialog.getByRole("textbox", { name: snapshots.fields.name }).fill("Before all");
   await dialog.getByRole("button", { name: words.save, exact: true }).click();
   for (const who of [ada, ben])
     await bar(who).locator("[data-snapshot]").getByText("Before all").waitFor();
