@@ -54,9 +54,10 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
       {"CHUNK_COUNT 4"},
       {"CHUNK_COUNT 5"},
       {"CHUNK_COUNT 6"},
-      {"CHUNK_COUNT 1", "LAYERS SHADE_LAYER(0u, 0u, 0u, 1u, 0u)"},
-      {"CHUNK_COUNT 6",
-       "LAYERS SHADE_LAYER(0u, 0u, 7u, 1u, 1u) SHADE_LAYER(1u, 1u, 4u, 6u, 0u) SHADE_LAYER(2u, 2u, 6u, 63u, 1u)"}}},
+      {"CHUNK_COUNT 1", "OVER"},
+      {"CHUNK_COUNT 1", "CUT", "LAYERS SHADE_LAYER(0u, 0u, 0u, 1u, 0u, 0u)"},
+      {"CHUNK_COUNT 6", "OVER",
+       "LAYERS SHADE_LAYER(0u, 0u, 7u, 1u, 1u, 0u) SHADE_LAYER(1u, 1u, 4u, 6u, 0u, 1u) SHADE_LAYER(2u, 2u, 6u, 63u, 2u, 2u)"}}},
 };
 
 TEST(Shaders, every_file_belongs_to_a_program_and_every_program_builds) {

@@ -84,6 +84,14 @@ export class StrataMenu extends LitElement {
       </div>`;
   }
 
+  constructor() {
+    super();
+    // The browser closes the list; nothing behind it must close, too.
+    this.addEventListener("keydown", (event) => {
+      if (event.key === "Escape" && this._list.matches(":popover-open")) event.stopPropagation();
+    });
+  }
+
   private open(event: Event): void {
     event.stopPropagation();
     this._list.showPopover();

@@ -23,7 +23,8 @@ const words = texts.snapshots;
 @customElement("strata-snapshot-list")
 export class StrataSnapshotList extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @property({ attribute: false }) snapshots!: Snapshots;
+  /** The same object after each change of it. */
+  @property({ attribute: false, hasChanged: () => true }) snapshots!: Snapshots;
   /** The one that is being named; "new": the shown state. */
   @state() private _naming: Snapshot | "new" | null = null;
   private _at: number | null = null; // the state that gets the name
@@ -68,6 +69,7 @@ export class StrataSnapshotList extends LitElement {
       .go {
         display: grid;
         flex: 1;
+        justify-content: start;
         justify-items: start;
         gap: 0;
         min-width: 0;
