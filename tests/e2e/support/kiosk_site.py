@@ -158,6 +158,7 @@ def sweep(server, secret, tour, files, thread):
         "look": "1",
         "view": "west",
         "tour": tour.rsplit("/", 1)[1],
+        "snapshot": "1",
         "table": "finds",
         "key": "1",
         "attachment": str(files["public"]),
