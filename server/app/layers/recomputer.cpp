@@ -96,7 +96,9 @@ void Recomputer::attempt(
       failed == failures_.end() ? kFirstPause : std::min(kMaxPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
   // A layer that is no longer there, or not yet in the open room, is no fault.
-  if (failed == failures_.end() && !is_stopping() && done.error().code != ErrorCode::not_found)
+  if (failed != failures_.end() || is_stopping() || done.error().code == ErrorCode::not_found)
+    return;
+  if (services_.store.layers().find(layer.model_id, to_string(layer.id), Role::owner))
     log::warning("layer " + to_string(layer.id) + " could not be " + what + ": " +
                  done.error().detail);
 }
