@@ -67,7 +67,7 @@ def test_the_blending_mode_changes_the_picture(server):
     server.ok("POST", L + "/cracks/edits", stroke)
 
     def picture():
-        body = {"camera": camera, "format": "png", "layers": [{"layer": "cracks"}]}
+        body = {"camera": camera, "format": "png", "layers": ["cracks"]}
         return server.ok("POST", M + "/frame", body).body
 
     pictures = {"normal": picture()}
