@@ -352,7 +352,7 @@ class Parser {
                 compare(Op::less_equal, std::move(middle), at, std::move(high), high_at));
   }
 
-  Expression membership(Expression member, std::size_t at) {
+  Expression membership(const Expression& member, std::size_t at) {
     advance();
     expect("(");
     Expression any = make(Op::any, at);

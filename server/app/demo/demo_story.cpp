@@ -228,7 +228,7 @@ class Story {
   }
 
   Result<void> map_condition() {
-    const auto lena = [&](Time time, const char* code, Stroke stroke) {
+    const auto lena = [&](Time time, const char* code, const Stroke& stroke) {
       return paint(time, kDemoConservator, "condition", code, stroke);
     };
     STRATA_TRY(lena(day(42) + 9h + 40min, "soiling", {{{-152, .30}, {-128, .27}, {-112, .31}}, 7}));
@@ -478,7 +478,7 @@ class Story {
 
   // Strokes of the annotator that wait for the curator.
   Result<void> suggest() {
-    const auto lena = [&](Time time, const char* code, Stroke stroke) {
+    const auto lena = [&](Time time, const char* code, const Stroke& stroke) {
       return paint(time, kDemoConservator, "condition", code, stroke, Review::pending);
     };
     STRATA_TRY(lena(day(1) + 15h + 40min, "blistering", {{{-104, .46}, {-97, .43}}, 4}));

@@ -139,6 +139,7 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, progress.commands.id());
   glMultiDrawElementsIndirect(
       GL_TRIANGLES, GL_UNSIGNED_INT,
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): GL takes the offset into the buffer as a pointer
       reinterpret_cast<const void*>(progress.next_cluster * sizeof(shader::DrawCommand)),
       static_cast<GLsizei>(count), 0);
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);

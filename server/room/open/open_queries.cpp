@@ -47,7 +47,7 @@ bool is_empty(const query::LayerView& view) {
                               [](const auto& tile) { return tile.second != nullptr; });
 }
 
-query::Statistics nothing_painted(StatisticsOptions options) {
+query::Statistics nothing_painted(const StatisticsOptions& options) {
   query::Statistics none;
   if (options.pieces) none.pieces = 0;
   if (options.perimeter) none.perimeter_m = 0;
@@ -227,7 +227,8 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texel
 Result<query::Statistics> OpenRoom::QueriesPart::count(const query::LayerView& view,
                                                        const mesh::SurfaceMap& map,
                                                        const query::TexelSelection* within,
-                                                       bool is_now, StatisticsOptions options) {
+                                                       bool is_now,
+                                                       const StatisticsOptions& options) {
   query::StatisticsRequest request;
   request.within = within;
   request.quantiles = options.quantiles;

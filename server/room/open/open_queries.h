@@ -78,7 +78,7 @@ class OpenRoom::QueriesPart final : public Queries {
   // cached.
   Result<query::Statistics> count(const query::LayerView& view, const mesh::SurfaceMap& map,
                                   const query::TexelSelection* within, bool is_now,
-                                  StatisticsOptions options);
+                                  const StatisticsOptions& options);
 
   OpenRoom& room_;
 };

@@ -66,7 +66,7 @@ class RoomAreas : public RoomTest {
 
   // Undo restores the content before the edit, redo the content after it. Both can be read as of
   // their sequences and after a restart.
-  void expect_durable_and_undoable(const Layer& layer, room::EditRequest edit) {
+  void expect_durable_and_undoable(const Layer& layer, const room::EditRequest& edit) {
     const TileMap before = tiles(layer.slug);
     const auto answer = send(edit);
     ASSERT_TRUE(answer) << answer.error().detail;

@@ -166,7 +166,8 @@ TEST_F(RoomQueries, the_picture_of_a_selection_shows_where_the_camera_sees_it) {
       for (const glm::dvec2 offset : {glm::dvec2{-2, -2}, {2, -2}, {-2, 2}, {2, 2}, {0, 0}})
         (outline.contains(at + offset) ? none : all) = false;
       if (!all && !none) continue;
-      const bool is = area->seen[static_cast<std::size_t>(row * columns + column)] != 0;
+      const bool is = area->seen[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                                 static_cast<std::size_t>(column)] != 0;
       inside += all;
       wrong += is != all;
     }

@@ -217,7 +217,9 @@ TEST_F(Refine, bands_of_a_picture_to_keep_join_without_a_seam) {
   for (int y = 0; y < kRows; ++y)
     for (int i = 0; i < 4 * kWidth; ++i) {
       const auto at = [&](const render::Frame& frame, int row) {
-        return int{frame.pixels[static_cast<std::size_t>(4 * kWidth * row + i)]};
+        return int{frame.pixels[std::size_t{4} * static_cast<std::size_t>(kWidth) *
+                                    static_cast<std::size_t>(row) +
+                                static_cast<std::size_t>(i)]};
       };
       // A sample at an edge may fall to its other side: one of sixteen.
       const int difference = std::abs(at(whole, kFirst + y) - at(band, kAround + y));

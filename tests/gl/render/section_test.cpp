@@ -11,6 +11,7 @@ namespace strata::test {
 namespace {
 
 constexpr int kResolution = 1024, kSize = 400;
+constexpr double kMiddle = kSize / 2.0;
 constexpr int kUndecidedOneIn = 5'000;  // the planes are an additional threshold
 constexpr std::array<int, 3> kInside{219, 209, 194}, kInk{61, 48, 41};  // shaders/shared/cut.h
 
@@ -64,7 +65,7 @@ class Section : public testing::Test {
   }
   // Returns the pixel at a radius to the right of the center; the cut wall of the ball is between
   // 0.7 and 1.
-  static int at_radius(double radius) { return static_cast<int>(kSize / 2 * (1 + radius / 1.25)); }
+  static int at_radius(double radius) { return static_cast<int>(kMiddle * (1 + radius / 1.25)); }
   render::StrokeOutcome paint(const StrokeBatch& stroke) {
     return renderer_.paint(renderer_.add_layer(model_, ValueType::u8, kResolution), stroke);
   }
@@ -160,7 +161,7 @@ TEST_F(Section, a_box_of_six_planes_keeps_what_is_inside) {
 }
 
 TEST_F(Section, a_dab_through_the_opening_paints_the_inside_as_the_oracle_says) {
-  const auto stroke = dab(camera_, kSize / 2, kSize / 2, 50);
+  const auto stroke = dab(camera_, kMiddle, kMiddle, 50);
   expect_as_oracle(renderer_, scene_, stroke, {500, kUndecidedOneIn}, model_);
   const auto outcome = paint(stroke);
   EXPECT_EQ(count(outcome, true), 0) << "the outer surface is cut away or hidden";
@@ -170,12 +171,12 @@ TEST_F(Section, a_dab_through_the_opening_paints_the_inside_as_the_oracle_says) 
 }
 
 TEST_F(Section, the_cut_itself_takes_no_paint) {
-  EXPECT_EQ(count(paint(dab(camera_, at_radius(0.85), kSize / 2, 6)), true), 0);
-  EXPECT_EQ(count(paint(dab(camera_, at_radius(0.85), kSize / 2, 6)), false), 0);
+  EXPECT_EQ(count(paint(dab(camera_, at_radius(0.85), kMiddle, 6)), true), 0);
+  EXPECT_EQ(count(paint(dab(camera_, at_radius(0.85), kMiddle, 6)), false), 0);
 }
 
 TEST_F(Section, painting_through_stops_at_the_planes) {
-  StrokeBatch stroke = dab(camera_, kSize / 2, kSize / 2, 500);
+  StrokeBatch stroke = dab(camera_, kMiddle, kMiddle, 500);
   stroke.through = true;
   expect_as_oracle(renderer_, scene_, stroke, {10'000, kUndecidedOneIn}, model_);
   const auto outcome = paint(stroke);
@@ -196,11 +197,11 @@ TEST_F(Section, painting_through_stops_at_the_planes) {
 
 TEST_F(Section, an_edit_does_not_use_the_depth_of_another_section) {
   (void)pixel(camera_, 0, 0);  // a view of the cut ball leaves its depth
-  StrokeBatch uncut = dab(camera_, kSize / 2, kSize / 2, 20);
+  StrokeBatch uncut = dab(camera_, kMiddle, kMiddle, 20);
   uncut.camera.section.clear();
   expect_as_oracle(renderer_, scene_, uncut, {100, kUndecidedOneIn}, model_);
-  expect_as_oracle(renderer_, scene_, dab(camera_, kSize / 2, kSize / 2, 20),
-                   {100, kUndecidedOneIn}, model_);
+  expect_as_oracle(renderer_, scene_, dab(camera_, kMiddle, kMiddle, 20), {100, kUndecidedOneIn},
+                   model_);
 }
 
 TEST_F(Section, a_view_is_drawn_anew_when_only_its_section_changes) {

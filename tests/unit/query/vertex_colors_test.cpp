@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "query/sampling/vertex_ply.h"
@@ -60,8 +61,8 @@ Rgb composed(glm::dvec3 below, const std::vector<std::pair<Rgba, double>>& inks)
     const double cover = opacity * ink[3] / 255;
     for (int i = 0; i < 3; ++i) below[i] += (ink[i] - below[i]) * cover;
   }
-  return {static_cast<std::uint8_t>(below.x + 0.5), static_cast<std::uint8_t>(below.y + 0.5),
-          static_cast<std::uint8_t>(below.z + 0.5)};
+  const auto rounded = [](double v) { return static_cast<std::uint8_t>(std::lround(v)); };
+  return {rounded(below.x), rounded(below.y), rounded(below.z)};
 }
 
 TEST(VertexColors, without_photos_and_layers_they_are_those_of_the_scan) {
