@@ -293,7 +293,7 @@ class Parser {
     if (negated) advance();
     Expression test =
         is("between") ? between(std::move(left), at)
-        : is("in")    ? membership(std::move(left), at)
+        : is("in")    ? membership(left, at)
         : is("like")
             ? likeness(std::move(left), at)
             : refuse("Expected 'between', 'in' or 'like' instead of '" + token_.text + "'");
