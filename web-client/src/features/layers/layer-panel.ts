@@ -144,10 +144,7 @@ export class StrataLayerPanel extends LitElement {
       target !== null ? groupOf(isAbove ? above : target) : share ? groupOf(above) : layer.group;
     const group = this.session.canCurate ? (wanted ?? "") : (layer.group ?? "");
     if (group !== (layer.group ?? "")) void regroup(this.session, [layer], group);
-    this.move(
-      { ...layer, ...(group ? { group } : { group: undefined }) },
-      this.placeOf(layer, above, below),
-    );
+    this.move({ ...layer, group: group || undefined }, this.placeOf(layer, above, below));
   }
 
   /** The place of `layer` in the list without it, between two rows. */
