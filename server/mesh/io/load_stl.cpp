@@ -113,8 +113,7 @@ class StlReader {
         const std::string_view numbers = rest;
         for (int k = 0; k < 3; ++k)
           if (!parse_number(next_word(rest), point[k]))
-            return fault(numbers,
-                         "a vertex does not have three numbers; the file is damaged or incomplete");
+            return fault(numbers, "a vertex without three numbers");
         if (loop.size() == kMaxPolygonCorners) return FaceBuilder::too_many_corners(place(rest));
         loop.push_back(point);
       } else if (is_word(word, "endfacet") || is_word(word, "endloop")) {
@@ -122,7 +121,7 @@ class StlReader {
         loop.clear();
       } else if (is_word(word, "facet")) {
         any_word = true;
-        if (!loop.empty()) return fault(rest, "a facet has no end");
+        if (!loop.empty()) return fault(rest, "a facet without an end");
       }
     }
     if (!loop.empty())
@@ -181,7 +180,8 @@ class StlReader {
     return "line " + std::to_string(line);
   }
   tl::unexpected<Error> fault(std::string_view rest, const std::string& what) const {
-    return refuse_file("In the STL, at " + place(rest) + ", stands " + what + ".");
+    return refuse_file("The STL file has " + what + " at " + place(rest) +
+                       ". It is damaged or incomplete.");
   }
 
   bool report(double share) {

@@ -35,13 +35,13 @@ class Manifold {
       progress.report(from + (to - from) * share, message);
       return !progress.cancelled();
     };
-    if (!step(0, "Joining triangles to their neighbours")) return cancelled_problem();
+    if (!step(0, "Finding neighboring triangles")) return cancelled_problem();
     find_mates();
     if (crowded_edges_ > 0) drop_slivers();
     if (slivers_ > 0) find_mates();
     if (!step(0.6, "Turning triangles the same way")) return cancelled_problem();
     orient();
-    if (!step(0.8, "Cutting where the surface is none")) return cancelled_problem();
+    if (!step(0.8, "Cutting non-manifold edges")) return cancelled_problem();
     turn_triangles();
     split_fans();
     if (crowded_edges_ + one_sided_edges_ > 0)

@@ -63,7 +63,7 @@ TEST(MeshStl, faults_are_refused_by_name) {
       {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "line 4"},
       {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0",
        "ends within a facet"},
-      {"solid a\nfacet\nvertex 0 0 0\nfacet\n", "has no end"},
+      {"solid a\nfacet\nvertex 0 0 0\nfacet\n", "without an end"},
       {"solid a\nendsolid a\n", "no triangle"}};
   for (const auto& [text, says] : bad) {
     const auto loaded = load_text(text, "a.stl");
