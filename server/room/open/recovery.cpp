@@ -89,20 +89,21 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
   pipeline_->journal_read(contents->last_sequence);
   sequence_ = durable_ = contents->last_sequence;
 
-  using Change = Listener::LayerChange;
-  const auto tell_layer = [&](Change change, const Layer& layer) {
-    participants_part_->tell([&](Listener& listener) { listener.layer_changed(change, layer); });
-  };
   for (const auto& [id, tiles] : contents->differing) {
     pipeline_->gpu_lacks(id, tiles);
-    tell_layer(Change::changed, read.at(id).layer);
+    const auto known = before.find(id);
+    participants_part_->tell_layer(
+        known == before.end() ? std::nullopt : std::optional(known->second.layer.visibility),
+        read.at(id).layer);
   }
   for (const auto& [id, state] : read)
-    if (!before.contains(id)) tell_layer(Change::created, state.layer);
+    if (!before.contains(id)) participants_part_->tell_layer(std::nullopt, state.layer);
   for (const auto& [id, state] : before) {
     if (read.contains(id)) continue;
     remove_layer(services_.renderer, state.handles);
-    tell_layer(Change::deleted, state.layer);
+    participants_part_->tell_seen(state.layer, [&](Listener& listener) {
+      listener.layer_changed(Listener::LayerChange::deleted, state.layer);
+    });
   }
   participants_part_->styles_changed();
   log::info("model " + to_string(model_id_) + " was read from the journal again, up to edit " +

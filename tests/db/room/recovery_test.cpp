@@ -35,7 +35,11 @@ class Ears : public room::Listener {
  public:
   void edit_applied(const Edit&) override { count(applied_); }
   void edits_unsaved(const std::vector<Edit>&, const Error&) override {}
-  void layer_changed(LayerChange, const Layer&) override {}
+  void layer_changed(LayerChange, const Layer& layer) override {
+    std::lock_guard lock(mutex_);
+    layers_.push_back(layer.id);
+    changed_.notify_all();
+  }
   void model_changed(const Model&) override {}
   void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override { count(deleted_); }
@@ -44,6 +48,15 @@ class Ears : public room::Listener {
 
   void wait_for_applied(int expected) { wait(applied_, expected); }
   void wait_for_presence(int expected) { wait(presence_, expected); }
+  void wait_for_layer(LayerId id) {
+    std::unique_lock lock(mutex_);
+    ASSERT_TRUE(
+        changed_.wait_for(lock, kLong, [&] { return std::ranges::count(layers_, id) > 0; }));
+  }
+  std::vector<LayerId> layers() {
+    std::lock_guard lock(mutex_);
+    return layers_;
+  }
   int deleted() {
     std::lock_guard lock(mutex_);
     return deleted_;
@@ -62,6 +75,7 @@ class Ears : public room::Listener {
   std::mutex mutex_;
   std::condition_variable changed_;
   int applied_ = 0, deleted_ = 0, presence_ = 0;
+  std::vector<LayerId> layers_;  // that changed
 };
 
 class Connection {
@@ -316,6 +330,21 @@ TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_pai
   EXPECT_EQ(resent->sequence, 3);
   expect_room_equals_journal(layer);
   expect_picture_of_journal();
+}
+
+TEST_F(RoomRecovery, only_roles_that_see_a_layer_are_told_that_it_was_read_again) {
+  const Layer open = make_layer(ValueType::u8, 2048, "open");
+  Layer hidden = *room()->layers().find(make_layer(ValueType::u8, 2048, "hidden").slug);
+  hidden.visibility = Visibility::curators;
+  ASSERT_TRUE(room()->layers().update(hidden));
+  Ears curator, viewer;
+  const auto nothing = [](const stream::FrameMessages&) {};
+  const auto first = room()->participants().join({"anna", Role::curator}, {}, &curator, nothing);
+  const auto second = room()->participants().join({"ben", Role::viewer}, {}, &viewer, nothing);
+  commit_behind(stroke(hidden, 6, {{340, 240}}, 20), hidden, 1, false);
+  EXPECT_FALSE(send(stroke(open, 7, {{320, 240}}, 20)));
+  curator.wait_for_layer(hidden.id);
+  EXPECT_EQ(std::ranges::count(viewer.layers(), hidden.id), 0);
 }
 
 TEST_F(RoomRecovery, a_room_that_cannot_be_read_again_refuses_edits_until_it_can) {
