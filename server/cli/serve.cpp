@@ -37,7 +37,7 @@ struct ServeOptions {
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
   net::Timeouts timeouts;
-  int samples_at_rest = 16;
+  int samples_at_rest = 16, smooth_samples = 0;
   bool debug = false;
 };
 
@@ -78,7 +78,7 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
     if (!has_tls)
       log::warning(
           "listening on " + address.host +
-          " without --tls-cert: passwords travel unencrypted unless a proxy with TLS stands before this server");
+          " without --tls-cert: passwords travel unencrypted unless a proxy in front of this server uses TLS");
     return {};
   }
   return fail(
@@ -186,6 +186,7 @@ int run(ServeOptions options) {
   render_options.shader_dir = dirs.shaders.string();
   render_options.gpu_memory_bytes = options.gpu_memory;
   render_options.debug = options.debug;
+  render_options.smooth_samples = options.smooth_samples;
   auto renderer = render::Renderer::start(render_options);
   if (!renderer) return report(renderer.error());
   const auto gpu = (*renderer)->info();
@@ -307,6 +308,13 @@ Command add_serve(CLI::App& app) {
                    "Samples for each pixel of a picture that nothing changes; 1 refines no picture")
       ->envname("STRATA_SAMPLES_AT_REST")
       ->check(CLI::Range(1, render::kMaxSamples))
+      ->capture_default_str();
+  command
+      ->add_option("--samples-in-motion", options->smooth_samples,
+                   "Samples for each pixel of a frame while the camera moves; 0 takes 5 on a fast "
+                   "GPU, otherwise 1")
+      ->envname("STRATA_SAMPLES_IN_MOTION")
+      ->check(CLI::Range(0, render::kMaxSmoothSamples))
       ->capture_default_str();
   command->add_flag("--gl-debug", options->debug,
                     "Log debug messages of the graphics driver (slow)");

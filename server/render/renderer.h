@@ -18,6 +18,7 @@
 #include "domain/scene/camera.h"
 #include "domain/scene/light.h"
 #include "domain/scene/stroke.h"
+#include "mesh/analysis/contact_shadow.h"
 #include "mesh/surface/geometry.h"
 #include "mesh/texels/surface_map.h"
 #include "render/memory/mipmapped_picture.h"
@@ -42,6 +43,9 @@ struct RendererOptions {
   bool debug = false;                  // KHR_debug context; errors are counted (see `debug_errors`)
   std::size_t queue_capacity = 4096;
   EditPath edit_path = EditPath::automatic;
+  // of each pixel of a frame with smooth edges (FrameRequest::smooth), 1 to kMaxSmoothSamples. 0:
+  // as many as the GPU has time for, 1 with a software renderer
+  int smooth_samples = 0;
 };
 
 struct GpuInfo {
@@ -105,6 +109,8 @@ struct ViewStyle {
   Light light;
   Background background{};
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
+  // On the background, except for a camera with a section. Identified by its address, null: none.
+  std::shared_ptr<const mesh::ContactShadow> contact_shadow{};
   bool operator==(const ViewStyle&) const = default;
 };
 
@@ -113,7 +119,7 @@ struct PixelRect {
   bool operator==(const PixelRect&) const = default;
 };
 
-constexpr int kMaxSamples = 64;
+constexpr int kMaxSamples = 64, kMaxSmoothSamples = 16;
 
 struct FrameRequest {
   ViewHandle view = 0;
@@ -137,6 +143,10 @@ struct FrameRequest {
   // nothing else to do, evicts nothing, and ends as `superseded` when its view requests something
   // else. It is refused as `too_large` if `samples_time` is too short for a few samples.
   bool refinement = false;
+  // If the whole frame is drawn, its edges may be smooth: the mean of the view's frame and of a few
+  // samples around it (RendererOptions::smooth_samples). The view keeps the frame with one sample,
+  // and later rectangles have one, too.
+  bool smooth = false;
   ViewStyle style;
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's
   // last frame: only the rectangles that they cover are shaded and returned. A changed camera, size

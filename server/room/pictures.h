@@ -29,7 +29,8 @@ struct PictureRequest {
   // With `at`, by layer: texels that waited for review then, which are hatched. Without `at`, those
   // that wait now are hatched.
   std::map<LayerId, TileMap> provisional{};
-  int samples = 1;  // of each pixel: render::FrameRequest::samples
+  bool on_floor = true;  // with the model's contact shadow, in the light that has one
+  int samples = 1;       // of each pixel: render::FrameRequest::samples
   // of each band of 2 million pixels: render::FrameRequest::samples_time
   std::chrono::milliseconds samples_time{0};
   Role seen_by = Role::owner;  // columns that it does not see affect neither drawing nor colors

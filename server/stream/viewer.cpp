@@ -374,6 +374,7 @@ void Viewer::step() {
     request.acting = Clock::now() - impl_->last_act < kActsFor;
     request.moving = draw.quality == FlowControl::Quality::moving;
     request.samples = draw.samples;
+    request.smooth = true;
     request.refinement = draw.samples > 1;
     request.samples_time = kRefinementTime;
     // A rectangle is added to the existing picture.

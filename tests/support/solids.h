@@ -52,4 +52,16 @@ inline mesh::TriangleMesh ball(int rows = 64) {
   return mesh;
 }
 
+// A closed box from `low` to `high`.
+inline mesh::TriangleMesh box(const glm::dvec3& low, const glm::dvec3& high) {
+  mesh::TriangleMesh mesh;
+  for (unsigned corner = 0; corner < 8; ++corner)
+    mesh.positions.push_back({(corner & 1) != 0 ? high.x : low.x,
+                              (corner & 2) != 0 ? high.y : low.y,
+                              (corner & 4) != 0 ? high.z : low.z});
+  mesh.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                    2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  return mesh;
+}
+
 }  // namespace strata::test

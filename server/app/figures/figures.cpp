@@ -172,6 +172,7 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
         {part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
   room::PictureRequest shown = request.shown;
   shown.samples = samples_of(drawing.dpi);
+  shown.on_floor = false;  // a drawing shows the object alone
   auto drawn = request.room->pictures().draw(
       shown, picture_parts, [&](std::size_t i, const room::PictureBand& band) -> Result<void> {
         const figure::Part& part = parts[i];

@@ -11,11 +11,18 @@ constexpr double kNsSoftware = 40, kNsHardware = 1;
 // The time of smaller drawings depends on other costs of a frame more than on triangles.
 constexpr std::size_t kFewTriangles = 50'000;
 constexpr double kShareOfNew = 0.2;
+// For the samples of a frame after the first, in addition to its other time.
+constexpr double kSmoothBudgetMs = 4;
+constexpr double kNsPerPixel = 0.5;  // estimate before the first such frame, on a GPU
+// After a slow time, frames get more samples again after some hundred frames.
+constexpr double kForgotten = 0.998;
 
 }  // namespace
 
 DetailBudget::DetailBudget(bool software)
-    : ns_per_triangle_(software ? kNsSoftware : kNsHardware) {}
+    : software_(software),
+      ns_per_triangle_(software ? kNsSoftware : kNsHardware),
+      ns_per_pixel_(kNsPerPixel) {}
 
 int DetailBudget::choose(std::span<const std::size_t> triangles) const {
   for (std::size_t level = 0; level < triangles.size(); ++level) {
@@ -29,6 +36,19 @@ void DetailBudget::drawn(std::size_t triangles, double ms) {
   if (triangles < kFewTriangles) return;
   const double ns = ms * 1e6 / static_cast<double>(triangles);
   ns_per_triangle_ += kShareOfNew * (ns - ns_per_triangle_);
+}
+
+int DetailBudget::samples(std::size_t pixels) {
+  if (software_) return 1;
+  const double ms = static_cast<double>(pixels) * (kSmoothSamples - 1) * ns_per_pixel_ * 1e-6;
+  if (ms <= kSmoothBudgetMs) return kSmoothSamples;
+  ns_per_pixel_ *= kForgotten;
+  return 1;
+}
+
+void DetailBudget::smoothed(std::size_t pixels, double ms) {
+  if (pixels == 0) return;
+  ns_per_pixel_ += kShareOfNew * (ms * 1e6 / static_cast<double>(pixels) - ns_per_pixel_);
 }
 
 }  // namespace strata::render

@@ -5,8 +5,9 @@
 
 namespace strata::render {
 
-// Chooses the level of detail of a model while its camera moves: the finest level that can be drawn
-// in a few milliseconds, by the times of earlier drawings on this GPU.
+// Chooses the level of detail of a model while its camera moves, and the number of samples of its
+// frames, from the times of earlier drawings on this GPU. It takes the finest level, and the most
+// samples, that can be drawn in a few milliseconds.
 class DetailBudget {
  public:
   DetailBudget() = default;
@@ -17,8 +18,17 @@ class DetailBudget {
   int choose(std::span<const std::size_t> triangles) const;
   void drawn(std::size_t triangles, double ms);
 
+  // Returns the number of samples for a frame with smooth edges: kSmoothSamples or 1. A software
+  // renderer never has the time for more than one.
+  static constexpr int kSmoothSamples = 5;
+  int samples(std::size_t pixels);
+  // `pixels`: of all samples together, without the first.
+  void smoothed(std::size_t pixels, double ms);
+
  private:
+  bool software_ = false;
   double ns_per_triangle_ = 0;
+  double ns_per_pixel_ = 0;  // of a sample
 };
 
 }  // namespace strata::render

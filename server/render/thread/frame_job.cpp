@@ -58,16 +58,13 @@ Step FrameJob::step(GpuScene& scene) {
   // Samples need their view's model alone, once.
   auto view = sample_view_ ? Result<View*>(sample_view_.get()) : scene.view(task_.request.view);
   const auto refuse = [&](const Error& problem) {
-    // An incomplete picture must not be updated in parts.
-    if (view && !is_sampled()) {
-      (*view)->drawing = false;
-      (*view)->picture_complete = false;
-    }
+    release_view(scene, false);
     abort(problem);
     return Step::done;
   };
   if (!view) return refuse(view.error());
   if (!sample_drawn_.passed()) return Step::waiting;
+  measure(scene);
   const auto advance = [&]() -> Result<Step> {
     switch (stage_) {
       case Stage::prepare:
@@ -91,9 +88,9 @@ Step FrameJob::step(GpuScene& scene) {
         return Step::more;
       case Stage::shade: {
         auto complete = STRATA_TRY(shade_band(scene, **view));
-        if (complete && !is_sampled()) stage_ = Stage::readback;
-        if (complete && is_sampled()) {
-          auto last = STRATA_TRY(add_sample(scene));
+        if (complete && !mean_) stage_ = Stage::readback;
+        if (complete && mean_) {
+          auto last = STRATA_TRY(add_sample(scene, **view));
           stage_ = last ? Stage::mean : Stage::gbuffer;
         }
         return Step::more;
@@ -110,7 +107,7 @@ Step FrameJob::step(GpuScene& scene) {
   if (!step) return refuse(step.error());
   busy_ms_ += ms_since(begin);
   if (*step == Step::done) {
-    (*view)->drawing = false;
+    release_view(scene, true);
     if (scene.lost())
       return refuse(
           {ErrorCode::gpu_lost,
@@ -120,11 +117,23 @@ Step FrameJob::step(GpuScene& scene) {
     pixels_ = {};
     frame_.render_ms = busy_ms_;
     frame_.level = (*view)->key.level;
-    if (progress_.cleared && !scene.info().software && !is_sampled())
+    if (progress_.cleared && !scene.info().software && !mean_)
       scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
+    if (samples_begin_)
+      scene.detail_budget().smoothed(
+          frame_.pixels.size() / 4 * static_cast<std::size_t>(samples_ - 1),
+          ms_since(*samples_begin_));
     answer(std::make_shared<const Frame>(std::move(frame_)));
   }
   return *step;
+}
+
+// An incomplete picture must not be updated in parts.
+void FrameJob::release_view(GpuScene& scene, bool is_complete) const {
+  const auto view = scene.view(task_.request.view);
+  if (!view || is_separate()) return;
+  (*view)->drawing = false;
+  (*view)->picture_complete = (*view)->picture_complete && is_complete;
 }
 
 Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
@@ -176,7 +185,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
         "The number of samples per pixel must be from 1 to " + std::to_string(kMaxSamples) + ".",
         "samples");
   camera_ = request.camera;
-  if (is_sampled()) return start_samples(scene, view.model);
+  if (is_separate()) return start_samples(scene, view.model);
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
   const auto has_gbuffer = [&](const DepthKey& needed) {
@@ -214,6 +223,22 @@ Result<void> FrameJob::start_samples(GpuScene& scene, ModelHandle model) {
   return start_sample(scene);
 }
 
+// Without memory or time, the frame has one sample.
+void FrameJob::make_smooth(GpuScene& scene, const View& view) {
+  const FrameRequest& request = task_.request;
+  if (!request.smooth || request.large || sample_view_) return;
+  const auto pixels =
+      static_cast<std::size_t>(request.width) * static_cast<std::size_t>(request.height);
+  const int samples = std::min(scene.smooth_samples(pixels), kMaxSmoothSamples);
+  if (samples < 2 || !scene.memory().fits(pixels * kSampledBytesPerPixel)) return;
+  auto mean = Accumulation::create(request.width, request.height, scene.memory());
+  if (!mean) return;
+  mean_ = std::move(*mean);
+  samples_ = samples;
+  level_ = view.key.level;
+  own_triangles_ = progress_.triangles();
+}
+
 bool FrameJob::has_layers(GpuScene& scene) const {
   return std::ranges::all_of(task_.request.style.layers, [&](const LayerStyle& style) {
     const auto layer = scene.layer(style.layer);
@@ -223,21 +248,22 @@ bool FrameJob::has_layers(GpuScene& scene) const {
 
 Result<void> FrameJob::start_sample(GpuScene& scene) {
   const FrameRequest& request = task_.request;
-  camera_ =
-      jittered(request.camera, request.width, request.height, sample_offset(sample_, samples_));
+  const glm::dvec2 offset =
+      is_separate() ? sample_offset(sample_, samples_) : smooth_sample_offset(sample_, samples_);
+  camera_ = jittered(request.camera, request.width, request.height, offset);
   sample_view_->images = request.style.images;
   sample_view_->lighting = request.style.light;
   progress_ = {};
   shaded_ = {};
-  return prepare_gbuffer(*sample_view_,
-                         depth_key(sample_view_->model, camera_, request.width, request.height),
-                         scene.depths(), scene.memory());
+  auto key = depth_key(sample_view_->model, camera_, request.width, request.height);
+  key.level = level_;
+  return prepare_gbuffer(*sample_view_, key, scene.depths(), scene.memory());
 }
 
-Result<bool> FrameJob::add_sample(GpuScene& scene) {
+Result<bool> FrameJob::add_sample(GpuScene& scene, const View& view) {
   // A software renderer works while it is called.
   const auto limit_ms = static_cast<double>(task_.request.samples_time.count());
-  if (sample_ == 0 && limit_ms > 0 && scene.info().software) {
+  if (is_separate() && sample_ == 0 && limit_ms > 0 && scene.info().software) {
     const double sample_ms = std::max(busy_ms_ - samples_begin_ms_, 1.0);
     const int fit = std::min(static_cast<int>(limit_ms / sample_ms), samples_);
     const int least = std::min(kMinSamples, samples_);
@@ -247,11 +273,15 @@ Result<bool> FrameJob::add_sample(GpuScene& scene) {
                       " ms, so the time is too short for " + std::to_string(least) + " samples.");
     samples_ = std::max(1, fit);
   }
-  scene.accumulation_pass().add(sample_view_->picture, *mean_, samples_);
+  scene.accumulation_pass().add(view.picture, *mean_, samples_);
   sample_drawn_ = gl::Fence::place();
   if (++sample_ < samples_) {
     // Nobody waits for the picture of a removed view.
     if (!task_.request.refinement) STRATA_TRY(scene.view(task_.request.view));
+    if (!sample_view_) {
+      sample_view_ = std::make_unique<View>();
+      sample_view_->model = view.model;
+    }
     STRATA_TRY(start_sample(scene));
     return false;
   }
@@ -259,6 +289,14 @@ Result<bool> FrameJob::add_sample(GpuScene& scene) {
   pixels_ = std::move(pixels);
   shaded_ = {};
   return true;
+}
+
+// Measures the drawing of the view's frame, after which the other samples begin.
+void FrameJob::measure(GpuScene& scene) {
+  if (is_separate() || sample_ == 0 || samples_begin_) return;
+  if (own_triangles_ > 0 && !scene.info().software)
+    scene.detail_budget().drawn(own_triangles_, ms_since(mesh_begin_));
+  samples_begin_ = std::chrono::steady_clock::now();
 }
 
 Result<bool> FrameJob::bring_layers(GpuScene& scene) {
@@ -296,7 +334,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
   // A software renderer works during the calls, a GPU until the picture can be read.
-  if (scene.info().software && !is_sampled())
+  if (scene.info().software && &view != sample_view_.get())
     scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
   return true;
 }
@@ -309,7 +347,7 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
       camera_.projection * camera_.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
   frame_.height = request.height;
-  if (request.changed && !is_sampled() && view.shows(request)) {
+  if (request.changed && !sample_view_ && view.shows(request)) {
     const auto features = static_cast<std::int64_t>(view.seen_features.count);
     frame_.rects = screen_rects(*request.changed, clip, request.width, request.height,
                                 request.align_to_16, kRectCost_px + features * kFeatureCost_px,
@@ -318,10 +356,15 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   } else {
     frame_.rects = {{0, 0, request.width, request.height}};
     STRATA_TRY(test_features(scene, view));
+    make_smooth(scene, view);
   }
   surface_ =
       screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
-  if (is_sampled()) return {};
+  shadow_ = {};
+  if (request.style.contact_shadow && camera_.section.empty())
+    shadow_ = screen_rect(box_of(*request.style.contact_shadow), clip, request.width,
+                          request.height, false);
+  if (mean_) return {};
   std::size_t bytes = 0;
   for (const PixelRect& rect : frame_.rects) bytes += rgba_bytes(rect);
   auto pixels = STRATA_TRY(scene.readback().begin(bytes));
@@ -369,23 +412,25 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   }
   STRATA_TRY(scene.tables().flush());
   STRATA_TRY(scene.shade_pass().shade(input, scene.tables()));
+  if (request.style.contact_shadow)
+    STRATA_TRY(scene.contact_shadow_pass().draw(
+        request.style.contact_shadow, camera_, model->mesh().geometry().origin, view.shading,
+        request.width, request.height, intersection(band, shadow_)));
   auto marked = scene.feature_pass().draw(view.seen_features, view.shading, request.width,
                                           request.height, band);
   if (!marked) return tl::unexpected(marked.error());
 
-  if (is_sampled()) {
-    advance(shaded_, band.height);
-    return complete(shaded_);
-  }
-  read_band(view.picture, band);
+  mean_ ? advance(shaded_, band.height) : read_band(view.picture, band);
   if (!complete(shaded_)) return false;
-  pixels_.submit();
+  if (&view == sample_view_.get()) return true;
+  if (!mean_) pixels_.submit();
   view.picture_complete = true;
   view.layers = request.style.layers;
   view.background = request.style.background;
   view.background_rows = request.background_rows;
   view.unit_mm = request.style.unit_mm;
   view.features = request.style.features;
+  view.contact_shadow = request.style.contact_shadow;
   return true;
 }
 

@@ -13,7 +13,8 @@ namespace strata::render {
 
 // One frame, drawn by one view: the g-buffer in slices if the camera changed, then the changed
 // parts are shaded and read back in bands. A picture with several samples does so for each of them,
-// into buffers of its own, and reads back their mean.
+// into buffers of its own, and reads back their mean. A frame with smooth edges is the mean of the
+// view's frame and of such samples.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
@@ -33,11 +34,15 @@ class FrameJob {
     for (const auto& asker : task_.askers) asker.done(frame);
   }
   enum class Stage { prepare, layers, gbuffer, area, shade, mean, readback };
-  bool is_sampled() const { return task_.request.samples > 1; }
+  // The picture has buffers of its own: the view's frame stays as it is.
+  bool is_separate() const { return task_.request.samples > 1; }
+  void release_view(GpuScene& scene, bool is_complete) const;
   Result<void> start_samples(GpuScene& scene, ModelHandle model);
+  void make_smooth(GpuScene& scene, const View& view);
   bool has_layers(GpuScene& scene) const;  // all are on the GPU
   Result<void> start_sample(GpuScene& scene);
-  Result<bool> add_sample(GpuScene& scene);  // true when it was the last
+  Result<bool> add_sample(GpuScene& scene, const View& view);  // true when it was the last
+  void measure(GpuScene& scene);
   Result<void> prepare(GpuScene& scene, View& view);
   Result<bool> bring_layers(GpuScene& scene);  // true when all are on the GPU
   Result<int> choose_level(GpuScene& scene, const View& view) const;
@@ -63,7 +68,10 @@ class FrameJob {
   // Of several samples.
   std::unique_ptr<View> sample_view_;
   std::optional<Accumulation> mean_;
-  int samples_ = 1, sample_ = 0;
+  int samples_ = 1, sample_ = 0, level_ = 0;
+  std::size_t own_triangles_ = 0;  // of the view's frame
+  // when the view's frame was drawn
+  std::optional<std::chrono::steady_clock::time_point> samples_begin_;
   double samples_begin_ms_ = 0;  // `busy_ms_` before the first
   gl::Fence sample_drawn_;       // so that the GPU has at most one sample to do before an edit
   Stage stage_ = Stage::prepare;
@@ -72,6 +80,7 @@ class FrameJob {
   std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
   Frame frame_;
   PixelRect surface_;  // part of the picture that may show surface
+  PixelRect shadow_;   // part of the picture that may show the contact shadow
   Rows shaded_, collected_;
   gl::Readback pixels_;  // of one rectangle after the other, lowest row first
   double busy_ms_ = 0;

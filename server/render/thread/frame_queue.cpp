@@ -31,7 +31,7 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b) {
   return a.model != 0 && a.model == b.model && a.moving == b.moving && a.width == b.width &&
          a.height == b.height && a.camera == b.camera && a.style == b.style &&
          a.background_rows == b.background_rows && a.large == b.large && a.samples == b.samples &&
-         a.align_to_16 == b.align_to_16;
+         a.smooth == b.smooth && a.align_to_16 == b.align_to_16;
 }
 
 FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedFrame> done) {

@@ -96,6 +96,7 @@ Result<void> GpuScene::load() {
   STRATA_TRY(keep(edit_pass_, EditPass::create(dir, readback_)));
   STRATA_TRY(keep(tile_reader_, TileReader::create(dir, readback_)));
   STRATA_TRY(keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)));
+  STRATA_TRY(keep(contact_shadow_pass_, ContactShadowPass::create(dir)));
   STRATA_TRY(keep(feature_pass_, FeaturePass::create(dir)));
   STRATA_TRY(keep(accumulation_pass_, AccumulationPass::create(dir)));
   return keep(shade_pass_, ShadePass::create(dir, info_.software));

@@ -13,6 +13,7 @@
 #include "render/thread/detail_budget.h"
 #include "render/thread/view_cache.h"
 #include "render/view/accumulation.h"
+#include "render/view/contact_shadow_pass.h"
 #include "render/view/feature_pass.h"
 #include "render/view/shade_pass.h"
 
@@ -54,12 +55,17 @@ class GpuScene {
   bool edits_on_cpu() const { return info_.edit_path == EditPath::kernel; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
+  ContactShadowPass& contact_shadow_pass() { return *contact_shadow_pass_; }
   FeaturePass& feature_pass() { return *feature_pass_; }
   AccumulationPass& accumulation_pass() { return *accumulation_pass_; }
   DetailBudget& detail_budget() { return detail_budget_; }
   // The number of pixels of one layer that a step shades.
   int pixels_per_band() const {
     return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware;
+  }
+  // Of each pixel of a frame with smooth edges.
+  int smooth_samples(std::size_t pixels) {
+    return options_.smooth_samples > 0 ? options_.smooth_samples : detail_budget_.samples(pixels);
   }
   std::uint64_t next_use() { return ++uses_; }
 
@@ -106,6 +112,7 @@ class GpuScene {
   std::optional<TileReader> tile_reader_;
   std::optional<MeshPass> gbuffer_pass_;
   std::optional<ShadePass> shade_pass_;
+  std::optional<ContactShadowPass> contact_shadow_pass_;
   std::optional<FeaturePass> feature_pass_;
   std::optional<AccumulationPass> accumulation_pass_;
   DetailBudget detail_budget_;

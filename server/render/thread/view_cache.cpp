@@ -19,7 +19,8 @@ void View::drop_buffers() {
 bool View::shows(const FrameRequest& request) const {
   return picture_complete && unit_mm == request.style.unit_mm &&
          background == request.style.background && background_rows == request.background_rows &&
-         layers == request.style.layers && features == request.style.features;
+         layers == request.style.layers && features == request.style.features &&
+         contact_shadow == request.style.contact_shadow;
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,

@@ -31,6 +31,7 @@ struct View {
   glm::vec2 background_rows{0, 1};
   double unit_mm = 0;
   FeaturesShown features;
+  std::shared_ptr<const mesh::ContactShadow> contact_shadow;
   FeatureBuffer seen_features;  // the marks as seen by the camera of the g-buffer
 
   bool has_buffers() const { return static_cast<bool>(picture); }

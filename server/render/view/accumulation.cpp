@@ -23,6 +23,10 @@ glm::dvec2 sample_offset(int index, int count) {
   return place(index) - mean;
 }
 
+glm::dvec2 smooth_sample_offset(int index, int count) {
+  return index == 0 ? glm::dvec2(0) : sample_offset(index - 1, count - 1);
+}
+
 Camera jittered(const Camera& camera, int width, int height, glm::dvec2 offset) {
   Camera moved = camera;
   moved.projection =

@@ -17,6 +17,10 @@ namespace strata::render {
 // 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"), moved by its mean.
 glm::dvec2 sample_offset(int index, int count);
 
+// The same for a frame with smooth edges: the first sample is the middle of the pixel, the others
+// surround it.
+glm::dvec2 smooth_sample_offset(int index, int count);
+
 // `camera`, whose picture of `width` × `height` pixels shows the scene at `offset` pixels (x to the
 // right, y upwards) from where `camera` shows it.
 Camera jittered(const Camera& camera, int width, int height, glm::dvec2 offset);

@@ -41,6 +41,7 @@ OpenParticipant::Appearance OpenParticipant::appearance(std::uint32_t view_id, V
   render::ViewStyle& style = appearance.style;
   style.images = room_->surface_image_cache().styles(view.images);
   style.light = view.light;
+  style.contact_shadow = room_->contact_shadow(view.light);
   style.background = view.background;
   style.unit_mm = room_->model().metres() * 1000;
   std::vector<LayerFeatures> marked;

@@ -131,6 +131,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& picture,
   if (!images) return tl::unexpected(room_.gpu_problem(images.error()));
   request.style.images = std::move(*images);
   request.style.light = picture.shown.light;
+  if (picture.on_floor) request.style.contact_shadow = room_.contact_shadow(picture.shown.light);
   request.style.background = picture.shown.background;
   request.style.features = show_features(marked);
   request.samples = picture.samples;

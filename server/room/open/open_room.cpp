@@ -59,6 +59,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   auto journal = read_journal(services.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
   auto images = STRATA_TRY(services.store.surface_images().of_model(room->model_id_));
+  room->contact_shadow_ = room->make_contact_shadow(room->model_.up);
   for (LayerState& state : journal->layers) {
     const LayerId id = state.layer.id;
     room->layers_.emplace(id, std::move(state));
@@ -181,11 +182,25 @@ render::ModelHandle OpenRoom::model_handle() const {
   return model_handle_;
 }
 
+// A coarse copy of the model is enough for a soft shadow.
+std::shared_ptr<const mesh::ContactShadow> OpenRoom::make_contact_shadow(
+    const std::string& up) const {
+  return mesh::contact_shadow(coarser_.empty() ? *geometry_ : *coarser_.back(), up);
+}
+
+std::shared_ptr<const mesh::ContactShadow> OpenRoom::contact_shadow(const Light& light) const {
+  if (light.mode != LightMode::museum) return nullptr;
+  std::lock_guard lock(mutex_);
+  return contact_shadow_;
+}
+
 Result<Model> OpenRoom::update_model(Model model, const store::IdempotentResponse<Model>& answer) {
   auto updated = STRATA_TRY(services_.store.models().update(std::move(model), answer));
+  auto shadow = make_contact_shadow(updated.up);
   run_on(strand_, [&] {
     {
       std::lock_guard lock(mutex_);
+      if (updated.up != model_.up) contact_shadow_ = std::move(shadow);
       model_ = updated;
     }
     participants_part_->tell([&](Listener& l) { l.model_changed(updated); });

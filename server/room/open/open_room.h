@@ -91,6 +91,8 @@ class OpenRoom final : public Room,
   RecordFeatures& record_features() const { return *record_features_; }
   PastLayers& past_layers() const { return *past_layers_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
+  // of the model in `light`; null: none
+  std::shared_ptr<const mesh::ContactShadow> contact_shadow(const Light& light) const;
   std::optional<LayerState> layer_state(LayerId id) const;
 
   // --- for Rooms
@@ -132,6 +134,7 @@ class OpenRoom final : public Room,
   // as in gpu_problem.h, unless the room is closed
   Error gpu_problem(const Error& why) const;
   std::uint64_t mirror_bytes() const;  // with `mutex_` held
+  std::shared_ptr<const mesh::ContactShadow> make_contact_shadow(const std::string& up) const;
   std::vector<Layer> layer_list() const;
   Result<LayerState> state(const std::string& ref) const;
   // Refused (invalid, `at`): a sequence that is not durable yet.
@@ -163,9 +166,10 @@ class OpenRoom final : public Room,
   std::map<LayerId, LayerState> layers_;
   MemoryLedger::Share geometry_share_, mirrors_share_;
   render::ModelHandle model_handle_ = 0;
-  std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
-  std::optional<Error> closed_;                      // reason, once closed; under `mutex_`
-                                                     // everywhere
+  std::shared_ptr<const mesh::ContactShadow> contact_shadow_;  // for `model_.up`
+  std::chrono::steady_clock::time_point last_used_;            // under `mutex_` everywhere
+  std::optional<Error> closed_;  // reason, once closed; under `mutex_`
+                                 // everywhere
 
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
   std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them

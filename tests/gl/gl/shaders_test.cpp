@@ -44,6 +44,7 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"tile_read_pass.comp"}, {{"TEXEL_BYTES 1"}, {"TEXEL_BYTES 2"}, {"TEXEL_BYTES 4"}}},
     {{"picture.vert", "accumulate_pass.frag"}, {{}}},
     {{"picture.vert", "background_pass.frag"}, {{}}},
+    {{"picture.vert", "contact_shadow_pass.frag"}, {{}}},
     {{"feature_pass.vert", "feature_pass.frag"}, {{}}},
     {{"feature_sight_pass.comp"}, {{"CLOSE_GAPS 0"}, {"CLOSE_GAPS 1"}}},
     {{"picture.vert", "shade_pass.frag"},

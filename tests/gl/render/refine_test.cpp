@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "render/thread/detail_budget.h"
 #include "render/view/accumulation.h"
 #include "support/gl_scene.h"
 
@@ -27,7 +28,8 @@ Means colors(const render::Frame& frame) {
 // A bumpy sphere with classes in rings, so that there are silhouettes and borders of classes.
 class Refine : public testing::Test {
  protected:
-  Refine() : model_(renderer_.add(make_scene(bumpy_sphere(24), 512))) {
+  explicit Refine(const render::RendererOptions& options = {})
+      : renderer_(options), model_(renderer_.add(make_scene(bumpy_sphere(24), 512))) {
     const auto layer = renderer_.add_layer(model_, ValueType::u8, 512);
     request_.view = renderer_.add_view(model_);
     request_.model = model_;
@@ -109,6 +111,99 @@ TEST_F(Refine, edges_differ_from_256_samples_by_a_quarter_of_what_one_sample_doe
               fine);
   EXPECT_GT(plain, 2) << "there are edges";
   EXPECT_LE(fine, plain / 4);
+}
+
+// As on a fast GPU: whole frames of the view have five samples.
+class Smooth : public Refine {
+ protected:
+  Smooth()
+      : Refine([] {
+          render::RendererOptions options;
+          options.smooth_samples = render::DetailBudget::kSmoothSamples;
+          return options;
+        }()) {}
+  render::Frame smooth(bool moving = true) {
+    render::FrameRequest request = request_;
+    request.smooth = true;
+    request.moving = moving;
+    return renderer_.draw(request);
+  }
+};
+
+TEST_F(Smooth, edges_in_motion_differ_by_less_than_half_of_what_one_sample_does) {
+  const Means truth = reference(16);
+  const double plain = root_mean_square(colors(renderer_.draw(request_)), truth);
+  const double fine = root_mean_square(colors(smooth()), truth);
+  std::printf("root mean square to 256 samples: 1 sample %.3f, %d samples %.3f\n", plain,
+              render::DetailBudget::kSmoothSamples, fine);
+  EXPECT_LE(fine, plain / 2);
+  EXPECT_EQ(smooth(false).pixels, smooth().pixels) << "also of a camera at rest";
+}
+
+TEST_F(Smooth, the_view_keeps_its_frame_with_one_sample_and_takes_rectangles) {
+  const render::Frame plain = renderer_.draw(request_);
+  request_.camera = perspective_camera({1.3, 1.0, 2.3}, {0, 0, 0}, kWidth, kHeight);
+  const render::Frame moved = smooth();
+  ASSERT_EQ(moved.rects, (std::vector<render::PixelRect>{{0, 0, kWidth, kHeight}}));
+  render::FrameRequest part = request_;
+  part.smooth = true;
+  part.changed = {{glm::vec3(-0.2f), glm::vec3(0.2f)}};
+  part.align_to_16 = false;
+  const render::Frame changed = renderer_.draw(part);
+  ASSERT_EQ(changed.rects.size(), 1u);
+  const auto& rect = changed.rects.front();
+  ASSERT_LT(rect.width, kWidth) << "the view has the frame of the new camera";
+  const render::Frame whole = renderer_.draw(request_);
+  EXPECT_NE(whole.pixels, plain.pixels);
+  for (int y = 0; y < rect.height; ++y)
+    for (int i = 0; i < rect.width * 4; ++i)
+      ASSERT_EQ(changed.pixels[static_cast<std::size_t>(y * rect.width * 4 + i)],
+                whole.pixels[static_cast<std::size_t>(((rect.y + y) * kWidth + rect.x) * 4 + i)]);
+}
+
+TEST_F(Smooth, a_new_style_without_a_new_camera_is_smooth_too) {
+  smooth();
+  request_.style.background.top = {0, 90, 0, 255};
+  const render::Frame restyled = smooth();
+  request_.camera = perspective_camera({9, 1.0, 2.4}, {0, 0, 0}, kWidth, kHeight);
+  smooth();
+  request_.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, kWidth, kHeight);
+  EXPECT_EQ(restyled.pixels, smooth().pixels);
+}
+
+TEST_F(Smooth, a_frame_without_memory_for_samples_has_one) {
+  const auto smooth_frame = [&](TestRenderer& renderer) {
+    render::FrameRequest request = request_;
+    request.model = renderer.add(make_scene(bumpy_sphere(24), 512));
+    request.view = renderer.add_view(request.model);
+    request.style.layers.clear();
+    request.smooth = true;
+    return renderer.draw(request);
+  };
+  TestRenderer plain;
+  const render::Frame one_sample = smooth_frame(plain);
+  render::RendererOptions options;
+  options.smooth_samples = render::DetailBudget::kSmoothSamples;
+  TestRenderer large(options);
+  EXPECT_NE(one_sample.pixels, smooth_frame(large).pixels);
+  options.gpu_memory_bytes = plain->gpu_bytes_used() + 100'000;
+  TestRenderer small(options);
+  EXPECT_EQ(one_sample.pixels, smooth_frame(small).pixels);
+}
+
+TEST(DetailBudget, takes_samples_only_while_the_gpu_has_time) {
+  constexpr std::size_t kPixels = 1280 * 720,
+                        kExtra = kPixels * (render::DetailBudget::kSmoothSamples - 1);
+  render::DetailBudget software(true), hardware(false);
+  EXPECT_EQ(software.samples(kPixels), 1);
+  EXPECT_EQ(hardware.samples(kPixels), render::DetailBudget::kSmoothSamples);
+  EXPECT_EQ(hardware.samples(64 * kPixels), 1) << "a very large frame";
+  for (int i = 0; i < 20; ++i) hardware.smoothed(kExtra, 40);
+  EXPECT_EQ(hardware.samples(kPixels), 1) << "it took 40 ms";
+  int refused = 0;
+  while (hardware.samples(kPixels) == 1 && refused < 100'000) ++refused;
+  EXPECT_GT(refused, 300) << "not tried again at once";
+  EXPECT_LT(refused, 3000) << "but some time later";
 }
 
 TEST_F(Refine, flat_colors_are_the_same) {
