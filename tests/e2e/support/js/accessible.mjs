@@ -118,7 +118,11 @@ export const active = (page) =>
 export async function walk(page) {
   await evaluate(
     page,
-    "window.reached = new Set(); window.unseen = []; document.activeElement?.blur();",
+    `window.reached = new Set();
+     window.unseen = [];
+     document.activeElement?.blur();
+     // A dialog that is not modal does not keep the focus: the walk begins in it.
+     deep_all().findLast((each) => each.matches("dialog[open]:not(:modal)"))?.focus();`,
   );
   const count = await evaluate(
     page,

@@ -170,7 +170,7 @@ export class StrataStatisticsDialog extends LitElement {
 
   override render(): TemplateResult {
     return html`<strata-dialog
-      wide
+      docked
       heading=${texts.statistics.title(labelOf(this.layer))}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
