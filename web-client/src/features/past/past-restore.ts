@@ -19,7 +19,7 @@ const words = texts.past;
 @customElement("strata-past-restore")
 export class StrataPastRestore extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private _layer: number | null = null; // null: the selected one
+  @state() private _layer: number | null = null; // null: the selected one, if it changed since then
   @state() private _count: Difference | null = null;
   @state() private _working = false;
   private _counted = ""; // what `_count` is of
@@ -71,9 +71,14 @@ export class StrataPastRestore extends LitElement {
 
   private get layer(): Layer | null {
     const { layers, session } = this;
+    const at = session.past.at ?? Infinity;
+    const changed = layers.filter(({ sequence }) => sequence > at);
+    const selected = layers.find(({ id }) => id === session.layers.selected?.id);
     return (
       layers.find(({ id }) => id === this._layer) ??
-      layers.find(({ id }) => id === session.layers.selected?.id) ??
+      changed.find((each) => each === selected) ??
+      changed.sort((a, b) => b.sequence - a.sequence)[0] ??
+      selected ??
       layers[0] ??
       null
     );
