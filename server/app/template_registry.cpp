@@ -62,7 +62,7 @@ Result<TermList> terms_of(const std::vector<protocol::TemplateTerm>& terms,
     // A term follows its parent, so cycles are impossible.
     if (!term.parent.empty() && !codes.contains(term.parent))
       return fail(ErrorCode::invalid, "Parent not found",
-                  term.code + " is below " + term.parent + ", which must come before it.");
+                  term.code + " has the parent " + term.parent + ", which must come before it.");
     list.terms.push_back(std::move(term));
   }
   return list;
@@ -99,7 +99,7 @@ Result<protocol::Template> read_template(const std::filesystem::path& file) {
   read.slug = file.stem().string();
   if (make_slug(*read.slug) != *read.slug)
     return fail(ErrorCode::invalid, "Invalid name",
-                "Its name must consist of lower-case letters, digits and hyphens.");
+                "The name must consist of lower-case letters, digits and hyphens.");
   STRATA_TRY(new_tables(read, 1, {}));
   for (const protocol::TemplateLayer& layer : read.layers)
     if (std::none_of(read.tables.begin(), read.tables.end(),
@@ -112,10 +112,10 @@ Result<protocol::Template> read_template(const std::filesystem::path& file) {
       names.push_back(label);
     for (const std::string& name : names)
       if (trimmed(name) != name || name.empty() || character_count(name) > kMaxGroupLength)
-        return fail(
-            ErrorCode::invalid, "Invalid group",
-            "The name of the group must have 1 to 60 characters, without blanks at its ends.",
-            "group");
+        return fail(ErrorCode::invalid, "Invalid group",
+                    "The name of the group must be 1 to 60 characters long, without spaces at the "
+                    "beginning or the end.",
+                    "group");
   }
   return read;
 }
@@ -130,7 +130,7 @@ Result<TemplateRegistry> TemplateRegistry::load(const std::filesystem::path& fol
     if (entry.path().extension() != ".json") continue;
     auto read = read_template(entry.path());
     if (!read)
-      return fail(ErrorCode::internal, "Template not usable",
+      return fail(ErrorCode::internal, "Template cannot be used",
                   entry.path().string() + ": " +
                       (read.error().field.empty() ? "" : read.error().field + ": ") +
                       read.error().detail);

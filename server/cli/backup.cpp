@@ -44,7 +44,7 @@ Result<Source> find_source(const DataOptions& options) {
   if (state.version == 0)
     return fail(ErrorCode::not_found, "No database",
                 "There is no database in " + fs::absolute(options.data).string() +
-                    ". Name the server's folder with --data, or its database with --database.");
+                    ". Specify the server's folder with --data, or its database with --database.");
   auto cluster = STRATA_TRY(store::Cluster::start(fs::absolute(options.data)));
   std::string dsn = cluster->dsn();
   return Source{std::move(cluster), std::move(dsn)};
@@ -73,8 +73,7 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
   std::error_code error;
   if (fs::exists(place, error))
     return fail(ErrorCode::conflict, "Data folder not empty",
-                data.string() +
-                    " holds a site already, which stays as it is. Name a new folder with --data.",
+                data.string() + " already contains a site. Specify a new folder with --data.",
                 "--data");
   fs::remove_all(beside, error);  // left by a killed restore
   const auto restored = [&]() -> Result<void> {
@@ -84,8 +83,9 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
   if (restored) {
     fs::rename(beside / "postgres", place, error);
     if (error)
-      return fail(ErrorCode::internal, "Not restored",
-                  "Cannot name the folder " + place.string() + ": " + error.message() + ".");
+      return fail(
+          ErrorCode::internal, "Backup not restored",
+          "Cannot rename the restored folder to " + place.string() + ": " + error.message() + ".");
   }
   std::error_code ignored;
   fs::remove_all(beside, ignored);

@@ -55,7 +55,8 @@ Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
       return fail(
           ErrorCode::malformed, "File without a scan",
           path.string() +
-              " belongs to none of the scans. Import the scan that uses it in a separate command.");
+              " does not belong to any of the scans. Import the scan that uses it in a separate "
+              "command.");
     scans[0].push_back({path.filename().string(), path});
   }
   return scans;

@@ -21,8 +21,9 @@ struct KioskOptions {
 Result<void> create(store::Store& store, const KioskOptions& options) {
   const auto slash = options.tour.find('/');
   if (slash == std::string::npos)
-    return fail(ErrorCode::malformed, "No tour",
-                "Enter the tour with its model: MODEL/TOUR, as in its address.", "tour");
+    return fail(ErrorCode::malformed, "Tour missing",
+                "Enter the model and the tour as MODEL/TOUR, as in the address of the tour.",
+                "tour");
   const auto model = STRATA_TRY(store.models().find(options.tour.substr(0, slash)));
   const auto tour = STRATA_TRY(store.tours().find(model.id, options.tour.substr(slash + 1)));
   std::optional<std::chrono::seconds> lifetime;

@@ -24,8 +24,9 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   std::error_code error;
   std::filesystem::create_directories(options.data, error);
   if (error)
-    return fail(ErrorCode::internal, "Data folder cannot be made",
-                options.data.string() + ": " + error.message() + ". Name another with --data.");
+    return fail(
+        ErrorCode::internal, "Data folder cannot be created",
+        options.data.string() + ": " + error.message() + ". Specify another folder with --data.");
   store::StoreOptions store_options;
   store_options.dsn = options.database;
   if (options.database.empty()) {
@@ -50,14 +51,16 @@ Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& op
   if (!state.running && state.version == 0 && !state.trouble)
     return fail(ErrorCode::not_found, "No database",
                 "There is no database in " + std::filesystem::absolute(options.data).string() +
-                    ". Name the server's folder with --data, or start the server once.");
+                    ". Specify the server's folder with --data, or start the server to create a "
+                    "database.");
   if (!state.running) return open_database(options);
   // Only the server's own start migrates its database, never another program while it runs.
   const auto schema = STRATA_TRY(store::inspect_database(state.dsn, install_dirs().migrations));
   if (schema.schema_version != schema.known_version)
-    return fail(ErrorCode::conflict, "Another version",
-                "The server that runs on " + options.data.string() +
-                    " is of another version than this program. Use its own, or restart it.");
+    return fail(ErrorCode::conflict, "Version mismatch",
+                "The server that uses " + options.data.string() +
+                    " has a different version than this program. Use the program of that version, "
+                    "or restart the server.");
   DataOptions beside = options;
   beside.database = state.dsn;
   return open_database(beside);

@@ -118,8 +118,9 @@ Work<PeopleOptions> changing(
 Result<void> change(store::Store& store, const store::Person& person,
                     const store::PersonChange& change) {
   if (person.role == Role::owner)
-    return fail(ErrorCode::conflict, "The owner",
-                "The owner keeps the role owner and cannot be disabled or deleted.");
+    return fail(ErrorCode::conflict, "Cannot change the owner",
+                "The account of the owner cannot be disabled or deleted, and its role cannot be "
+                "changed.");
   STRATA_TRY(store.accounts().update(person.id, change));
   return {};
 }
@@ -139,8 +140,9 @@ Result<void> set_role(store::Store& store, const PeopleOptions& options,
   if (!options.project.empty()) return set_role_in_project(store, options, person);
   if (options.role == "none")
     return fail(
-        ErrorCode::malformed, "No role",
-        "`none` needs --project. For an account that sees no project, choose the role guest.",
+        ErrorCode::malformed, "Project missing",
+        "`none` requires --project. For an account that cannot see any project, choose the role "
+        "guest.",
         "role");
   return change(store, person, {.full_name = {}, .role = parse_role(options.role), .disabled = {}});
 }
@@ -182,9 +184,9 @@ Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
   }
   const Role role = parse_role(options.role).value_or(usual);
   if (role > own)
-    return fail(ErrorCode::malformed, "Role above the person's",
+    return fail(ErrorCode::malformed, "Role too high",
                 person.name + " is " + std::string(name(own)) + (only ? " there" : "") +
-                    ": a token can do no more.",
+                    ". A token cannot have a higher role.",
                 "--role");
   const auto made =
       store.tokens().create(TokenKind::script, person.name, role,

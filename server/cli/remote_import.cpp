@@ -24,7 +24,8 @@ tl::unexpected<Error> not_strata(const std::string& what) {
   return fail(
       ErrorCode::bad_gateway, "Not a Strata server",
       what +
-          " is not what a Strata server answers. Is the address right, and is nothing in between?");
+          " is not a valid response of a Strata server. Check the address, and check whether a "
+          "proxy changes the responses.");
 }
 
 // Returns the JSON object in a reply; checks that it has these members.
@@ -33,7 +34,7 @@ Result<nlohmann::json> object_in(const Reply& reply, std::initializer_list<const
   if (!json.is_object()) return not_strata("The answer");
   for (const char* member : members)
     if (!json.contains(member))
-      return not_strata(std::string("An answer without `") + member + "`");
+      return not_strata(std::string("A response without `") + member + "`");
   return json;
 }
 
@@ -142,7 +143,7 @@ class Client {
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEDATA, &reply.body);
     const CURLcode code = curl_easy_perform(curl_.get());
     if (code != CURLE_OK)
-      return fail(ErrorCode::unavailable, "Server not reached",
+      return fail(ErrorCode::unavailable, "Server not reachable",
                   base_ + ": " + curl_easy_strerror(code));
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
     if (reply.status >= 400) {

@@ -53,7 +53,7 @@ bool is_loopback(const std::string& host) {
 Result<Address> parse_address(const std::string& text, const std::string& option) {
   const auto colon = text.rfind(':');
   if (colon == std::string::npos)
-    return fail(ErrorCode::malformed, "Listen address",
+    return fail(ErrorCode::malformed, "Invalid listen address",
                 "Enter HOST:PORT, for example 127.0.0.1:8080.", option);
   Address address{text.substr(0, colon), 0};
   if (address.host.size() > 2 && address.host.front() == '[')
@@ -62,8 +62,8 @@ Result<Address> parse_address(const std::string& text, const std::string& option
   char* end = nullptr;
   const long number = std::strtol(port.c_str(), &end, 10);
   if (port.empty() || *end != '\0' || number < 0 || number > 65535)
-    return fail(ErrorCode::malformed, "Listen address",
-                "The port is a number from 0 (any free one) to 65535.", option);
+    return fail(ErrorCode::malformed, "Invalid listen address",
+                "The port must be a number from 0 (any free port) to 65535.", option);
   address.port = static_cast<std::uint16_t>(number);
   return address;
 }
@@ -82,8 +82,8 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
     return {};
   }
   return fail(
-      ErrorCode::forbidden, "No account",
-      "Others can reach " + address.host +
+      ErrorCode::forbidden, "Administrator account missing",
+      "Other computers can reach " + address.host +
           ", but no administrator has a password. Create an account: strata user add NAME --role administrator "
           "--password-stdin. Or listen on 127.0.0.1.",
       "--listen");
@@ -92,13 +92,13 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
 Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
   auto address = STRATA_TRY(parse_address(text, "--sql-listen"));
   if (address.port == 0)
-    return fail(ErrorCode::malformed, "Listen address",
+    return fail(ErrorCode::malformed, "Invalid listen address",
                 "The database needs its own port: enter a number from 1 to 65535.", "--sql-listen");
   if (!is_loopback(address.host))
     return fail(
         ErrorCode::forbidden, "Listen address not allowed",
-        "Passwords and answers would travel unencrypted, so SQL is served on loopback only (127.0.0.1). Reach it from "
-        "elsewhere through an SSH tunnel: ssh -L 5433:127.0.0.1:5433 HOST.",
+        "Passwords and responses would not be encrypted, so SQL is available only on loopback "
+        "(127.0.0.1). From other computers, use an SSH tunnel: ssh -L 5433:127.0.0.1:5433 HOST.",
         "--sql-listen");
   return store::Cluster::SqlListen{address.host, address.port};
 }

@@ -20,7 +20,7 @@ class ByteBudget {
     do {
       if (held > 0 && held + bytes > total_)
         return fail(ErrorCode::busy, "Too many rasters",
-                    "Other large rasters are being read or written; ask again in a moment.");
+                    "The server is reading or writing other large rasters. Try again in a moment.");
     } while (!held_->compare_exchange_weak(held, held + bytes));
     return std::shared_ptr<const void>(held_.get(),
                                        [held = held_, bytes](const void*) { *held -= bytes; });

@@ -39,7 +39,7 @@ Result<void> check_memory(std::string_view what, std::size_t bytes) {
   }
   if (!out_of_memory) return {};
   return fail(ErrorCode::out_of_memory, "GPU out of memory",
-              "The driver has no memory for '" + std::string(what) + "' (" +
+              "The graphics driver could not allocate memory for '" + std::string(what) + "' (" +
                   std::to_string(bytes >> 20) +
                   " MiB). Close models or layers, or lower --gpu-memory.");
 }

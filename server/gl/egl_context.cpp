@@ -131,8 +131,8 @@ Result<EglContext> EglContext::create(const EglOptions& options) {
       ErrorCode::unavailable, "No GPU context",
       "The server could not create an OpenGL 4.5 context. It tried: " +
           (tried.empty() ? "no EGL platform was found" : tried) +
-          ". Install a driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri), and let this user open "
-          "/dev/dri/renderD* or /dev/nvidia*.");
+          ". Install a driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri), and give this user "
+          "access to /dev/dri/renderD* or /dev/nvidia*.");
 }
 
 EglContext::EglContext(EglContext&& other) noexcept

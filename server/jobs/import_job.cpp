@@ -95,7 +95,7 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
 
 Result<void> check(const ImportRequest& request) {
   if (request.name.size() > kMaxNameLength)
-    return fail(ErrorCode::invalid, "Name too long", "The name can have at most 200 bytes.",
+    return fail(ErrorCode::invalid, "Name too long", "The name can be at most 200 bytes long.",
                 "name");
   if (!request.up.empty() && !is_up(request.up))
     return fail(ErrorCode::invalid, "Unknown direction",
@@ -105,7 +105,7 @@ Result<void> check(const ImportRequest& request) {
                 "Write a coordinate system as EPSG:n, for example EPSG:25830.", "crs");
   if (!(request.weld_distance >= 0 && request.weld_distance < 1e15))
     return fail(ErrorCode::invalid, "Invalid distance",
-                "The welding distance must be a number of 0 or more.", "weld");
+                "The welding distance must be 0 or a positive number.", "weld");
   const int resolution = request.resolution;
   if (resolution != 0 && (resolution < kLowestResolution || resolution > kMaxResolution ||
                           !std::has_single_bit(unsigned(resolution))))

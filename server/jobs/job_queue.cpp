@@ -29,7 +29,7 @@ Error lost_problem(JobKind kind) {
     case JobKind::import:
       return {ErrorCode::unavailable,
               kTitle,
-              "The server restarted before this import finished, and kept nothing of it. "
+              "The server restarted before this import finished, and did not save any part of it. "
               "Start the import again.",
               {}};
     case JobKind::layers:
@@ -41,7 +41,7 @@ Error lost_problem(JobKind kind) {
     case JobKind::image:
       return {ErrorCode::unavailable,
               kTitle,
-              "The server restarted before this picture finished, and kept nothing of it. "
+              "The server restarted before this picture finished, and did not save any part of it. "
               "Start the job again.",
               {}};
     case JobKind::figure: break;
@@ -142,8 +142,8 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
   } catch (const std::exception& error) {
     log::error(std::string("A job failed unexpectedly: ") + error.what());
     return fail(ErrorCode::internal, "Job failed",
-                "An internal error stopped this job. Ask an administrator to look into the log "
-                "of the server.");
+                "An internal error stopped this job. Ask an administrator to check the log of the "
+                "server.");
   }
 }
 

@@ -73,7 +73,7 @@ class Measure {
       case ShapeKind::vertex_property: return property();
     }
     return fail(ErrorCode::internal, "Unknown kind",
-                "The server does not know this kind of layer.");
+                "The server does not support this kind of layer.");
   }
   std::string other_model() const { return other_model_; }
   std::string source() const { return source_; }
@@ -190,8 +190,8 @@ class Measure {
                   "compute.model");
     if (!other->crs.empty() && !model_.crs.empty() && other->crs != model_.crs)
       return fail(ErrorCode::invalid, "Different coordinate systems",
-                  "The coordinate system of this model is " + model_.crs +
-                      ", that of the other model is " + other->crs +
+                  "This model has the coordinate system " + model_.crs +
+                      ", but the other model has " + other->crs +
                       ". Transform both scans into one coordinate system and import them again.",
                   "compute.model");
     other_model_ = other->name;
@@ -229,11 +229,10 @@ class Measure {
     if (having.size() != 1)
       return fail(
           ErrorCode::invalid, having.empty() ? "Property not found" : "Property in several files",
-          having.empty()
-              ? "No source file of this model has vertices with a number \"" + recipe_.property +
-                    "\"."
-              : "Several source files have this property. Choose the file whose property \"" +
-                    recipe_.property + "\" you want.",
+          having.empty() ? "No source file of this model has vertices with a numeric property \"" +
+                               recipe_.property + "\"."
+                         : "Several source files have the property \"" + recipe_.property +
+                               "\". Choose one of these files.",
           having.empty() ? "compute.property" : "compute.source");
     source_ = having.front();
     progress_.report(0, "Reading the scan");

@@ -69,7 +69,7 @@ Result<void> check_members(const ShapeRecipe& r) {
     STRATA_TRY(refuse_foreign(is_set, takes, member, kind));
   if (kind == ShapeKind::model_distance && r.model.empty())
     return fail(ErrorCode::invalid, "Model missing",
-                "Choose the model to whose surface the server measures the distance.",
+                "Choose the other model. The server measures the distance to its surface.",
                 "compute.model");
   if (kind == ShapeKind::vertex_property && r.property.empty())
     return fail(ErrorCode::invalid, "Property missing",

@@ -196,8 +196,8 @@ Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std
   if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint64_t>(largest_side))
     return fail(ErrorCode::invalid, "Invalid picture size",
                 "The picture has " + std::to_string(width) + " × " + std::to_string(height) +
-                    " pixels. Each side must have 1 to " + std::to_string(largest_side) +
-                    " pixels.");
+                    " pixels. Each side must be 1 to " + std::to_string(largest_side) +
+                    " pixels long.");
   return PictureInfo{format, static_cast<int>(width), static_cast<int>(height)};
 }
 

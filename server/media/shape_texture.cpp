@@ -76,9 +76,9 @@ Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part
   }
   if (!any)
     return fail(ErrorCode::invalid, "Empty shape",
-                "The server found no shape in the picture. It takes the opaque part or, if "
-                "there is no transparency, the light part. Send `part=dark` for a dark shape "
-                "on a light background.",
+                "The server found no shape in the picture. It uses the opaque part or, if there is "
+                "no transparency, the light part. Send `part=dark` for a dark shape on a light "
+                "background.",
                 "body");
   return bits;
 }

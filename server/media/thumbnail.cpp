@@ -80,8 +80,9 @@ Result<std::vector<std::uint8_t>> make_thumbnail(std::span<const std::uint8_t> b
   if (pixels > most)
     return fail(ErrorCode::invalid, "Picture too large",
                 "The picture has " + std::to_string(pixels / 1'000'000) +
-                    " million pixels. The server makes thumbnails of pictures with at most " +
-                    std::to_string(most / 1'000'000) + " million.");
+                    " million pixels. The server can make thumbnails only of pictures with at "
+                    "most " +
+                    std::to_string(most / 1'000'000) + " million pixels.");
   auto picture = STRATA_TRY(decode_coarse(bytes, largest_side));
   const Picture small = turned(shrunk(picture, largest_side), facts.orientation);
   return encode_jpeg(small.rgba, small.width, small.height, {kQuality, false});

@@ -78,7 +78,7 @@ bool Store::ready() {
 Result<void> check_name(const std::string& name) {
   if (name.empty() || name.size() > kMaxNameLength)
     return fail(ErrorCode::malformed, "Invalid name",
-                "`name` must have 1 to " + std::to_string(kMaxNameLength) + " bytes of UTF-8.",
+                "`name` must be UTF-8 text of 1 to " + std::to_string(kMaxNameLength) + " bytes.",
                 "name");
   return check_text(name, "name");
 }

@@ -133,7 +133,7 @@ Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
         std::pair(RAPTOR_OPTION_LOAD_EXTERNAL_ENTITIES, 0)})
     if (raptor_parser_set_option(parser.get(), option, nullptr, value) != 0)
       return fail(ErrorCode::internal, "RDF not readable",
-                  "libraptor2 cannot be kept from fetching.");
+                  "The server could not turn off network access in libraptor2.");
   const Uri base = new_uri(world.get(), kRelativeBase);
   Reading reading{sink, parser.get()};
   raptor_parser_set_statement_handler(parser.get(), &reading, take);

@@ -54,8 +54,8 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
     heads.push_back(std::move(*head));
   }
   if (!list.columns.contains("code"))
-    return fail(ErrorCode::invalid, "Column missing", "The first row must name the column `code`.",
-                "body");
+    return fail(ErrorCode::invalid, "Column missing",
+                "The first row must contain the column `code`.", "body");
   if (languages > kMaxTermLanguages)
     return fail(ErrorCode::invalid, "Too many languages",
                 "A term list can have labels in at most " + std::to_string(kMaxTermLanguages) +
@@ -71,7 +71,7 @@ Result<TermList> read_terms_csv(std::string_view text) {
       STRATA_TRY(parse_csv(text, {kMaxTerms + 1, std::size(kParts) + kMaxTermLanguages + 1}));
   if (csv.rows.empty())
     return fail(ErrorCode::invalid, "Empty table",
-                "The text is empty. Its first row must name the columns.", "body");
+                "The text is empty. Its first row must contain the column names.", "body");
   TermList list;
   auto heads = STRATA_TRY(read_heads(csv.rows.front(), list));
   list.rows = csv.rows.size() - 1;
@@ -91,14 +91,14 @@ Result<TermList> read_terms_csv(std::string_view text) {
     Result<void> good;
     if (row.cells.size() != heads.size())
       good = fail(ErrorCode::invalid, "Wrong number of cells",
-                  "The row has " + std::to_string(row.cells.size()) + " cells, the first row " +
-                      std::to_string(heads.size()) + ".");
+                  "The row has " + std::to_string(row.cells.size()) +
+                      " cells, but the first row has " + std::to_string(heads.size()) + ".");
     if (good) good = check_term(term);
     if (good)
       if (const auto [first, is_new] = lines.emplace(term.code, row.line); !is_new)
         good = fail(
             ErrorCode::invalid, "Duplicate code",
-            "\"" + term.code + "\" appears in line " + std::to_string(first->second) + ", too.",
+            "\"" + term.code + "\" also appears in line " + std::to_string(first->second) + ".",
             "code");
     if (good)
       list.terms.push_back(std::move(term));

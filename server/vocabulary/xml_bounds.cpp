@@ -23,9 +23,10 @@ class Scanner {
       const bool is_empty = tag();
       if (is_tag) depth += ends ? -1 : is_empty ? 0 : 1;
       if (depth > kDeepestXml)
-        return fail(ErrorCode::invalid, "Nested too deeply",
-                    "its elements are nested more than " + std::to_string(kDeepestXml) + " deep",
-                    "body");
+        return fail(
+            ErrorCode::invalid, "Nested too deeply",
+            "its elements are nested more than " + std::to_string(kDeepestXml) + " levels deep",
+            "body");
     }
     return {};
   }

@@ -17,9 +17,8 @@ tl::unexpected<Error> shows_through(const Layer& layer) {
   return fail(
       ErrorCode::conflict, "Visible to too many people",
       "The layer " + layer.name + " is " + std::string(name(layer.visibility)) +
-          " and uses these values in its expression or for its colors, so more people would "
-          "see them. First restrict the visibility of that layer, or change its expression "
-          "or palette.",
+          " and uses these values in its expression or for its colors, so more people could see "
+          "them. First restrict the visibility of that layer, or change its expression or palette.",
       "visibility");
 }
 
@@ -54,8 +53,8 @@ Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
       return fail(ErrorCode::invalid, "Visible to too many people",
                   "The palette takes its colors from the column " + column->name + ", which is " +
                       std::string(name(column->visibility)) +
-                      ", but more people see the layer than the column. Restrict the visibility of "
-                      "the layer, or choose another column for its colors.",
+                      ", but more people can see the layer than the column. Restrict the "
+                      "visibility of the layer, or choose another column for its colors.",
                   "palette.column");
   }
   for (const Layer& other : others)

@@ -271,8 +271,8 @@ class Story {
     const int descriptor = ::mkstemp(pattern.data());
     if (descriptor < 0)
       return fail(
-          ErrorCode::internal, "No temporary file",
-          "The server cannot write into " + std::filesystem::temp_directory_path().string() + ".");
+          ErrorCode::internal, "Cannot create temporary file",
+          "The server cannot write to " + std::filesystem::temp_directory_path().string() + ".");
     ::close(descriptor);
     const TemporaryFile file{pattern};
     std::ofstream(file.path, std::ios::binary)

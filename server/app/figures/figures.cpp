@@ -221,7 +221,7 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   const auto extent = figure::extent_of(geometry->positions, request.plane, request.section);
   if (!extent)
     return fail(ErrorCode::invalid, "Nothing to draw",
-                "The section cuts the whole model away. Move or remove its planes.",
+                "The section removes the whole model from the figure. Move or remove its planes.",
                 "camera.section");
   const glm::dvec2 size =
       request.center

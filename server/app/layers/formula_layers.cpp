@@ -109,8 +109,8 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
     const auto layer = std::ranges::find(layers, slug, &Layer::slug);
     if (layer == layers.end()) continue;  // `check_expression` checks the other names
     if (self && layer->id == *self)
-      return fail(ErrorCode::invalid, "Computed from itself",
-                  "The expression reads the layer that it computes. Remove this layer from the "
+      return fail(ErrorCode::invalid, "Layer depends on itself",
+                  "The expression uses the layer that it computes. Remove this layer from the "
                   "expression.",
                   "expression");
     LayerFormula::Input input{slug, layer->id, {}};
@@ -133,7 +133,7 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
   for (const auto& input : layer.formula->inputs)
     if (!input.layer)
       return fail(ErrorCode::conflict, "Input deleted",
-                  "The expression reads the layer '" + input.slug +
+                  "The expression uses the layer '" + input.slug +
                       "', which was deleted. Change the expression.",
                   "expression");
   const auto expression = STRATA_TRY(parse_formula(layer.formula->expression));

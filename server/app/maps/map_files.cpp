@@ -112,8 +112,8 @@ Result<void> MapFiles::choose_main() {
             ? "The zip contains no map: no .shp, .geojson, .tif, .png or .jpg file."
             : std::string(last_part(files_.front().name)).substr(0, 100) +
                   " is not a map on its own. Send it together with its .shp file or its picture. "
-                  "The server reads GeoJSON, shapefiles, TIFF, PNG and JPEG; convert a GeoPackage "
-                  "or KML to GeoJSON first (QGIS, ogr2ogr).",
+                  "The server can read GeoJSON, shapefiles, TIFF, PNG and JPEG. Convert a "
+                  "GeoPackage or KML to GeoJSON first, for example with QGIS or ogr2ogr.",
         "body");
   if (maps.size() > 1) {
     std::string named;

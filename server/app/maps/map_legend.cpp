@@ -38,13 +38,14 @@ Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
   for (const std::string& name : names)
     if (name.size() > kMaxNameLength)
       return fail(ErrorCode::invalid, "Name too long",
-                  "\"" + name.substr(0, 60) + "…\" is too long for a legend.", "attribute");
+                  "\"" + name.substr(0, 60) + "…\" is too long for a legend entry.", "attribute");
   Layer changed = layer;
   changed.palette = keys.extended();
   changed.palette_of_terms = false;
   if (changed.palette.points.size() > kMaxPoints)
     return fail(ErrorCode::invalid, "Too many names",
-                "A legend has at most " + std::to_string(kMaxPoints) + " entries.", "attribute");
+                "A legend can have at most " + std::to_string(kMaxPoints) + " entries.",
+                "attribute");
   STRATA_TRY(room.layers().update(std::move(changed)));
   return {};
 }

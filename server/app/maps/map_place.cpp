@@ -34,14 +34,14 @@ Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& fil
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
   if (in_degrees)
     return fail(ErrorCode::invalid, "Coordinates in degrees",
-                "The coordinates of the map are longitude and latitude. Save the map in the "
+                "The coordinates of the map are longitudes and latitudes. Save the map in the "
                 "plane coordinates of the model" +
                     (model.crs.empty() ? "." : ", " + model.crs + "."),
                 "body");
   if (!crs.empty() && !model.crs.empty() && crs != model.crs)
     return fail(ErrorCode::invalid, "Different coordinate systems",
-                "The coordinate system of the map is " + crs + ", that of the model is " +
-                    model.crs + ". Save the map in " + model.crs + ".",
+                "The map has the coordinate system " + crs + ", but the model has " + model.crs +
+                    ". Save the map in " + model.crs + ".",
                 "body");
   return {};
 }

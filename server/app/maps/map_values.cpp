@@ -125,7 +125,9 @@ Result<MapValues> polygon_values(const MapOptions& options, const MapFiles& file
                 "Send either `value` or `attribute`, but not both.", "value");
   if (!choice.names.empty() && choice.attribute.empty())
     return fail(ErrorCode::invalid, "Parameter missing",
-                "`names` needs `attribute`: they name the numbers in that attribute.", "names");
+                "`names` requires `attribute`, because it contains names for the numbers in that "
+                "attribute.",
+                "names");
   choice.value = options.value.value_or(0);
   const auto features = STRATA_TRY(features_of(files, target.room.model()));
   STRATA_TRY(confirm_map_crs(options, target.room.model(), features.crs));
@@ -201,7 +203,7 @@ Result<MapValues> picture_values(const MapOptions& options, const MapFiles& file
   }
   if (!tiff)
     return fail(ErrorCode::invalid, "No bands in picture",
-                "`band` works for TIFF files only. Leave it out.", "band");
+                "You can use `band` only with TIFF files. Leave it out.", "band");
   const auto world = STRATA_TRY(world_of(options, files, tiff->world));
   auto held = STRATA_TRY(budget_of(files, tiff, budget));
   return values_of_band(files, *tiff, options.band.value_or(1), world, std::move(held),

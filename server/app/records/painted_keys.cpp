@@ -140,7 +140,7 @@ Result<void> check_keys(store::Store& store, const Layer& layer,
   std::string named;
   for (std::size_t i = 0; i < std::min(missing.size(), kMaxNamed); ++i)
     named += (i ? ", " : "") + std::to_string(missing[i]);
-  return fail(ErrorCode::invalid, "No such record",
+  return fail(ErrorCode::invalid, "Record not found",
               "The table of " + layer.name + " has no record " + named +
                   (missing.size() > kMaxNamed ? ", …" : "") +
                   ". Create the record first, then paint.",

@@ -126,7 +126,7 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
   if (!csv) return tl::unexpected(csv.error());
   if (csv->rows.empty())
     return fail(ErrorCode::invalid, "Empty table",
-                "The text is empty. Its first row must name the columns.", "body");
+                "The text is empty. Its first row must contain the column names.", "body");
   auto heads = read_heads(csv->rows.front(), table);
   if (!heads) return tl::unexpected(heads.error());
   const bool comma = csv->separator == ';';
@@ -139,13 +139,14 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
     std::vector<RowMistake> mistakes;
     store::RecordInput record;
     if (row.cells.size() != heads->size())
-      mistakes.push_back({row.line,
-                          {},
-                          {ErrorCode::invalid,
-                           "Wrong number of cells",
-                           "The row has " + std::to_string(row.cells.size()) +
-                               " cells, the first row " + std::to_string(heads->size()) + ".",
-                           {}}});
+      mistakes.push_back(
+          {row.line,
+           {},
+           {ErrorCode::invalid,
+            "Wrong number of cells",
+            "The row has " + std::to_string(row.cells.size()) + " cells, but the first row has " +
+                std::to_string(heads->size()) + ".",
+            {}}});
     for (std::size_t c = 0; c < std::min(row.cells.size(), heads->size()); ++c) {
       const Head& head = (*heads)[c];
       const std::string& cell = row.cells[c];

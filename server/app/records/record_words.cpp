@@ -106,7 +106,7 @@ Result<std::int64_t> RecordWords::key_of(const std::string& word, const std::str
     return fail(ErrorCode::invalid, "Record not found",
                 table_ + " has no record with the name \"" + word.substr(0, 100) + "\".", field);
   if (!meant->second)
-    return fail(ErrorCode::invalid, "Several records",
+    return fail(ErrorCode::invalid, "Ambiguous name",
                 table_ + " has several records with the name \"" + word.substr(0, 100) +
                     "\". Use the code or the key of the record instead.",
                 field);

@@ -77,7 +77,7 @@ Result<StrokeTracker::Batch> StrokeTracker::extend(const Owner& owner, const Uui
   Stroke* known = find(owner, stroke);
   if (!known)
     return fail(ErrorCode::not_found, "Unknown stroke",
-                "The server does not know this stroke. Send stroke.begin first.", "stroke");
+                "The server has no stroke with this id. Send stroke.begin first.", "stroke");
   // The first batch after a restart may have any number: the earlier ones are in the journal.
   if (known->batches.empty() && !known->last) known->first_n = n;
   const int next = known->first_n + static_cast<int>(known->batches.size());
@@ -88,7 +88,7 @@ Result<StrokeTracker::Batch> StrokeTracker::extend(const Owner& owner, const Uui
   if (n < known->first_n)
     return fail(ErrorCode::conflict, "Batch too old",
                 "Batches before number " + std::to_string(known->first_n) +
-                    " of this stroke cannot be repeated any more.",
+                    " of this stroke can no longer be repeated.",
                 "n");
   const bool is_new = n == next;
   if (is_new && known->ended)
@@ -102,7 +102,7 @@ Result<StrokeTracker::Batch> StrokeTracker::extend(const Owner& owner, const Uui
       is_new ? known->last : known->batches[static_cast<std::size_t>(n - known->first_n)].start;
   if (path.empty() || path.size() + (start ? 1 : 0) > kMaxPath)
     return fail(ErrorCode::invalid, "Path too long",
-                "A batch has 1 to " + std::to_string(kMaxPath - 1) +
+                "A batch can have 1 to " + std::to_string(kMaxPath - 1) +
                     " points. Send a longer path in several batches.",
                 "path");
   if (!widths.empty() && widths.size() != path.size())
@@ -141,7 +141,7 @@ Result<void> StrokeTracker::end(const Owner& owner, const Uuid& stroke) {
   Stroke* known = find(owner, stroke);
   if (!known)
     return fail(ErrorCode::not_found, "Unknown stroke",
-                "The server does not know a stroke with this id, so it cannot end it.", "stroke");
+                "The server has no stroke with this id, so it cannot end it.", "stroke");
   known->ended = true;
   return {};
 }

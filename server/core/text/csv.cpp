@@ -66,7 +66,7 @@ class Reader {
     CsvRow row{line_, {}};
     for (bool more = true; more;) {
       if (row.cells.size() == limits_.columns)
-        return refuse("A row has at most " + std::to_string(limits_.columns) + " cells");
+        return refuse("A row can have at most " + std::to_string(limits_.columns) + " cells");
       auto cell = STRATA_TRY(rest_.starts_with('"') ? quoted_cell() : bare_cell());
       if (!is_utf8(cell))
         return refuse("A cell is not encoded as UTF-8; save the text as \"CSV UTF-8\"");
@@ -80,7 +80,7 @@ class Reader {
                     [](const auto& cell) { return cell.empty(); }))
       return {};
     if (out_.rows.size() == limits_.rows)
-      return refuse("A text has at most " + std::to_string(limits_.rows) + " rows");
+      return refuse("A text can have at most " + std::to_string(limits_.rows) + " rows");
     out_.rows.push_back(std::move(row));
     return {};
   }

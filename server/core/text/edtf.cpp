@@ -125,8 +125,8 @@ Result<Period> parse_edtf(std::string_view text) {
   const auto refuse = [&] {
     return fail(ErrorCode::invalid, "Invalid date",
                 "\"" + mended_utf8(text.substr(0, kMaxPeriod)) +
-                    "\" is not a date in EDTF. Write for example 1560, 1560~, 156X, 1560-04-12, "
-                    "-0043, 1560/1580 or 1560/..",
+                    "\" is not a valid EDTF date. Valid dates are, for example, 1560, 1560~, 156X, "
+                    "1560-04-12, -0043, 1560/1580 or 1560/..",
                 {});
   };
   if (text.empty() || text.size() > kMaxPeriod) return refuse();

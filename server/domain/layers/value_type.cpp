@@ -60,7 +60,7 @@ Result<std::uint32_t> encode_value(ValueType type, double value) {
   if (value < t.lowest || value > t.highest)
     return fail(
         ErrorCode::invalid, "Value out of range",
-        "This layer holds values of type " + std::string(t.name) + ", from " +
+        "This layer can store only values of type " + std::string(t.name) + ", from " +
             std::to_string(t.lowest) + " to " + std::to_string(t.highest) + "." +
             (widens_to(type, ValueType::u32) && value > 0
                  ? " To store larger values, change the type of the layer (PATCH {\"type\": \"u32\"})."
@@ -68,7 +68,7 @@ Result<std::uint32_t> encode_value(ValueType type, double value) {
         "value");
   if (!t.floating && value != std::floor(value))
     return fail(ErrorCode::invalid, "Not a whole number",
-                "This layer holds whole numbers (" + std::string(t.name) +
+                "This layer can store only whole numbers (" + std::string(t.name) +
                     "). Send a value without a fraction.",
                 "value");
   switch (type) {

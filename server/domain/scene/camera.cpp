@@ -31,8 +31,8 @@ Result<void> validate(const Camera& camera, const std::string& field) {
   auto size = [&](int value, const char* side) -> Result<void> {
     if (value < 1 || value > kMaxViewSize)
       return fail(ErrorCode::invalid, "Size out of range",
-                  "The window of a camera must be 1 to " + std::to_string(kMaxViewSize) +
-                      " pixels on each side.",
+                  "Each side of the window of a camera must be 1 to " +
+                      std::to_string(kMaxViewSize) + " pixels long.",
                   field + "." + side);
     return {};
   };
@@ -45,7 +45,8 @@ Result<void> validate(const Camera& camera, const std::string& field) {
     if (!is_invertible(m))
       return fail(
           ErrorCode::invalid, "Matrix has no inverse",
-          "The matrix has no inverse, so the camera shows nothing. Send an invertible matrix.",
+          "The matrix has no inverse, so the camera cannot show anything. Send an invertible "
+          "matrix.",
           field + "." + name);
     return {};
   };
@@ -53,7 +54,7 @@ Result<void> validate(const Camera& camera, const std::string& field) {
   STRATA_TRY(matrix(camera.projection, "projection"));
   if (camera.section.size() > kMaxSectionPlanes)
     return fail(ErrorCode::invalid, "Too many planes",
-                "A section has at most " + std::to_string(kMaxSectionPlanes) + " planes.",
+                "A section can have at most " + std::to_string(kMaxSectionPlanes) + " planes.",
                 field + ".section");
   for (std::size_t i = 0; i < camera.section.size(); ++i) {
     const glm::dvec4& plane = camera.section[i];

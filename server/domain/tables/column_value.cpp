@@ -19,8 +19,8 @@ using nlohmann::json;
 
 tl::unexpected<Error> refuse(const Column& column, const std::string& what,
                              const std::string& field) {
-  return fail(ErrorCode::invalid, "Invalid value", "\"" + column.name + "\" holds " + what + ".",
-              field);
+  return fail(ErrorCode::invalid, "Invalid value",
+              "\"" + column.name + "\" can contain only " + what + ".", field);
 }
 
 std::string number_text(double number) {
@@ -136,7 +136,7 @@ Result<json> check_features(const Column& column, const json& value, const std::
                 ? R"(a list of lines, {"model": 3, "coordinates": [[x, y, z], [x, y, z], …]} each)"
                 : R"(a list of points, {"model": 3, "coordinates": [[x, y, z]]} each)") +
             ", " + std::to_string(kMaxFeatures) + " and " + std::to_string(kMaxFeaturePlaces) +
-            " places at most",
+            " points at most",
         field);
   if (features->empty()) return json();
   return to_json(*features);
@@ -165,11 +165,11 @@ Result<json> check_present(const Column& column, const json& value, const std::s
   switch (column.kind) {
     case ColumnKind::date:
       return day_of(text) ? Result<json>(text)
-                          : refuse(column, "dates as 2024-02-29, from year 1 on", field);
+                          : refuse(column, "dates such as 2024-02-29, from year 1 on", field);
     case ColumnKind::timestamp: {
       auto utc = utc_timestamp(text);
       return utc ? Result<json>(std::move(*utc))
-                 : refuse(column, "times as 2024-02-29T12:00:00Z", field);
+                 : refuse(column, "times such as 2024-02-29T12:00:00Z", field);
     }
     case ColumnKind::period: {
       auto period = parse_edtf(text);
@@ -312,7 +312,7 @@ Result<json> convert_value(const Column& from, const Column& to, const json& val
   // A key of one table is invalid in another.
   const bool from_keys = from.target.has_value(), to_keys = to.target.has_value();
   if (from_keys && to_keys && from.target != to.target)
-    return refuse(to, "keys of another table than \"" + from.name + "\"", field);
+    return refuse(to, "keys of a different table than \"" + from.name + "\"", field);
   if (holds_attachments(to.kind))
     return holds_attachments(from.kind) ? check_value(to, value, field)
                                         : refuse(to, "files", field);

@@ -37,7 +37,7 @@ Result<void> check_short(const std::string& text, const std::string& field,
                          std::size_t longest = kMaxColumnTextLength) {
   if (text.size() <= longest && is_utf8(text) && text.find('\0') == std::string::npos) return {};
   return fail(ErrorCode::invalid, "Invalid text",
-              "`" + field + "` must be UTF-8 of at most " + std::to_string(longest) +
+              "`" + field + "` must be UTF-8 text of at most " + std::to_string(longest) +
                   " bytes, without U+0000.",
               field);
 }
@@ -50,14 +50,15 @@ Result<void> check_choices(const Column& column) {
   }
   if (column.choices.empty() || column.choices.size() > kMaxChoices)
     return fail(ErrorCode::invalid, "Invalid choices",
-                "An enumeration has 1 to " + std::to_string(kMaxChoices) + " choices.", "choices");
+                "An enumeration must have 1 to " + std::to_string(kMaxChoices) + " choices.",
+                "choices");
   std::set<std::string> known;
   for (const std::string& choice : column.choices) {
     STRATA_TRY(check_short(choice, "choices"));
     if (choice.empty() || !known.insert(choice).second)
       return fail(
           ErrorCode::invalid, "Invalid choices",
-          "Choices must not be empty, and each choice must be different: \"" + choice + "\".",
+          "Choices must not be empty, and each choice must appear only once: \"" + choice + "\".",
           "choices");
   }
   return {};
@@ -92,19 +93,23 @@ Result<void> check_kind(const Column& column) {
   if ((holds_attachments(column.kind) || holds_features(column.kind)) &&
       !column.default_value.is_null())
     return fail(
-        ErrorCode::invalid, "Default not possible",
+        ErrorCode::invalid, "Default not allowed",
         holds_features(column.kind)
-            ? "Columns of lines and points cannot have a default: people draw them for each record."
-            : "Columns of files cannot have a default: people attach files to each record.",
+            ? "Columns of lines and points cannot have a default value, because people draw them "
+              "for each record."
+            : "Columns of files cannot have a default value, because people attach files to each "
+              "record.",
         "default");
   if (column.unique && (column.kind == ColumnKind::boolean || holds_lists(column.kind)))
     return fail(ErrorCode::invalid, "Cannot be unique",
                 "Columns of kind `" + std::string(name(column.kind)) +
-                    "` cannot be unique: many records have the same value.",
+                    "` cannot be unique, because several records can have the same value.",
                 "unique");
   if (column.unique && !column.default_value.is_null())
     return fail(ErrorCode::invalid, "Unique column with default",
-                "A unique column cannot have a default: only one record could have it.", "default");
+                "A unique column cannot have a default value, because only one record can have "
+                "each value.",
+                "default");
   return {};
 }
 
@@ -139,10 +144,10 @@ Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
 
 Result<void> check_column(Column& column) {
   if (column.name.empty())
-    return fail(
-        ErrorCode::invalid, "Invalid name",
-        "The name of a column must have 1 to " + std::to_string(kMaxColumnTextLength) + " bytes.",
-        "name");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "The name of a column must be 1 to " + std::to_string(kMaxColumnTextLength) +
+                    " bytes long.",
+                "name");
   STRATA_TRY(check_short(column.name, "name"));
   STRATA_TRY(check_short(column.unit, "unit"));
   STRATA_TRY(check_short(column.comment, "comment"));
@@ -154,8 +159,8 @@ Result<void> check_column(Column& column) {
   if (column.required && column.visibility == Visibility::curators &&
       column.default_value.is_null())
     return fail(ErrorCode::invalid, "Required but private column",
-                "People who cannot see this column could not create records. Set a default, or "
-                "allow empty values.",
+                "People who cannot see this column could not create records. Set a default value, "
+                "or allow empty values.",
                 "visibility");
   if (column.default_value.is_null()) return {};
   auto value = STRATA_TRY(check_value(column, column.default_value, "default"));

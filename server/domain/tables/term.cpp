@@ -38,9 +38,10 @@ std::optional<std::string> clean_color(std::string_view text) {
 
 Result<void> check_term(Term& term) {
   if (term.code.empty() || term.code.size() > kMaxCodeLength)
-    return fail(ErrorCode::invalid, "Invalid code",
-                "The code of a term must have 1 to " + std::to_string(kMaxCodeLength) + " bytes.",
-                "code");
+    return fail(
+        ErrorCode::invalid, "Invalid code",
+        "The code of a term must be 1 to " + std::to_string(kMaxCodeLength) + " bytes long.",
+        "code");
   if (!term.color.empty()) {
     const auto color = clean_color(term.color);
     if (!color)

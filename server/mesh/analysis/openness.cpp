@@ -101,8 +101,8 @@ Result<std::unique_ptr<Openness>> Openness::make(std::shared_ptr<const Geometry>
                                                  float distance, int rays, Progress& progress) {
   const auto refused = [] {
     return fail(ErrorCode::out_of_memory, "Not enough memory",
-                "The server does not have enough memory for the ray tracer on a model of this "
-                "size. Import a smaller mesh.");
+                "The server does not have enough memory to trace rays on a model of this size. "
+                "Import a smaller mesh.");
   };
   Device device(rtcNewDevice(nullptr));
   if (!device) return refused();

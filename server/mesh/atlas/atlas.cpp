@@ -94,7 +94,7 @@ tl::unexpected<Error> no_room(std::size_t charts, int resolution) {
   return fail(ErrorCode::invalid, "Cannot unwrap the surface",
               "The surface consists of " + std::to_string(charts) + " separate pieces, more than " +
                   std::to_string(resolution) + " × " + std::to_string(resolution) +
-                  " texels can keep apart. Weld or clean the mesh, or import it with a higher "
+                  " texels can separate. Weld or clean the mesh, or import it with a higher "
                   "minimum resolution.",
               "lowest_resolution");
 }

@@ -183,7 +183,7 @@ class HeaderReader {
       const std::uint64_t least = element.least_bytes(ascii);
       if (least > 0 && element.count > rest / least) {
         return refuse_file(
-            "The header declares " + std::to_string(element.count) + " of the element " +
+            "The header declares " + std::to_string(element.count) + " entries of the element " +
             shown(element.name) + ", but only " + std::to_string(rest) +
             " bytes are left for them. The file is incomplete, or its header is wrong.");
       }

@@ -87,7 +87,7 @@ class Unpacker {
     STRATA_TRY(open());
     const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
     if (count < 0 || static_cast<std::uint64_t>(count) > kMaxArchiveEntries)
-      return refuse_file("The zip contains " + std::to_string(count) + " files; " +
+      return refuse_file("The zip contains " + std::to_string(count) + " files; at most " +
                          std::to_string(kMaxArchiveEntries) +
                          " are allowed. Pack only one scan with its pictures.");
     std::vector<InputFiles::Entry> entries;
@@ -141,8 +141,9 @@ class Unpacker {
       if (read < 0) return damaged(zip_file_strerror(file.get()));
       if (read == 0) break;
       if (static_cast<std::uint64_t>(read) > room_)
-        return refuse_file("The zip unpacks to more than " + std::to_string(kMaxUnpackGain) +
-                           " times its size. If this is correct, send the files without the zip.");
+        return refuse_file("The unpacked files are more than " + std::to_string(kMaxUnpackGain) +
+                           " times as large as the zip. If this is correct, send the files without "
+                           "the zip.");
       room_ -= static_cast<std::uint64_t>(read);
       STRATA_TRY(scratch.append({chunk_.data(), static_cast<std::size_t>(read)}));
     }

@@ -76,7 +76,8 @@ Result<VertexProperty> read(Source source, const PlyHeader& header, const std::s
       return refuse_file("The element \"vertex\" has no properties x, y and z.");
     if (is_vertex && !is_number(at))
       return fail(ErrorCode::invalid, "Property not found",
-                  "The vertices of the file have no number \"" + name + "\".", "compute.property");
+                  "The vertices of the file have no numeric property \"" + name + "\".",
+                  "compute.property");
     VertexProperty found;
     std::vector<double> values(element.properties.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {

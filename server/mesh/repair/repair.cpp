@@ -81,8 +81,8 @@ Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_ar
     return {};
   return refuse_file(
       std::to_string(without_area) + " of " + std::to_string(triangles) +
-      " triangles have no area: the mesh lies so far from the origin that its coordinates were rounded away. "
-      "Export it with double precision, or near the origin.");
+      " triangles have no area: the mesh is so far from the origin that its coordinates lost their "
+      "precision. Export it with double precision, or near the origin.");
 }
 
 // Keeps triangles that have area and are the first with their three corners, in any winding.

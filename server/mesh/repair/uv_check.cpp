@@ -26,7 +26,7 @@ std::string percent(double share) {
 
 Result<Atlas> refuse(const std::string& reason) {
   return fail(ErrorCode::invalid, kTitle,
-              reason + " An atlas of its own is made for this model instead.",
+              reason + " The server creates a new atlas for this model instead.",
               "texture_coordinates");
 }
 

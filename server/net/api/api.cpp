@@ -214,7 +214,7 @@ const Route* Api::find_route(Request& request, Response& refusal) const {
     refusal = problem_response(
         {ErrorCode::upgrade_required,
          "Upgrade required",
-         "This address accepts WebSocket connections only, with the subprotocol strata.v1.",
+         "This address accepts only WebSocket connections with the subprotocol strata.v1.",
          {}});
     refusal.with("Upgrade", "websocket");
     return nullptr;
@@ -260,7 +260,7 @@ Result<void> Api::identify(Request& request, const Route& route) {
   const Role least = *route.role;
   if (request.principal->role < least)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "This action needs the role " + std::string(name(least)) + ". Your role is " +
+                "This action requires the role " + std::string(name(least)) + ". Your role is " +
                     std::string(name(request.principal->role)) + ".");
   return {};
 }
@@ -345,11 +345,10 @@ void Api::answer_failures(const Request& request, const Respond& answer,
     const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";
     log::error("request " + std::string(name(request.method)) + " " +
                (is_secret ? "/kiosk/…" : request.path) + " failed: " + error.what());
-    answer(Error{
-        ErrorCode::internal,
-        "Internal error",
-        "An internal error occurred. Ask an administrator to look into the log of the server.",
-        {}});
+    answer(Error{ErrorCode::internal,
+                 "Internal error",
+                 "An internal error occurred. Ask an administrator to check the log of the server.",
+                 {}});
   }
 }
 

@@ -47,7 +47,7 @@ Result<void> check_json_type(const Request& request) {
       (type.starts_with("application/") && type.ends_with("+json")))
     return {};
   return fail(ErrorCode::unsupported, "Not JSON",
-              "This address accepts JSON only. Send JSON with `Content-Type: application/json`.",
+              "This address accepts only JSON. Send JSON with `Content-Type: application/json`.",
               "Content-Type");
 }
 

@@ -43,13 +43,13 @@ Result<Response> thumbnail(const RouteContext& context, const StoredFile& file, 
                                                    "image/webp", "image/bmp"};
   if (std::find(kTypes.begin(), kTypes.end(), file.media_type) == kTypes.end())
     return fail(ErrorCode::unsupported, "No thumbnail",
-                "The server makes thumbnails of JPEG, PNG, TIFF, WebP and BMP pictures only. "
+                "The server can make thumbnails only of JPEG, PNG, TIFF, WebP and BMP pictures. "
                 "This file is " +
                     file.media_type + ".",
                 "thumbnail");
   if (file.bytes > kThumbnailFileBytes)
     return fail(ErrorCode::invalid, "Picture too large",
-                "The server makes thumbnails of files of at most " +
+                "The server can make thumbnails only of files of at most " +
                     std::to_string(kThumbnailFileBytes >> 20) + " MiB.",
                 "thumbnail");
   const std::lock_guard lock(decoding);

@@ -18,7 +18,7 @@ constexpr std::string_view kScheme = "bearer ";
 
 tl::unexpected<Error> unknown_secret() {
   return fail(ErrorCode::unauthenticated, "Not signed in",
-              "This token or session is unknown, expired or revoked. Sign in again, or "
+              "This token or session does not exist, has expired or was revoked. Sign in again, or "
               "create a new token.");
 }
 
@@ -146,8 +146,8 @@ Result<std::string> Authenticator::session_for_password(const std::string& user,
   const auto fits = STRATA_TRY(store::password_fits(hash, password));
   if (!fits)
     return fail(ErrorCode::unauthenticated, "Not signed in",
-                "Wrong user name or password. Passwords are case-sensitive. If you forgot "
-                "yours, ask the person who invited you for a new link.",
+                "Wrong user name or password. Passwords are case-sensitive. If you forgot your "
+                "password, ask the person who invited you for a new link.",
                 "password");
   auto session = store_.tokens().create(store::TokenKind::session, user, Role::viewer,
                                         kSessionLifetime, agent, hash);
@@ -166,7 +166,7 @@ Result<std::string> Authenticator::session_for_token(const std::string& token,
   if (!principal) return unknown_secret();
   // A session made from a session or a token would outlive it.
   if (principal->secret != 0 || principal->is_script || principal->kiosk)
-    return fail(ErrorCode::forbidden, "Token for scripts",
+    return fail(ErrorCode::forbidden, "Cannot sign in with this token",
                 "You cannot sign in with a token for scripts. Scripts send it as "
                 "`Authorization: Bearer TOKEN`. In a browser, enter your user name and "
                 "password.",
@@ -182,8 +182,8 @@ Result<std::string> Authenticator::session_for_link(const std::string& link,
   auto session = STRATA_TRY(store_.tokens().redeem_owner_link(link, kSessionLifetime, agent));
   if (!session)
     return fail(ErrorCode::unauthenticated, "Link is not valid",
-                "This sign-in link is unknown or revoked. The server prints a valid link when "
-                "it starts.",
+                "This sign-in link does not exist or was revoked. The server prints a valid link "
+                "when it starts.",
                 "link");
   return *session;
 }

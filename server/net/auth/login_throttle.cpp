@@ -26,7 +26,7 @@ TokenBucket& LoginThrottle::bucket(Buckets& buckets, const std::string& key, Rat
 Result<void> LoginThrottle::pass(const std::string& address, const std::string& name,
                                  Clock::time_point now) {
   const auto refused = [] {
-    return fail(ErrorCode::too_many_requests, "Too many sign-ins",
+    return fail(ErrorCode::too_many_requests, "Too many sign-in attempts",
                 "There were too many attempts to sign in. Wait ten seconds and try again.");
   };
   std::lock_guard lock(mutex_);

@@ -84,7 +84,7 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
                                             const std::function<void(std::string_view)>& passed) {
   const auto malformed = [] {
     return fail(ErrorCode::malformed, "Malformed form",
-                "The multipart/form-data body does not follow its boundary.", "body");
+                "The multipart/form-data body does not match its boundary.", "body");
   };
   const std::string boundary = header_parameter(content_type, "boundary");
   if (boundary.empty() || boundary.size() > kMaxBoundaryLength) return malformed();
@@ -107,7 +107,7 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
     if (files.size() >= kMaxFormFiles)
       return fail(ErrorCode::too_large, "Too many files",
                   "A form can have at most " + std::to_string(kMaxFormFiles) +
-                      " files. Send the files as a zip.",
+                      " files. Send the files as a zip file.",
                   "body");
     // An empty content ends before it begins: it shares its line break with the blank line.
     FormFile file{relative_filename(name),

@@ -192,8 +192,8 @@ Result<void> parse_target(std::string_view target, Request& request) {
     if (!key || !value) return wrong("The query contains an invalid percent escape.");
     if (!is_utf8(*key) || !is_utf8(*value)) return wrong("The query is not UTF-8.");
     if (!request.query.emplace(*key, std::move(*value)).second)
-      return fail(ErrorCode::malformed, "Duplicate query parameter", "Give '" + *key + "' once.",
-                  *key);
+      return fail(ErrorCode::malformed, "Duplicate query parameter",
+                  "Send '" + *key + "' only once.", *key);
   }
   // Belongs to no route: selects the cookie.
   if (const auto as = request.query.find("as");

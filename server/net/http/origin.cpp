@@ -82,8 +82,8 @@ Result<void> check_host(const Request& request, const std::vector<std::string>& 
   if (host.ends_with('.')) host.pop_back();
   if (is_address(host) || std::ranges::find(own_names, host) != own_names.end()) return {};
   return fail(ErrorCode::misdirected, "Unknown host name",
-              "The server does not know the host name of this request. Ask an administrator "
-              "to add the name with --origin (STRATA_ORIGIN), for example --origin "
+              "The server does not accept the host name of this request. Ask an administrator to "
+              "add the name with --origin (STRATA_ORIGIN), for example --origin "
               "https://museum.example.",
               "Host");
 }
@@ -104,14 +104,15 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
   if (!request.principal && origin.empty()) return {};
   if (!origin.empty()) {
     if (is_own(request, allowed)) return {};
-    return fail(ErrorCode::forbidden, "Foreign origin",
-                "With a session cookie, the server accepts changes from its own pages only. "
-                "Ask an administrator to add this origin with --origin, or use a bearer token.",
+    return fail(ErrorCode::forbidden, "Cross-origin request refused",
+                "If a request has a session cookie, the server accepts changes only from its own "
+                "pages. Ask an administrator to add this origin with --origin, or use a bearer "
+                "token.",
                 "Origin");
   }
   if (request.header("sec-fetch-site") == "same-origin") return {};
   return fail(ErrorCode::forbidden, "Origin missing",
-              "With a session cookie, a change needs an Origin header of this server. Use a "
+              "A change with a session cookie requires an Origin header of this server. Use a "
               "bearer token in scripts.",
               "Origin");
 }
@@ -121,14 +122,14 @@ Result<void> check_upgrade_origin(const Request& request, const std::vector<std:
   if (origin.empty()) {
     if (request.principal && !request.principal->by_cookie) return {};
     return fail(ErrorCode::forbidden, "Origin missing",
-                "With a session cookie, a live connection needs an Origin header of this "
-                "server. Use a bearer token in scripts.",
+                "A live connection with a session cookie requires an Origin header of this server. "
+                "Use a bearer token in scripts.",
                 "Origin");
   }
   if (is_own(request, allowed)) return {};
-  return fail(ErrorCode::forbidden, "Foreign origin",
-              "The server accepts live connections from its own pages only. Ask an "
-              "administrator to add this origin with --origin.",
+  return fail(ErrorCode::forbidden, "Cross-origin request refused",
+              "The server accepts live connections only from its own pages. Ask an administrator "
+              "to add this origin with --origin.",
               "Origin");
 }
 

@@ -15,8 +15,8 @@ Result<void> check_precondition(const RouteContext& context, const Request& requ
   if (!project.require_if_match) return {};
   return fail(ErrorCode::version_required, "Version missing",
               "The project " + project.name +
-                  " requires the version with each change. Read the resource again and send its "
-                  "ETag in `If-Match`.",
+                  " requires a version with each change. Read the resource again and send its ETag "
+                  "in `If-Match`.",
               "If-Match");
 }
 

@@ -43,14 +43,14 @@ Result<void> QuestionDesk::post(const std::shared_ptr<Question>& question,
                 "The server is shutting down. Try again when it is running again.");
   Person& person = people_[question->asker()];
   if (person.waiting.size() >= options_.of_one_waiting)
-    return fail(ErrorCode::too_many_requests, "Too many questions",
+    return fail(ErrorCode::too_many_requests, "Too many queries",
                 std::to_string(options_.of_one_waiting) +
-                    " of your questions are waiting for an answer. Try again when the server has "
-                    "answered some of them.");
+                    " of your queries are waiting. Try again when the server has answered some of "
+                    "them.");
   if (waiting_ >= options_.waiting) {
     if (person.waiting.empty() && person.under_way == 0) people_.erase(question->asker());
     return fail(ErrorCode::busy, "Server is busy",
-                "Too many questions are waiting for an answer. Try again in a moment.");
+                "Too many queries are waiting. Try again in a moment.");
   }
   person.waiting.push_back({question, std::move(work)});
   ++waiting_;

@@ -116,7 +116,7 @@ void LiveSession::on_binary() {
   ++shared_->metrics->messages_received;
   refuse({ErrorCode::unsupported,
           "Binary message",
-          "The server accepts text messages only. Send one JSON object in each message.",
+          "The server accepts only text messages. Send one JSON object in each message.",
           {}},
          std::string());
 }
@@ -147,7 +147,7 @@ void LiveSession::on(const protocol::Hello& message) {
   if (message.accept && std::none_of(message.accept->begin(), message.accept->end(),
                                      [](const auto& codec) { return codec == "jpeg"; }))
     return refuse({ErrorCode::not_acceptable, "No common picture format",
-                   "The server sends pictures as jpeg only. Add jpeg to the formats.", "accept"},
+                   "The server can send pictures only as jpeg. Add jpeg to the formats.", "accept"},
                   std::string());
 
   std::shared_ptr<room::Participant> joined = room_->participants().join(
@@ -210,7 +210,7 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
                     std::string());
     if (const auto newest = room_->edits().durable_sequence(); *message.at > newest)
       return refuse(
-          {ErrorCode::invalid, "Sequence not reached",
+          {ErrorCode::invalid, "Sequence out of range",
            "The newest durable edit of this model is " + std::to_string(newest) + ".", "at"},
           std::string());
     settings->at = *message.at;
@@ -373,7 +373,7 @@ void LiveSession::on(const protocol::Pick& message) {
   if (!posted)
     refuse({ErrorCode::busy,
             "Server is busy",
-            "Too many questions are waiting for an answer. Try again in a moment.",
+            "Too many queries are waiting. Try again in a moment.",
             {}},
            ref_of(message.id));
 }
@@ -658,8 +658,9 @@ bool LiveSession::may_paint(const Uuid& id) {
   if (!may_edit(id)) return false;
   if (!shows_past_) return true;
   refuse({ErrorCode::conflict,
-          "Past state shown",
-          "You are looking at an earlier state, so you cannot paint. Go back to now first.",
+          "Earlier state shown",
+          "You are viewing an earlier state, so you cannot paint. Go back to the current state "
+          "first.",
           {}},
          id);
   return false;

@@ -28,9 +28,9 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
   if (!at) return std::nullopt;
   if (const auto* sequence = std::get_if<std::int64_t>(&*at)) {
     if (*sequence >= 0 && *sequence <= room.edits().sequence()) return *sequence;
-    return fail(ErrorCode::invalid, "Sequence not reached",
+    return fail(ErrorCode::invalid, "Sequence out of range",
                 "`at` must be a sequence from 0 to " + std::to_string(room.edits().sequence()) +
-                    ", the newest of this model.",
+                    ", the newest sequence of this model.",
                 "at");
   }
   const auto utc = utc_timestamp(std::get<std::string>(*at));

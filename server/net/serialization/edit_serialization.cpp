@@ -78,7 +78,7 @@ Result<room::FillEdit> fill_of(const protocol::EditFill& body, const Layer& laye
   if (body.mode == Mode::where) {
     if (!body.where)
       return fail(ErrorCode::invalid, "Member missing",
-                  "The mode `where` needs a condition, not a position.", "where");
+                  "The mode `where` requires a condition, not a position.", "where");
     auto condition = STRATA_TRY(query::parse_condition(*body.where, "where"));
     if (condition.op != Expression::Op::truth || condition.number == 0)
       fill.region = room::FillEdit::Where{std::move(condition)};
@@ -86,7 +86,7 @@ Result<room::FillEdit> fill_of(const protocol::EditFill& body, const Layer& laye
   }
   if (!body.at)
     return fail(ErrorCode::invalid, "Member missing",
-                "This mode needs the position where it begins.", "at");
+                "This mode requires `at`, the position where the fill begins.", "at");
   room::Place place = place_of(*body.at);
   if (body.mode == Mode::island)
     fill.region = room::FillEdit::Island{std::move(place)};
@@ -117,8 +117,8 @@ Result<room::Outline> outline_of(const Camera& camera, const protocol::Outline& 
   }
   if (points > kMaxOutlinePoints)
     return fail(ErrorCode::invalid, "Too many points",
-                "The outlines of a selection can have " + std::to_string(kMaxOutlinePoints) +
-                    " points together. Draw simpler outlines.",
+                "The outlines of a selection can have at most " +
+                    std::to_string(kMaxOutlinePoints) + " points in total. Draw simpler outlines.",
                 "steps");
   return outline;
 }

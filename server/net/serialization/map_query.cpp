@@ -26,7 +26,7 @@ Result<double> number_of(const Request& request, const std::string& name, double
   const auto found = request.query.find(name);
   if (found == request.query.end()) {
     if (fallback) return *fallback;
-    return fail(ErrorCode::invalid, "Parameter missing", "Give `" + name + "`.", name);
+    return fail(ErrorCode::invalid, "Parameter missing", "Send `" + name + "`.", name);
   }
   double value = 0;
   const std::string& text = found->second;

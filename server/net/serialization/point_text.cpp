@@ -62,8 +62,8 @@ Result<double> parse_length(std::string_view text, const std::string& field) {
   if (error != std::errc() || !known || !(length >= 1e-6 && length <= 1e6))
     return fail(ErrorCode::invalid, "Invalid length",
                 "`" + field +
-                    "` must be a length on the object with its unit, such as 5mm, 2.5cm or 1m, and "
-                    "at least 0.001 mm.",
+                    "` must be a length on the object with a unit, such as 5mm, 2.5cm or 1m. The "
+                    "smallest length is 0.001 mm.",
                 field);
   return length;
 }

@@ -36,14 +36,14 @@ Result<void> check_medium(const protocol::TourMedium& medium, const TourFilesByI
                 "Use this file as `subtitles` of a video.", here + ".file");
   if (!medium.subtitles) return {};
   if (kind != Kind::video && !medium.subtitles->empty())
-    return fail(ErrorCode::invalid, "Not a video", "Only videos have subtitles.",
+    return fail(ErrorCode::invalid, "Not a video", "Only videos can have subtitles.",
                 here + ".subtitles");
   for (const auto& [language, id] : *medium.subtitles) {
     const std::string field = here + ".subtitles." + language;
     const Kind of_text = STRATA_TRY(kind_of(id, files, field));
     if (of_text != Kind::subtitles)
-      return fail(ErrorCode::invalid, "Not subtitles", "Subtitles are files in the format WebVTT.",
-                  field);
+      return fail(ErrorCode::invalid, "Not subtitles",
+                  "Subtitles must be a file in the WebVTT format.", field);
   }
   return {};
 }
@@ -76,7 +76,7 @@ Result<void> check_media(const std::vector<protocol::TourMedium>& media, const T
   for (std::size_t i = 0; i < media.size(); ++i) {
     const std::string here = field + "[" + std::to_string(i) + "]";
     if (!known.insert(media[i].file).second)
-      return fail(ErrorCode::invalid, "Duplicate name", "This file appears twice. Send it once.",
+      return fail(ErrorCode::invalid, "Duplicate file", "This file appears twice. Send it once.",
                   here + ".file");
     STRATA_TRY(check_medium(media[i], files, here));
   }

@@ -23,7 +23,7 @@ std::string at(const std::string& list, std::size_t place) {
 template <class Id>
 Result<void> once(std::set<Id>& known, Id id, const char* what, const std::string& field) {
   if (known.insert(id).second) return {};
-  return fail(ErrorCode::invalid, "Duplicate name",
+  return fail(ErrorCode::invalid, "Duplicate entry",
               "This " + std::string(what) + " appears twice. Send it once.", field);
 }
 
@@ -93,7 +93,7 @@ Result<nlohmann::json> stored_names(const std::vector<protocol::TourClassName>& 
   std::set<double> known;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     if (!known.insert(classes[i].value).second)
-      return fail(ErrorCode::invalid, "Duplicate name", "This class appears twice. Send it once.",
+      return fail(ErrorCode::invalid, "Duplicate entry", "This class appears twice. Send it once.",
                   at(field, i) + ".value");
     stored.push_back(protocol::to_json(classes[i]));
   }
@@ -106,8 +106,9 @@ Result<void> check_words(const nlohmann::json& words, const nlohmann::json& lang
   for (const auto& [language, text] : words.items())
     if (std::ranges::find(languages, nlohmann::json(language)) == languages.end())
       return fail(ErrorCode::invalid, "Language not in tour",
-                  "The tour has no `" + language +
-                      "` in its languages. Add the language to the tour, or leave these texts out.",
+                  "`" + language +
+                      "` is not a language of the tour. Add the language to the tour, or leave "
+                      "these texts out.",
                   field + "." + language);
   return {};
 }
@@ -272,13 +273,13 @@ Result<void> check_languages(const nlohmann::json& content, bool stops_are_new) 
   for (std::size_t i = 0; i < languages.size(); ++i)
     if (std::find(languages.begin(), languages.begin() + static_cast<std::ptrdiff_t>(i),
                   languages[i]) != languages.begin() + static_cast<std::ptrdiff_t>(i))
-      return fail(ErrorCode::invalid, "Duplicate name",
+      return fail(ErrorCode::invalid, "Duplicate entry",
                   "This language appears twice. Send it once.", at("languages", i));
   const nlohmann::json& stops = content.at("stops");
   for (std::size_t i = 0; i < stops.size(); ++i)
     if (auto good = check_stop(stops[i], languages, at("stops", i)); !good) {
       if (stops_are_new) return good;
-      return fail(ErrorCode::invalid, "Stops in other languages",
+      return fail(ErrorCode::invalid, "Languages do not match",
                   "Stop " + std::to_string(i + 1) +
                       " does not match these languages: " + good.error().detail,
                   "languages");

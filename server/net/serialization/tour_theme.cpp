@@ -37,16 +37,16 @@ Result<void> check_theme_colors(const protocol::TourTheme& theme) {
   const auto accent = STRATA_TRY(color(theme.accent.value_or(mode.accent), "theme.accent"));
   if (const double now = contrast(ink, background); now < kMinTextContrast)
     return fail(ErrorCode::invalid, "Contrast too low",
-                "Text on " + background_text + " has a contrast of " + ratio(now) + " and needs " +
-                    ratio(kMinTextContrast) + ". Choose a " +
+                "Text on " + background_text + " has a contrast of " + ratio(now) +
+                    ", but requires " + ratio(kMinTextContrast) + ". Choose a " +
                     (dark ? "darker background, or the light design."
                           : "lighter background, or the design for dark rooms."),
                 "theme.background");
   if (const double now = contrast(accent, background); now < kMinAccentContrast)
     return fail(ErrorCode::invalid, "Contrast too low",
                 "The accent color has a contrast of " + ratio(now) +
-                    " with the background and needs " + ratio(kMinAccentContrast) + ". Choose a " +
-                    (dark ? "lighter" : "darker") + " accent color.",
+                    " with the background, but requires " + ratio(kMinAccentContrast) +
+                    ". Choose a " + (dark ? "lighter" : "darker") + " accent color.",
                 theme.accent ? "theme.accent" : "theme.background");
   return {};
 }

@@ -70,7 +70,7 @@ Result<void> check_framing(const Request& request, unsigned version) {
                                  [&](const auto& header) { return header.first == name; });
   };
   if (count("host") > 1 || (version >= 11 && count("host") == 0))
-    return fail(ErrorCode::malformed, "Host header unclear",
+    return fail(ErrorCode::malformed, "Invalid Host header",
                 "A request must have exactly one Host header.", "Host");
   if (count("transfer-encoding") == 0) return {};
   if (version < 11 || count("transfer-encoding") > 1 ||
@@ -471,8 +471,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         message.prepare_payload();
         co_return co_await write(message);
       }
-      response = problem_response(
-          {ErrorCode::not_found, "Not found", "The file does not exist any more.", {}});
+      response =
+          problem_response({ErrorCode::not_found, "Not found", "The file no longer exists.", {}});
     }
     if (method == Method::head)
       co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()),

@@ -40,8 +40,10 @@ boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& c
     }
     auto& workers = connections->api.workers();
     if (!workers.post([work, respond] { work(respond); }))
-      respond(
-          Error{ErrorCode::busy, "Too busy", "Too many requests wait; ask again in a moment.", {}});
+      respond(Error{ErrorCode::busy,
+                    "Server is busy",
+                    "Too many requests are waiting. Try again in a moment.",
+                    {}});
   };
   return asio::async_initiate<const asio::use_awaitable_t<>, void(Response)>(std::move(initiate),
                                                                              asio::use_awaitable);

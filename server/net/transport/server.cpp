@@ -45,7 +45,7 @@ Result<void> prepare_upload_dir(const fs::path& folder) {
   fs::create_directories(folder, error);
   if (error)
     return fail(ErrorCode::internal, "Upload folder unavailable",
-                "The folder " + folder.string() + " cannot be made: " + error.message() + ".");
+                "The folder " + folder.string() + " cannot be created: " + error.message() + ".");
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string extension = entry.path().extension().string();
     std::error_code ignored;
@@ -128,7 +128,7 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
                                               render::Renderer& renderer) {
   if (!options.owner_token.empty() && options.owner_token.size() < kMinOwnerTokenLength)
     return fail(ErrorCode::invalid, "Owner token too short",
-                "STRATA_OWNER_TOKEN must have at least 32 characters. Create one with `openssl "
+                "STRATA_OWNER_TOKEN must be at least 32 characters long. Create one with `openssl "
                 "rand -hex 32`.",
                 "STRATA_OWNER_TOKEN");
   STRATA_TRY(prepare_upload_dir(options.upload_dir));

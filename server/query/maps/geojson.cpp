@@ -37,8 +37,8 @@ class Reader {
     if (type == "Polygon")
       return polygon(member(node, "coordinates"), inside(where, "coordinates"));
     if (type == "MultiPolygon") return polygons(member(node, "coordinates"), where);
-    return refuse(
-        where, "The server paints Polygon and MultiPolygon only, not " + type.substr(0, 40) + ".");
+    return refuse(where, "The server can paint only Polygon and MultiPolygon, not " +
+                             type.substr(0, 40) + ".");
   }
 
   FeatureMap take() { return std::move(map_); }

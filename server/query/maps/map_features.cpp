@@ -25,11 +25,11 @@ Result<std::size_t> column_named(const FeatureMap& map, const std::string& name,
   if (found != map.columns.end()) return static_cast<std::size_t>(found - map.columns.begin());
   std::string known;
   for (const std::string& column : map.columns) known += (known.empty() ? "" : ", ") + column;
-  return fail(
-      ErrorCode::invalid, "Attribute not found",
-      "The map has no attribute '" + name + "'" +
-          (known.empty() ? "; it has none at all." : "; it has " + known.substr(0, 500) + "."),
-      field);
+  return fail(ErrorCode::invalid, "Attribute not found",
+              "The map has no attribute '" + name + "'" +
+                  (known.empty() ? ". It has no attributes."
+                                 : ". Its attributes are " + known.substr(0, 500) + "."),
+              field);
 }
 
 tl::unexpected<Error> refuse(const MapFeature& feature, const std::string& what) {

@@ -150,7 +150,8 @@ Result<MapTiff> describe(TIFF* tiff, int largest_side) {
              height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH);
   if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint32_t>(largest_side))
     return refuse("The TIFF has " + std::to_string(width) + " × " + std::to_string(height) +
-                  " pixels. Each side must have 1 to " + std::to_string(largest_side) + " pixels.");
+                  " pixels. Each side must be 1 to " + std::to_string(largest_side) +
+                  " pixels long.");
   info.width = static_cast<int>(width);
   info.height = static_cast<int>(height);
   info.bands = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL);
@@ -237,8 +238,8 @@ Result<BandRaster> decode_tiff_band(std::span<const std::uint8_t> bytes, const M
                 "The TIFF has the bands 1 to " + std::to_string(info.bands) + ".", "band");
   if (!info.has_numbers)
     return fail(ErrorCode::invalid, "No usable numbers",
-                "The bands of the TIFF are not numbers of 8, 16 or 32 bits with lossless "
-                "compression. Save it in such a form.",
+                "The bands of the TIFF must contain numbers of 8, 16 or 32 bits with lossless "
+                "compression. Save the TIFF again in this form.",
                 "band");
   TiffMemory file{bytes, nullptr, 0, {}};
   const Tiff tiff = open_tiff(file, "rm");

@@ -213,7 +213,7 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
     return outlines_of(labels, regions, geometry, map, plane);
   } catch (const std::runtime_error& error) {
     log::error(std::string("outlines of a layer: ") + error.what());
-    return fail(ErrorCode::internal, "Outlines not possible",
+    return fail(ErrorCode::internal, "Cannot create outlines",
                 "The server could not project the areas onto the plane. Request outlines along "
                 "another axis, or request texels.tif. See the log of the server for the reason.",
                 "along");

@@ -91,10 +91,9 @@ Result<std::map<TileAddress, TileData>> paint_point_splats(const mesh::SurfaceMa
     }
     reached_in_all += seen.size();
     if (reached_in_all > kMaxDabTexels)
-      return fail(
-          ErrorCode::invalid, "Painted area too large",
-          "So many points with this radius cover too large an area. Choose a smaller radius.",
-          "radius_mm");
+      return fail(ErrorCode::invalid, "Painted area too large",
+                  "With this radius, the points cover too large an area. Choose a smaller radius.",
+                  "radius_mm");
   }
 
   std::map<TileAddress, TileData> tiles;

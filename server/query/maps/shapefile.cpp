@@ -59,7 +59,8 @@ Result<std::vector<std::uint8_t>> index_of(std::span<const std::uint8_t> shp) {
     return refuse("The .shp file is not a shapefile.");
   const std::uint32_t type = little_endian(shp, 32);
   if (type != SHPT_NULL && !is_polygon(type))
-    return refuse("The server paints polygons only. The .shp contains " + shape_name(type) + ".");
+    return refuse("The server can paint only polygons. The .shp contains " + shape_name(type) +
+                  ".");
   const std::uint64_t declared_length = std::uint64_t{big_endian(shp, 24)} * 2;
   if (declared_length > shp.size())
     return refuse("The .shp is incomplete: it should have " + std::to_string(declared_length) +

@@ -46,8 +46,8 @@ std::string describe(int color_type, int bit_depth) {
 
 Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& tiles) {
   if (!fits_png(layer.type))
-    return fail(ErrorCode::not_acceptable, "PNG not possible",
-                "PNG can store whole numbers from 0 to 65535 only. The values of this layer are " +
+    return fail(ErrorCode::not_acceptable, "Values not supported by PNG",
+                "PNG can store only whole numbers from 0 to 65535. The values of this layer are " +
                     std::string(name(layer.type)) + ". Request texels.tif or texels.npy.");
   const int width = bytes_per_texel(layer.type);
   const TileRows rows(layer, tiles);
@@ -88,8 +88,8 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
 
 Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> bytes) {
   if (!fits_png(layer.type))
-    return fail(ErrorCode::unsupported, "PNG not possible",
-                "PNG can store whole numbers from 0 to 65535 only. The values of this layer are " +
+    return fail(ErrorCode::unsupported, "Values not supported by PNG",
+                "PNG can store only whole numbers from 0 to 65535. The values of this layer are " +
                     std::string(name(layer.type)) + ". Send texels.tif or texels.npy.",
                 "texels");
   const int width = bytes_per_texel(layer.type);

@@ -10,10 +10,12 @@ Result<WorldFile> checked(const WorldFile& world, const std::string& field) {
   for (const double number :
        {world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row, world.x, world.y})
     if (!std::isfinite(number))
-      return fail(ErrorCode::invalid, "Invalid world file", "Its numbers are not finite.", field);
+      return fail(ErrorCode::invalid, "Invalid world file",
+                  "The numbers of the world file must be finite.", field);
   const double area = world.x_per_column * world.y_per_row - world.x_per_row * world.y_per_column;
   if (!std::isnormal(area))
-    return fail(ErrorCode::invalid, "Invalid world file", "Its pixels have no area.", field);
+    return fail(ErrorCode::invalid, "Invalid world file",
+                "The world file must define pixels with an area greater than 0.", field);
   return world;
 }
 
@@ -22,7 +24,7 @@ Result<WorldFile> parse_world_file(std::string_view text, const std::string& fie
   std::size_t count = 0;
   const auto wrong = [&] {
     return fail(ErrorCode::invalid, "Invalid world file",
-                "A world file must have six numbers: size and rotation of a pixel in x and y, "
+                "A world file must contain six numbers: size and rotation of a pixel in x and y, "
                 "then the center of the first pixel.",
                 field);
   };

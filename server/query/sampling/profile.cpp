@@ -14,7 +14,7 @@ template <class Point>
 Result<std::vector<Point>> steps_of(std::span<const Point> corners, double step,
                                     const char* field) {
   const auto too_many = fail(ErrorCode::invalid, "Too many samples",
-                             "A profile has at most " + std::to_string(kMaxProfileSamples) +
+                             "A profile can have at most " + std::to_string(kMaxProfileSamples) +
                                  " samples. Choose longer steps or a shorter line.",
                              field);
   std::vector<Point> points{corners.front()};

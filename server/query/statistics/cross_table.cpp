@@ -80,12 +80,12 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
     if (is_float(view->layer.type))
       return fail(ErrorCode::invalid, "Layer contains fractions",
                   "'" + view->layer.slug +
-                      "' contains fractions. A cross table needs whole numbers or keys.",
+                      "' contains fractions. A cross table requires whole numbers or keys.",
                   field);
   const auto too_many = [](const LayerView& view, const char* field) {
     return fail(ErrorCode::invalid, "Too many values",
                 "'" + view.layer.slug + "' has more than " + std::to_string(kMaxCrossTableSide) +
-                    " different values here. Choose a part of the surface.",
+                    " different values here. Choose a smaller part of the surface.",
                 field);
   };
   const Values row_values(rows, map.resolution), column_values(columns, map.resolution);

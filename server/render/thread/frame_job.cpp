@@ -141,15 +141,16 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   view.last_used = scene.next_use();
   if (request.model != 0 && request.model != view.model)
     return fail(ErrorCode::invalid, "Wrong model",
-                "The request names another model than its view. Send the model of the view, or "
+                "The request names a different model than its view. Send the model of the view, or "
                 "no model.",
                 "model");
   STRATA_TRY(validate(request.camera));
   if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize ||
       request.height > kMaxViewSize) {
-    return fail(ErrorCode::invalid, "Size out of range",
-                "A picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels on each side.",
-                "width");
+    return fail(
+        ErrorCode::invalid, "Size out of range",
+        "Each side of a picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels long.",
+        "width");
   }
   for (const LayerStyle& style : request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
@@ -160,7 +161,8 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
                                               !style.palette->points.empty());
     if (!has_colors || !std::isfinite(style.opacity)) {
       return fail(ErrorCode::invalid, "Invalid palette",
-                  "A layer in a view needs a palette with points, and a finite opacity.", "layers");
+                  "A layer in a view must have a palette with points, and a finite opacity.",
+                  "layers");
     }
     layer_uses_.push_back(layer->use(view.last_used));
   }
@@ -212,7 +214,8 @@ Result<void> FrameJob::start_samples(GpuScene& scene, ModelHandle model) {
   // Nothing is evicted for a refinement.
   if (request.refinement && !has_layers(scene))
     return fail(ErrorCode::out_of_memory, "Picture not refined",
-                "A layer of the picture left the GPU because memory is short.");
+                "The server removed a layer of the picture from the GPU because the memory was "
+                "full.");
   if (request.refinement && !scene.memory().fits(pixels * kSampledBytesPerPixel))
     return tl::unexpected(
         scene.memory().used_up(pixels * kSampledBytesPerPixel, "a refined picture"));

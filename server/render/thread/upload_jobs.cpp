@@ -32,7 +32,7 @@ Result<bool> ModelUpload::advance(GpuScene& scene) {
   if (level > geometry_.coarser.size()) return true;
   const auto& geometry = level == 0 ? geometry_.full : geometry_.coarser[level - 1];
   if (!geometry || geometry->indices.empty() || geometry->vertices.empty())
-    return fail(ErrorCode::invalid, "Model is empty", "A model needs at least one triangle.",
+    return fail(ErrorCode::invalid, "Model is empty", "A model must have at least one triangle.",
                 "geometry");
   auto mesh = STRATA_TRY(MeshBuffers::create(geometry, scene.memory()));
   model_.levels.push_back(std::move(mesh));
@@ -55,7 +55,7 @@ Result<bool> SurfaceImageUpload::advance(GpuScene& scene) {
   if (!texture_) {
     if (!image_ || image_->levels.empty())
       return fail(ErrorCode::invalid, "Invalid surface image",
-                  "A surface image needs a picture that is not larger than the GPU supports.",
+                  "The picture of a surface image must not be larger than the GPU supports.",
                   "look");
     auto texture = STRATA_TRY(
         SurfaceImageTexture::create(std::move(image_), scene.info().software, scene.memory()));

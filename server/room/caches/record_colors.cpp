@@ -28,8 +28,7 @@ Result<Palette> by_column(store::Store& store, TableId table_id, Role seen_by,
   if (!column)
     return fail(ErrorCode::invalid, "Column not found",
                 "The palette takes its colors from the column '" + palette.column +
-                    "', which the table '" + table.name +
-                    "' does not have any more. Choose another column.",
+                    "', which the table '" + table.name + "' no longer has. Choose another column.",
                 "palette.column");
   if (holds_numbers(column->kind)) {
     auto numbers = store.records().numbers(table_id, seen_by, column_of(column->slug), std::nullopt,

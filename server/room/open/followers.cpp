@@ -9,8 +9,8 @@ Result<bool> Followers::follow(const Uuid& follower, const Uuid& leader) {
   for (std::optional<Uuid> ahead = leader; ahead; ahead = leader_of(*ahead))
     if (*ahead == follower)
       return fail(ErrorCode::conflict, "Cannot follow this session",
-                  "This session cannot follow that one: it is the same session, or it already "
-                  "follows this session, directly or through others.",
+                  "A session cannot follow itself, or a session that already follows it directly "
+                  "or indirectly.",
                   "follow");
   auto [known, added] = leaders_.try_emplace(follower, leader);
   if (added) return true;

@@ -16,7 +16,7 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
   if (!room_.takes_edits_)
     return saved(
         fail(ErrorCode::unavailable, "Server is stopping",
-             "The server is saving its edits and then stops. Send the edit again when it is "
+             "The server is saving its edits and will then stop. Send the edit again when it is "
              "running again."));
   // Count before posting: the queue of the strand has no limit.
   if (++room_.unanswered_ > room_.services_.options.max_waiting_edits) {

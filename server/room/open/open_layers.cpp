@@ -26,8 +26,8 @@ Result<void> check_layer(const Layer& layer, const Model& model) {
                     std::to_string(lowest) + " to 16384 texels on each side.",
                 "resolution");
   if (layer.name.empty() || layer.name.size() > 200)
-    return fail(ErrorCode::invalid, "Name missing", "The name of a layer must have 1 to 200 bytes.",
-                "name");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "The name of a layer must be 1 to 200 bytes long.", "name");
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
     return fail(ErrorCode::invalid, "Opacity out of range",
                 "Opacity must be from 0 (transparent) to 1 (opaque).", "opacity");
@@ -170,8 +170,8 @@ Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
                                           const store::IdempotentResponse<Layer>& answer) {
   if (layer.formula || !widens_to(layer.type, type))
     return fail(ErrorCode::invalid, "Invalid type of layer",
-                "Only the unsigned types can change, and only to a wider type (u8 to u16 or "
-                "u32, u16 to u32). The type of a computed layer cannot change.",
+                "You can change only unsigned types, and only to a wider type (u8 to u16 or u32, "
+                "u16 to u32). The type of a computed layer cannot change.",
                 "type");
   return room_.exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
     const auto held = STRATA_TRY(room_.state(to_string(layer.id)));

@@ -107,8 +107,8 @@ Result<void> OpenRoom::ParticipantsPart::follow(const Uuid& follower,
       const bool here = std::any_of(here_.begin(), here_.end(),
                                     [&](const auto* each) { return each->session() == *leader; });
       if (!here)
-        return fail(ErrorCode::not_found, "Person not here",
-                    "The session that you want to follow has left this model or was never here. "
+        return fail(ErrorCode::not_found, "Session not found",
+                    "The session that you want to follow does not exist or has left this model. "
                     "See the list of sessions in `presence`.",
                     "follow");
       other = STRATA_TRY(followers_.follow(follower, *leader));

@@ -152,9 +152,10 @@ Result<void> OpenRoom::PicturesPart::draw_in_bands(render::FrameRequest request,
   };
   const int width = pixels(camera.width), height = pixels(camera.height);
   if (width < 1 || height < 1 || width > kMaxViewSize || height > kMaxViewSize)
-    return fail(ErrorCode::invalid, "Size out of range",
-                "A picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels on each side.",
-                "width");
+    return fail(
+        ErrorCode::invalid, "Size out of range",
+        "Each side of a picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels long.",
+        "width");
   // Bands are whole rows of the camera's window, so that each band has a window of whole rows.
   const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
   const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));

@@ -147,7 +147,7 @@ std::optional<LayerState> OpenRoom::layer_state(LayerId id) const {
 
 Result<void> OpenRoom::check_durable(At at) const {
   if (!at || *at <= durable_) return {};
-  return fail(ErrorCode::invalid, "Sequence not reached",
+  return fail(ErrorCode::invalid, "Sequence out of range",
               "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
 }
 
@@ -325,7 +325,7 @@ void OpenRoom::close_deleted() {
   run_on(strand_, [&] { participants_part_->tell([](Listener& l) { l.model_deleted(); }); });
   close({ErrorCode::gone,
          "Model deleted",
-         "The model was deleted, so you cannot paint on it any more.",
+         "The model was deleted, so you can no longer paint on it.",
          {}});
 }
 

@@ -56,14 +56,14 @@ Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer
                       : store.journal().undoable(layer.id, request.author.user, pending_only));
   if (sequences.empty() && pending_only)
     return fail(ErrorCode::conflict, redo ? "Nothing to redo" : "Nothing to undo",
-                redo ? "You have no stroke on this layer to redo."
+                redo ? "You have no stroke on this layer that you can redo."
                      : "You have no stroke on this layer that waits for review. Only a curator can "
                        "undo accepted strokes.");
   if (sequences.empty())
     return redo ? fail(ErrorCode::conflict, "Nothing to redo",
-                       "You have no stroke on this layer to redo.")
+                       "You have no stroke on this layer that you can redo.")
                 : fail(ErrorCode::conflict, "Nothing to undo",
-                       "You have no stroke on this layer to undo.");
+                       "You have no stroke on this layer that you can undo.");
   return compute_turn({std::move(sequences), redo, std::nullopt}, layer, tiles, store);
 }
 

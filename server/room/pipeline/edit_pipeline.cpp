@@ -77,8 +77,8 @@ Result<void> check_formula(const Layer& layer, const EditRequest& request) {
                 "layer");
   if (compute && layer.edited_by_hand && !compute->overwrites)
     return fail(ErrorCode::conflict, "Edited by hand",
-                "Somebody edited this layer by hand, and computing it again would overwrite "
-                "these edits. Send overwrite=true to do so.",
+                "Somebody edited this layer by hand. To overwrite these edits, send "
+                "overwrite=true.",
                 "layer");
   if (!compute && layer.formula && !layer.edited_by_hand)
     return fail(ErrorCode::conflict, "Layer is computed",
@@ -497,7 +497,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   if (!taken) {
     failure_ = Error{ErrorCode::unavailable,
                      "Not saved",
-                     "The database is too slow for the edits, so the server undid them. Try again "
+                     "The database is too slow for the edits, so the server undid them. Send edits "
                      "more slowly.",
                      {}};
     pending_.back().answered = true;

@@ -47,8 +47,8 @@ class Unfinished {
     std::error_code error;
     fs::rename(folder_, name, error);
     if (error)
-      return fail(ErrorCode::internal, "Not written",
-                  "Cannot name the folder " + name.string() + ": " + error.message() + ".");
+      return fail(ErrorCode::internal, "Backup not written",
+                  "Cannot rename the folder to " + name.string() + ": " + error.message() + ".");
     folder_.clear();
     return {};
   }
@@ -130,7 +130,7 @@ Result<void> run_program(const std::vector<std::string>& command, const fs::path
   const bool full = said.find("No space left") != std::string::npos ||
                     said.find("File too large") != std::string::npos;
   if (full) return fail(ErrorCode::storage_full, "Disk full", name + ": " + said);
-  return fail(ErrorCode::internal, "Not done", name + " failed: " + said);
+  return fail(ErrorCode::internal, "Command failed", name + " failed: " + said);
 }
 
 // Finds programs that are not older than the server whose data they read.
@@ -215,7 +215,8 @@ Result<void> read_dump(const fs::path& file, BackupFacts& facts, Progress& progr
     progress.report(double(facts.bytes) / size, "Reading the dump");
   }
   if (in.bad())
-    return fail(ErrorCode::internal, "Not readable", "Reading " + file.string() + " failed.");
+    return fail(ErrorCode::internal, "Backup not readable",
+                "Reading " + file.string() + " failed.");
   facts.sha256 = to_hex(digest.finish());
   return {};
 }
@@ -240,7 +241,7 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
   if (error)
     return fail(
         ErrorCode::not_found, "Backup not found",
-        "There is no " + file.string() + ". Enter a folder that `strata backup` has written.");
+        "There is no file " + file.string() + ". Enter a folder that `strata backup` has written.");
   if (size > kMaxManifest) return tl::unexpected(damaged(folder, "the manifest is too large."));
   std::ifstream in(file);
   const json manifest = json::parse(in, nullptr, false);
@@ -304,9 +305,10 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
                                  Progress& progress) {
   std::error_code error;
   if (fs::exists(folder, error))
-    return fail(ErrorCode::conflict, "Folder already exists",
-                folder.string() + " exists. A backup creates a new folder: enter another path.",
-                "folder");
+    return fail(
+        ErrorCode::conflict, "Folder already exists",
+        folder.string() + " already exists. A backup creates a new folder: enter another path.",
+        "folder");
   auto connection = STRATA_TRY(connect(dsn));
 
   // Only the owner can read a backup: it contains everything, also the hashes of passwords.
@@ -366,7 +368,7 @@ Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
   if (!there.empty())
     return fail(
         ErrorCode::conflict, "Database not empty",
-        "A backup can be restored into an empty database only. This database has the table " +
+        "A backup can be restored only into an empty database. This database has the table " +
             there.front().name + ".",
         "--database");
   const auto programs = STRATA_TRY(programs_for(connection));

@@ -163,7 +163,7 @@ struct Cluster::Impl {
       if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user &&
           chown(sockets.c_str(), user.uid, user.gid) != 0)
         return fail(ErrorCode::internal, "Socket folder unavailable",
-                    "Cannot give " + sockets.string() + " to " + user.name + ".");
+                    "Cannot change the owner of " + sockets.string() + " to " + user.name + ".");
       struct stat info {};
       if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid ||
           (info.st_mode & 077) != 0)
@@ -192,7 +192,7 @@ struct Cluster::Impl {
     if (!file || chmod(access_rules().c_str(), 0600) != 0 ||
         (user.switch_user && chown(access_rules().c_str(), user.uid, user.gid) != 0))
       return fail(ErrorCode::internal, "Database folder not writable",
-                  "Cannot write " + access_rules().string() + ".");
+                  "Cannot write to " + access_rules().string() + ".");
     return {};
   }
   fs::path access_rules() const { return folder / "access.conf"; }
@@ -280,7 +280,7 @@ struct Cluster::Impl {
       }
       if (Clock::now() >= deadline)
         return fail(ErrorCode::unavailable, "Database not started",
-                    "PostgreSQL in " + folder.string() + " does not start: " + tail(log_file));
+                    "PostgreSQL in " + folder.string() + " did not start: " + tail(log_file));
       std::this_thread::sleep_for(100ms);
     }
   }

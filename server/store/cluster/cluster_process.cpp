@@ -96,7 +96,7 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
     if (fs::exists(made, error)) continue;
     if (mkdir(made.c_str(), 0755) != 0 && errno != EEXIST)
       return fail(ErrorCode::internal, "Data folder unavailable",
-                  "Cannot make " + made.string() + ": " + std::strerror(errno) + ".");
+                  "Cannot create " + made.string() + ": " + std::strerror(errno) + ".");
     chmod(made.c_str(), 0755);
   }
   struct stat info {};
@@ -106,9 +106,9 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   if ((user.switch_user && info.st_uid != user.uid &&
        chown(folder.c_str(), user.uid, user.gid) != 0) ||
       chmod(folder.c_str(), 0700) != 0)
-    return fail(
-        ErrorCode::internal, "Data folder unavailable",
-        "Cannot give " + folder.string() + " to " + user.name + ": " + std::strerror(errno) + ".");
+    return fail(ErrorCode::internal, "Data folder unavailable",
+                "Cannot change the owner of " + folder.string() + " to " + user.name + ": " +
+                    std::strerror(errno) + ".");
 
   const pid_t child = fork();
   if (child == 0) _exit(become(user) && chdir(folder.c_str()) == 0 ? 0 : 1);
@@ -118,9 +118,9 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   if (child < 0 || status != 0)
     return fail(
         ErrorCode::internal, "Data folder not reachable",
-        "The database runs as user `" + user.name + "`, who cannot enter " + folder.string() +
-            ". Choose a data folder outside a private home, such as /var/lib/strata, or give the user the right "
-            "to pass through the folders above it (chmod o+x).");
+        "The database runs as user `" + user.name + "`, which cannot access " + folder.string() +
+            ". Choose a data folder outside private home folders, such as /var/lib/strata, or "
+            "allow this user to pass through the parent folders (chmod o+x).");
   return {};
 }
 
@@ -138,7 +138,7 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
   const int output = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
   if (output < 0)
     return fail(ErrorCode::internal, "Data folder unavailable",
-                "Cannot write " + log.string() + ": " + std::strerror(errno));
+                "Cannot write to " + log.string() + ": " + std::strerror(errno));
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child == 0) {

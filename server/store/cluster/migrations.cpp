@@ -88,8 +88,8 @@ Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<
     if (ours == known.end())
       return fail(ErrorCode::conflict, "Database is newer",
                   "The database has migration " + version +
-                      ", which this version of Strata does not know. "
-                      "Start the version that wrote it, or a later one.");
+                      ", which is newer than this version of Strata. Start the version that "
+                      "applied it, or a later version.");
     if (!sum.empty() && sum != ours->sha256)
       return fail(ErrorCode::conflict, "Migration changed",
                   "Migration " + ours->name +

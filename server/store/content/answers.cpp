@@ -7,7 +7,7 @@ namespace {
 Result<void> check_key(const std::string& key) {
   if (key.empty() || key.size() > kMaxNameLength)
     return fail(ErrorCode::malformed, "Invalid Idempotency-Key",
-                "An Idempotency-Key must have 1 to 255 bytes.", "Idempotency-Key");
+                "An Idempotency-Key must be 1 to 255 bytes long.", "Idempotency-Key");
   return check_text(key, "Idempotency-Key");
 }
 
@@ -39,9 +39,9 @@ Result<void> insert_answer(PgConnection& connection, const std::string& key,
                        "WHERE answers.time <= now() - interval '7 days'",
                        Params().text(key).json(answer)));
   if (inserted.affected() == 0)
-    return fail(ErrorCode::conflict, "Already done",
-                "Another request with this Idempotency-Key was faster. Send the request again "
-                "to get its answer.",
+    return fail(ErrorCode::conflict, "Duplicate request",
+                "Another request with this Idempotency-Key was completed first. Send the request "
+                "again to get its response.",
                 "Idempotency-Key");
   return {};
 }

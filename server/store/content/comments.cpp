@@ -100,9 +100,9 @@ Result<Comment> load(PgConnection& connection, CommentId id, Lock lock) {
 Result<Comment> load_thread(PgConnection& connection, CommentId id, Lock lock) {
   auto first = load(connection, id, lock);
   if (first && first->thread)
-    return fail(ErrorCode::invalid, "A reply",
-                "You can reply only to the first comment of a thread, which is " +
-                    to_string(*first->thread) + " here.");
+    return fail(ErrorCode::invalid, "Cannot reply to a reply",
+                "You can reply only to the first comment of a thread. Reply to comment " +
+                    to_string(*first->thread) + ".");
   return first;
 }
 
@@ -190,7 +190,7 @@ Result<Comment> Comments::create(const Comment& comment,
     if (count.integer(0, 0) >= kMaxComments)
       return fail(ErrorCode::conflict, "Too many comments",
                   "A model can have at most " + std::to_string(kMaxComments) +
-                      " comments. Delete some first.");
+                      " comments. Delete some comments first.");
     PgArray position(oid::kFloat8), normal(oid::kFloat8);
     if (comment.place) {
       position = array_of(comment.place->position);
@@ -249,7 +249,7 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
     if (now.deleted)
       return fail(
           ErrorCode::conflict, "Already deleted",
-          "Somebody deleted this comment. It disappears when its replies are deleted, too.");
+          "Somebody deleted this comment. It disappears when its replies are also deleted.");
     auto others =
         connection.query("SELECT count(*) FROM comments WHERE thread_id = $1 AND id <> $2",
                          Params().id(thread).id(comment.id));

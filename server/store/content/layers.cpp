@@ -136,8 +136,8 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
       "SELECT i.input_id FROM layer_inputs i JOIN reads r ON i.layer_id = r.id) SELECT 1 FROM reads WHERE id = $1",
       Params().id(layer.id)));
   if (circle.rows() > 0)
-    return fail(ErrorCode::invalid, "Computed from itself",
-                "This expression reads a layer that is computed from " + layer.name + ".",
+    return fail(ErrorCode::invalid, "Layer depends on itself",
+                "This expression uses a layer that is computed from " + layer.name + ".",
                 "expression");
   auto set = connection.query(
       "UPDATE layers SET expression = $2, automatic = $3, computed_sequence = 0 WHERE id = $1",
@@ -171,7 +171,7 @@ Result<void> check(const Layer& layer) {
     return good;
   if (layer.group) {
     if (layer.group->empty() || character_count(*layer.group) > kMaxGroupLength)
-      return fail(ErrorCode::malformed, "Invalid group", "`group` must have 1 to 60 characters.",
+      return fail(ErrorCode::malformed, "Invalid group", "`group` must be 1 to 60 characters long.",
                   "group");
     STRATA_TRY(check_text(*layer.group, "group"));
   }

@@ -172,7 +172,7 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kMaxNameLength)
       return fail(ErrorCode::malformed, "Invalid file name",
-                  "The name of a file must have 1 to 255 bytes.", "source_files");
+                  "The name of a file must be 1 to 255 bytes long.", "source_files");
     STRATA_TRY(check_text(source.name, "source_files"));
   }
   if (fresh.images.size() > SurfaceImages::kMaxSurfaceImages)

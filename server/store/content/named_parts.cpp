@@ -93,7 +93,7 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
         sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().id(part.model_id)));
     if (count.integer(0, 0) >= kind_.most)
       return fail(ErrorCode::conflict, "Too many " + std::string(kind_.table),
-                  "A model has at most " + std::to_string(kind_.most) + " " + kind_.table +
+                  "A model can have at most " + std::to_string(kind_.most) + " " + kind_.table +
                       ". Delete some first.");
     const std::string taken = sql("SELECT slug FROM TABLE WHERE slug LIKE $1 AND model_id = $2");
     const std::string insert = sql(

@@ -135,19 +135,19 @@ Result<void> Projects::remove(ProjectId id, const IdempotentResponse<>& answer) 
     if (row.rows() == 0) return no_such("project", to_string(id));
     if (row.text(0, 0) == "default")
       return fail(
-          ErrorCode::conflict, "Conflict",
+          ErrorCode::conflict, "Cannot delete project",
           "The project `default` cannot be deleted: models without a project belong to it.");
     if (row.integer(0, 1) > 0)
-      return fail(ErrorCode::conflict, "Conflict",
-                  "The project still has " + std::to_string(row.integer(0, 1)) +
+      return fail(ErrorCode::conflict, "Cannot delete project",
+                  "The project still contains " + std::to_string(row.integer(0, 1)) +
                       " models. Delete them or move them to another project first.");
     if (row.integer(0, 3) > 0)
-      return fail(ErrorCode::conflict, "Conflict",
+      return fail(ErrorCode::conflict, "Cannot delete project",
                   "The Trash of the project still contains " + std::to_string(row.integer(0, 3)) +
                       " models. Restore them, or erase them there first.");
     if (row.integer(0, 2) > 0)
-      return fail(ErrorCode::conflict, "Conflict",
-                  "The project still has " + std::to_string(row.integer(0, 2)) +
+      return fail(ErrorCode::conflict, "Cannot delete project",
+                  "The project still contains " + std::to_string(row.integer(0, 2)) +
                       " tables. Delete them first.");
     STRATA_TRY(erase_models_of(connection, id));
     auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().id(id));

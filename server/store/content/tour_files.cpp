@@ -36,13 +36,13 @@ Result<void> check_room(PgConnection& connection, NamedPartId tour_id, std::int6
                        Params().id(tour_id)));
   if (used.integer(0, 0) >= TourFiles::kMaxFiles)
     return fail(ErrorCode::conflict, "Too many files",
-                "A tour has at most " + std::to_string(TourFiles::kMaxFiles) +
+                "A tour can have at most " + std::to_string(TourFiles::kMaxFiles) +
                     " files. The server deletes files that the tour has not used for a day.");
   if (used.integer(0, 1) + more_bytes > TourFiles::kMaxBytes)
-    return fail(ErrorCode::conflict, "Too many bytes",
-                "The files of a tour have at most " + std::to_string(TourFiles::kMaxBytes >> 20) +
-                    " MiB together. Reduce your videos, or use fewer of them. The server deletes "
-                    "files that the tour has not used for a day.");
+    return fail(ErrorCode::conflict, "Files too large",
+                "The files of a tour can be at most " + std::to_string(TourFiles::kMaxBytes >> 20) +
+                    " MiB large in total. Reduce your videos, or use fewer of them. The server "
+                    "deletes files that the tour has not used for a day.");
   return {};
 }
 

@@ -64,7 +64,7 @@ const char* name_of(Kind kind) {
 tl::unexpected<Error> not_in_trash(const TrashEntry& entry) {
   return fail(ErrorCode::not_found, "Not in the Trash",
               "The " + std::string(name_of(entry.kind)) + " " + entry.name +
-                  " is not in the Trash any more: somebody restored or erased it.");
+                  " is no longer in the Trash: somebody restored or erased it.");
 }
 
 // Success if one row was changed; otherwise the layer or model `id` does not exist.
@@ -136,8 +136,8 @@ Result<TrashEntry> Trash::entry(ProjectId project_id, Kind kind, std::int64_t id
         seen_in(project_id, sight).text(name_of(kind)).integer(id).id(table_id)));
     if (rows.rows() == 0)
       return fail(ErrorCode::not_found, "Not in the Trash",
-                  "The project's Trash has no such " + std::string(name_of(kind)) + ": " +
-                      std::to_string(id) + ".");
+                  "The project's Trash does not contain the " + std::string(name_of(kind)) +
+                      " with the id " + std::to_string(id) + ".");
     return read_entry(rows, 0);
   });
 }

@@ -21,7 +21,7 @@ Result<void> check(const JournalEntry& entry) {
     if (revision.tile.x >= kTilesASide || revision.tile.y >= kTilesASide ||
         revision.difference.empty())
       return fail(ErrorCode::malformed, "Invalid edit",
-                  "A tile revision is outside every layer, or empty.", "revisions");
+                  "A tile revision is outside all layers, or it is empty.", "revisions");
   return {};
 }
 
@@ -36,8 +36,9 @@ Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const>
     const auto [span, fresh] =
         spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
     if (!fresh && entry->sequence != ++span->second.last)
-      return fail(ErrorCode::conflict, "Journal out of order",
-                  "Edit " + std::to_string(entry->sequence) + " does not follow the one before.");
+      return fail(
+          ErrorCode::conflict, "Journal out of order",
+          "Edit " + std::to_string(entry->sequence) + " does not follow the edit before it.");
   }
   return spans;
 }

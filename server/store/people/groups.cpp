@@ -100,7 +100,7 @@ Result<void> check_spelling(const std::string& name) {
   if (name.empty() || static_cast<std::size_t>(characters) > kMaxGroupNameLength ||
       is_blank(name.front()) || is_blank(name.back()))
     return fail(ErrorCode::invalid, "Invalid name",
-                "The name of a group must have 1 to 100 characters, without spaces at the "
+                "The name of a group must be 1 to 100 characters long, without spaces at the "
                 "beginning or the end.",
                 "name");
   return check_text(name, "name");
@@ -208,9 +208,10 @@ Result<GroupDetail> Groups::create(const std::string& name,
     STRATA_TRY(check_name(connection, name, 0));
     auto count = STRATA_TRY(connection.query("SELECT count(*) FROM groups"));
     if (count.integer(0, 0) >= kMaxGroups)
-      return fail(ErrorCode::conflict, "Too many groups",
-                  "There are " + std::to_string(kMaxGroups) + " groups. Delete some groups first.",
-                  "name");
+      return fail(
+          ErrorCode::conflict, "Too many groups",
+          "There are already " + std::to_string(kMaxGroups) + " groups. Delete some groups first.",
+          "name");
     auto made =
         connection.query("INSERT INTO groups (name) VALUES ($1) RETURNING id", Params().text(name));
     if (!made) return tl::unexpected(made.error());

@@ -52,7 +52,7 @@ Result<Kiosk> changed(PgConnection& connection, KioskId id, const PgResult& done
   auto kiosk = load(connection, id);
   if (kiosk && done.affected() == 0)
     return fail(ErrorCode::conflict, "Link is not valid",
-                "The link of this kiosk is revoked or expired. Create a new link.");
+                "The link of this kiosk was revoked or has expired. Create a new link.");
   return kiosk;
 }
 
@@ -114,7 +114,7 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
     if (count.integer(0, 0) >= kMaxKiosks)
       return fail(ErrorCode::conflict, "Too many kiosks",
                   "A tour can have links for at most " + std::to_string(kMaxKiosks) +
-                      " kiosks. Revoke some first.");
+                      " kiosks. Revoke some links first.");
     NewKiosk made;
     made.secret = random_token();
     std::optional<Time> expires;

@@ -23,14 +23,14 @@ Result<void> check_password(std::string_view password, std::string_view user,
       std::ranges::count_if(password, [](char c) { return (c & 0xc0) != 0x80; });
   if (static_cast<std::size_t>(characters) < kMinPasswordLength)
     return fail(ErrorCode::invalid, "Password too short",
-                "A password must have " + std::to_string(kMinPasswordLength) +
-                    " characters or more. Use several words that nobody can guess.",
+                "A password must be at least " + std::to_string(kMinPasswordLength) +
+                    " characters long. Use several words that nobody can guess.",
                 field);
   if (std::ranges::search(password, user, same).size() > 0 &&
       password.size() < user.size() + kMinPasswordLength)
     return fail(ErrorCode::invalid, "Password too simple",
-                "The password is your user name with few other characters, which is easy to "
-                "guess. Choose another password.",
+                "The password consists of your user name and only a few other characters, so it is "
+                "easy to guess. Choose another password.",
                 field);
   return {};
 }

@@ -247,7 +247,7 @@ Result<Person> Accounts::create(const std::string& name, const std::string& full
   if (name.empty() || name.size() > 64 || !is_plain(name.front()) ||
       !std::ranges::all_of(name, may_stand))
     return fail(ErrorCode::invalid, "Invalid name",
-                "A user name must have 1 to 64 letters (a to z), digits, `.`, `_`, `@` and "
+                "A user name must consist of 1 to 64 letters (a to z), digits, `.`, `_`, `@` and "
                 "`-`. It must begin with a letter or digit.",
                 "user");
   std::string lower = name;
@@ -447,8 +447,9 @@ Result<NewToken> Tokens::create(TokenKind kind, const std::string& user, Role ro
     const auto good = count_good(connection, person.name, kind);
     if (!good) return tl::unexpected(good.error());
     if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMaxTokens))
-      return fail(ErrorCode::conflict, "Too many tokens",
-                  "There are " + std::to_string(kMaxTokens) + " tokens. Revoke some tokens first.");
+      return fail(
+          ErrorCode::conflict, "Too many tokens",
+          "There are already " + std::to_string(kMaxTokens) + " tokens. Revoke some tokens first.");
     if (project) {
       STRATA_TRY(check_project_role(role));
       STRATA_TRY(lock_project(connection, *project));

@@ -24,7 +24,7 @@ Result<void> PersonalViews::keep(const std::string& user, ModelId model_id,
   // case.
   if (layers.dump().size() > kMaxBytes / 2)
     return fail(ErrorCode::too_large, "Settings too large",
-                "The personal settings of one model can have at most 512 KiB.", "layers");
+                "The personal settings of one model can be at most 512 KiB large.", "layers");
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done =
         layers.empty()

@@ -75,7 +75,7 @@ Result<const Column*> column_for(const Table& table, std::optional<ColumnId> req
       ErrorCode::invalid, "No column for files",
       pictures
           ? table.name +
-                " has columns for pictures only, but some of the files are not pictures (JPEG, "
+                " has only columns for pictures, but some of the files are not pictures (JPEG, "
                 "PNG, TIFF, WebP, GIF, HEIC, AVIF, BMP, JPEG 2000)."
           : table.name + " has no column of kind `picture` or `document`. Add one first.",
       "column");
@@ -207,7 +207,7 @@ Result<TableChange> Attachments::detach(AttachmentId attachment_id, const std::s
     }
     if (edit.records.empty())
       return fail(ErrorCode::not_found, "Not found",
-                  "No record has the attachment " + to_string(attachment_id) + " any more.");
+                  "The attachment " + to_string(attachment_id) + " no longer belongs to a record.");
     edit.record["records"] = edit.records.size();
     if (keys.size() > kMaxRowProblems) keys.resize(kMaxRowProblems);
     edit.record["keys"] = keys;

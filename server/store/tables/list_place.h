@@ -7,8 +7,9 @@ namespace strata::store {
 // The error for an `after` that is no place of the requested list.
 inline tl::unexpected<Error> wrong_place() {
   return fail(
-      ErrorCode::invalid, "Not a place in this list",
-      "`after` is taken from the `next` of a page of this list, with the same filters and order. Begin without it.",
+      ErrorCode::invalid, "Invalid position in the list",
+      "`after` must be the value of `next` from a page of this list with the same filters and "
+      "order. To read the first page, leave it out.",
       "after");
 }
 

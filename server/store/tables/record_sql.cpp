@@ -364,11 +364,10 @@ class Writer {
       return turned ? of_times(row.times_sql, b, a) : of_times(row.times_sql, a, b);
     }
     if (a.kind == Kind::keys || a.kind == Kind::truth || a.kind == Kind::features)
-      refuse(
-          wrong(first, a, Kind::number) + (a.kind == Kind::keys ? ": ask a_contains(…, (key))"
-                                           : a.kind == Kind::features ? ": ask whether it is null"
-                                                                      : ""),
-          first);
+      refuse(wrong(first, a, Kind::number) + (a.kind == Kind::keys ? ": use a_contains(…, (key))"
+                                              : a.kind == Kind::features ? ": use 'is null'"
+                                                                         : ""),
+             first);
     if (a.kind == Kind::text) check_choice(a, second);
     if (a.kind == Kind::number && second.is_text()) refuse(wrong(first, a, Kind::text), first);
     const std::string b = a.kind == Kind::text ? text(second) : number(second);

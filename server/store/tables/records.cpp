@@ -87,7 +87,7 @@ class Intake {
     const bool exists = now != now_.end();
     if (exists ? !request_.may_change : !request_.may_create)
       return exists ? fail(ErrorCode::conflict, "Record already exists",
-                           "There is a record " + std::to_string(*input.key) + " already.", "key")
+                           "Record " + std::to_string(*input.key) + " already exists.", "key")
                     : Result<std::pair<std::int64_t, Cells>>(
                           no_such("record", std::to_string(input.key.value_or(0))));
     if (exists && input.version && *input.version != now->second.version) return stale("record");
@@ -95,8 +95,8 @@ class Intake {
       return fail(
           ErrorCode::conflict, "Key already used",
           "Key " + std::to_string(*input.key) +
-              " belonged to a record that was deleted. The server does not use a key again. "
-              "Choose another key.",
+              " belonged to a record that was deleted. The server does not reuse keys. Choose "
+              "another key.",
           "key");
     while (!input.key && named_.contains(next_key_)) ++next_key_;
     if (!input.key && next_key_ > kMaxRecordKey)
@@ -164,7 +164,7 @@ Result<TableChange> write_all(PgConnection& connection, TableId table_id,
 Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection, OpenTable& open,
                                                         std::optional<std::int64_t> at) {
   if (at && *at > open.table.sequence)
-    return fail(ErrorCode::invalid, "Sequence not reached",
+    return fail(ErrorCode::invalid, "Sequence out of range",
                 "The newest sequence of this table is " + std::to_string(open.table.sequence) + ".",
                 "at");
   if (!at || *at == open.table.sequence) return std::optional<std::vector<Record>>();
@@ -254,7 +254,7 @@ Result<std::vector<KeyText>> Records::texts(TableId table_id, Role seen_by, cons
                   "The table '" + open.table.name + "' has no column '" + ref + "'.", field);
     if (holds_lists(column->kind))
       return fail(ErrorCode::invalid, "Column contains lists",
-                  "'" + column->name + "' may contain several values in one record.", field);
+                  "'" + column->name + "' can contain several values in one record.", field);
     auto rows = STRATA_TRY(load_all_rows(connection, table_id, {*column}));
     std::vector<KeyText> texts;
     for (const Record& row : rows) {

@@ -562,7 +562,7 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
     if (other.id != column.id) used.insert(other.slug);
   if (!column.slug.empty() && used.contains(requested))
     return fail(ErrorCode::conflict, "Slug already used",
-                "The table has a column `" + requested + "` already.", "slug");
+                "The table already has a column `" + requested + "`.", "slug");
   column.slug = requested;
   for (int n = 2; used.contains(column.slug); ++n)
     column.slug = requested + "-" + std::to_string(n);

@@ -157,12 +157,12 @@ Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
         Params().id(id)));
     if (users.rows() > 0 && users.boolean(0, 1))
       return fail(ErrorCode::conflict, "Table in use",
-                  "A column refers to this table: " + users.text(0, 0) +
-                      ", which is in the Trash. Erase that one there first.");
+                  "This table is still used by " + users.text(0, 0) +
+                      ", which is in the Trash. Erase the layer there first.");
     if (users.rows() > 0)
-      return fail(
-          ErrorCode::conflict, "Table in use",
-          "A column refers to this table: " + users.text(0, 0) + ". Delete that one first.");
+      return fail(ErrorCode::conflict, "Table in use",
+                  "This table is still used by " + users.text(0, 0) +
+                      ". Delete that layer or column first.");
     STRATA_TRY(drop_rows_table(connection, id));
     // Its own columns may have it as their target.
     auto columns =

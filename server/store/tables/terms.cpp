@@ -185,7 +185,7 @@ class TermIntake {
       const auto sent = std::find_if(circle.begin(), circle.end(),
                                      [&](auto key) { return index_of_.contains(key); });
       if (sent == circle.end()) continue;
-      add_problem(index_of_.at(*sent), {ErrorCode::invalid, "Terms form a circle",
+      add_problem(index_of_.at(*sent), {ErrorCode::invalid, "Circular hierarchy of terms",
                                         path + "\"" + code_of(circle.front()) + "\".", "parent"});
     }
   }
@@ -230,7 +230,7 @@ Result<TableChange> insert_with_terms(PgConnection& connection, Table table, con
       Params().id(table.project_id).text(table.name)));
   if (taken.rows() > 0)
     return fail(ErrorCode::conflict, "Name already used",
-                "The project has a table \"" + table.name + "\" already (`" + taken.text(0, 0) +
+                "The project already has a table \"" + table.name + "\" (`" + taken.text(0, 0) +
                     "`). Rename or delete that table first, or use it.",
                 "name");
   auto made = STRATA_TRY(insert_table(connection, std::move(table)));

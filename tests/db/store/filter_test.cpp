@@ -471,7 +471,7 @@ TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
       {"name.code = 'x'", "does not contain a key", 0},
       {"term.kode = 'x'", "no column 'kode'", 0},
       {"term = 'x'", "as in term.code", 0},
-      {"above = 3", "ask a_contains", 0},
+      {"above = 3", "use a_contains", 0},
       {"a_contains(name, (1))", "not keys of records", 11},
       {"a_contains(above, (1.5))", "whole number", 19},
       {"t_before(name, '1560')", "not times", 9},

@@ -124,7 +124,7 @@ TEST_F(Terms, circles_and_unknown_parents_are_told_and_nothing_is_written) {
   ASSERT_EQ(stranger->problems.size(), 2u);
   EXPECT_EQ(stranger->problems[0].index, 1u);
   EXPECT_EQ(stranger->problems[0].problem.title, "Parent not found");
-  EXPECT_EQ(stranger->problems[1].problem.title, "Terms form a circle");
+  EXPECT_EQ(stranger->problems[1].problem.title, "Circular hierarchy of terms");
   EXPECT_EQ(content(table).size(), 3u);
   EXPECT_EQ(store_->tables().find(table.slug, Role::owner)->sequence, 1);
 }

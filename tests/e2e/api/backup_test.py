@@ -274,7 +274,7 @@ def test_a_backup_is_made_while_people_paint(server, whole, story):
 
 def test_what_is_there_is_not_written_over(server, whole):
     refused("backup", whole, "--data", server.data, told="Folder already exists")
-    refused("restore", whole, "--data", server.data, told="holds a site already")
+    refused("restore", whole, "--data", server.data, told="already contains a site")
 
 
 def test_a_full_disk_is_no_backup(server, folder):

@@ -232,7 +232,7 @@ def test_shapefile_refusals(server):
             {"a_shp": good, "a_prj": b""},
             {"attribute": "UNIT"},
             422,
-            "none at all",
+            "It has no attributes",
         ),
         (
             "a table of another",

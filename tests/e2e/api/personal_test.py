@@ -453,7 +453,7 @@ def test_words(server):
         headers=CSV,
     ).json()
     assert [(each["line"], each["title"]) for each in report["problems"]] == [
-        (3, "Several records"),
+        (3, "Ambiguous name"),
         (4, "Record not found"),
     ], report
 

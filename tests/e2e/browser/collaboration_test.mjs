@@ -78,7 +78,7 @@ test("somebody else opens the same model and looks from another side", async () 
   assert.equal(await bea.page.getByRole("button", { name: words.model.check_size }).count(), 0);
   await bea.page.keyboard.press("v");
   for (let i = 0; i < 4; ++i) await bea.page.keyboard.press("ArrowLeft");
-  await anna.page.getByLabel(/2 people are here/).waitFor();
+  await anna.page.getByLabel(/2 people have this model open/).waitFor();
   await bea.page.getByRole("button", { name: words.layers.select("Finds") }).click();
   await bea.page.keyboard.press("b");
   await choose_class(bea, "Glass");

@@ -287,7 +287,7 @@ test("a second click on the last place ends; a rectangle on one side of the roof
   await desk.is_about("straight", 2 * wide + deep, 3 * near);
   await desk.is_about("ends", deep, near * kAlong);
   assert.equal(
-    await desk.panel.getByText(/off the plane/).count(),
+    await desk.panel.getByText(/from the plane/).count(),
     0,
     "one side of a roof is flat",
   );

@@ -191,7 +191,7 @@ test("Ada is invited; a name that cannot be is told at its field", async () => {
 test("at a browser where somebody else is signed in the link says so", async () => {
   const beside = await owner.context.newPage();
   await beside.goto(link);
-  await beside.getByText(/Somebody else is signed in at this browser: owner/).waitFor();
+  await beside.getByText(/Somebody else is signed in to this browser: owner/).waitFor();
   assert.equal(await beside.getByLabel(words.join.password, { exact: true }).count(), 0);
   await beside.close();
 });

@@ -251,7 +251,7 @@ test("with tables only, these are named, and its name is typed", async () => {
   await pia.page.getByText(words.projects.delete_tables_lead(2)).waitFor();
   await inside(pia).getByText("1 record").waitFor();
   const remove = inside(pia).getByRole("button", { name: words.delete, exact: true });
-  const typed = box(pia, "Type “Villa Giulia, Rome” to delete them");
+  const typed = box(pia, "Type “Villa Giulia, Rome” to confirm");
   for (const wrong of ["", "villa giulia, rome", "Villa Giulia"]) {
     await typed.fill(wrong);
     await typed.press("Enter");

@@ -139,7 +139,7 @@ test("the decision is taken back; once more by the notice, as long as it is ther
   const rejected = edits.find(({ review }) => review === "rejected").sequence;
   await server.json("POST", `${finds}/review`, { decision: "reopen", edits: [rejected] });
   await wait_for(async () => (await listed(cleo).count()) === 1, "it waits again");
-  await notice(ada, "waits for review again").waitFor();
+  await notice(ada, "reopened the review of your paint").waitFor();
   await cleo.close_notices();
   await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
   await panel(cleo).getByRole("button", { name: words.review.reject, exact: true }).click();

@@ -143,8 +143,8 @@ test("who is here: oneself first, the other by full name", async () => {
     await who.page.goto(`${server.url}/models/demo-pot`);
     await who.drawn();
   }
-  await anna.page.getByLabel("2 people are here: owner (you), Bea Ost").waitFor();
-  await bea.page.getByLabel("2 people are here: Bea Ost (you), owner").waitFor();
+  await anna.page.getByLabel("2 people have this model open: owner (you), Bea Ost").waitFor();
+  await bea.page.getByLabel("2 people have this model open: Bea Ost (you), owner").waitFor();
   const faces = await people(anna)
     .locator(".faces .face")
     .evaluateAll((all) => all.map(({ textContent, title }) => [textContent.trim(), title]));
@@ -164,7 +164,7 @@ test("a person with two windows is one", async () => {
     ).size,
     1,
   );
-  await anna.page.getByLabel(/2 people are here/).waitFor();
+  await anna.page.getByLabel(/2 people have this model open/).waitFor();
   await second.close();
 });
 
@@ -190,7 +190,7 @@ test("from the sixth on they are counted, and the menu lists all of them", async
     });
   });
   await crowd.goto(`${server.url}/models/demo-pot`);
-  await crowd.getByLabel(/^8 people are here: owner \(you\), /).waitFor();
+  await crowd.getByLabel(/^8 people have this model open: owner \(you\), /).waitFor();
   const folded = crowd.locator("strata-people-menu .faces .face");
   assert.deepEqual([await folded.count(), (await folded.last().textContent()).trim()], [6, "+3"]);
   await crowd.locator("strata-people-menu .faces").click();
@@ -420,7 +420,7 @@ test("she leaves: who followed her is told", async () => {
   await bea.page.locator("a.home").click();
   await anna.page.getByText(words.together.left("Bea Ost")).waitFor();
   await bar(anna).waitFor({ state: "detached" });
-  await anna.page.getByLabel("Only you are here: owner (you)").waitFor();
+  await anna.page.getByLabel("Only you have this model open: owner (you)").waitFor();
   await shot(anna, "left_1280");
 });
 

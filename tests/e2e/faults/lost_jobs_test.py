@@ -30,7 +30,7 @@ def check_lost(server, jobs, outsider):
         assert answer["state"] == "failed", answer
         assert answer["problem"]["title"] == "Server restarted", answer
         assert (
-            "kept nothing of it" in answer["problem"]["detail"]
+            "did not save any part of it" in answer["problem"]["detail"]
             and "Start the import again" in answer["problem"]["detail"]
         ), answer
         assert "model" not in answer, answer

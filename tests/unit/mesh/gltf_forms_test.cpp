@@ -428,11 +428,11 @@ TEST(MeshGltfForms, every_attribute_in_every_form_means_what_the_specification_s
             if (kind.name != "NORMAL" && (type == kUnsignedInt || (is_color && is_signed(type)))) {
               ++refused;
               ASSERT_FALSE(loaded);
-              EXPECT_THAT(loaded.error().detail, HasSubstr(kind.name + ") holds " +
+              EXPECT_THAT(loaded.error().detail, HasSubstr(kind.name + ") contains " +
                                                            (type == kUnsignedInt ? "UNSIGNED_INT"
                                                             : type == kByte      ? "BYTE"
                                                                                  : "SHORT") +
-                                                           ", which glTF does not allow there"));
+                                                           ", which glTF does not allow here"));
               continue;
             }
             ++read;
@@ -469,16 +469,16 @@ TEST(MeshGltfForms, indices_of_every_unsigned_type_are_read_and_others_refused) 
       EXPECT_THAT(loaded.error().detail,
                   HasSubstr(meshopt && size_of(type) == 1
                                 ? "elements of 1 bytes are not possible in the mode TRIANGLES"
-                                : "does not hold unsigned whole numbers"));
+                                : "does not contain unsigned whole numbers"));
     }
 }
 
 TEST(MeshGltfForms, shapes_that_do_not_belong_to_an_attribute_are_refused) {
   const std::vector<std::pair<Kind, std::string>> wrong{
-      {{"POSITION", 2}, "(POSITION) has 2 numbers a vertex; 3 are required"},
+      {{"POSITION", 2}, "(POSITION) has 2 numbers per vertex; 3 are required"},
       {{"POSITION", 4}, "(POSITION) has 4 numbers"},
-      {{"TEXCOORD_0", 3}, "(TEXCOORD_0) has 3 numbers a vertex; 2 are required"},
-      {{"COLOR_0", 2}, "(COLOR_0) has 2 numbers a vertex; 3 or 4 are required"}};
+      {{"TEXCOORD_0", 3}, "(TEXCOORD_0) has 3 numbers per vertex; 2 are required"},
+      {{"COLOR_0", 2}, "(COLOR_0) has 2 numbers per vertex; 3 or 4 are required"}};
   for (const auto& [kind, says] : wrong)
     for (const Store store : {Store::plain, Store::draco_sequential}) {
       const auto loaded = File(with_positions(attribute(kind.name, kFloat, kind.components, false)),
@@ -518,7 +518,7 @@ TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the
   const auto refused = other.load();
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().detail,
-              HasSubstr("has 2 numbers a vertex for POSITION, but its accessor says 3"));
+              HasSubstr("has 2 numbers per vertex for POSITION, but the accessor declares 3"));
 }
 
 TEST(MeshGltfForms, what_draco_leaves_out_is_read_beside_the_stream) {

@@ -336,17 +336,18 @@ TEST(MeshGltf, instances_that_contradict_themselves_or_are_too_many_are_refused)
       }),
       HasSubstr(
           "SCALE of EXT_mesh_gpu_instancing in the glTF has 3 values, but another attribute has 2"));
-  EXPECT_THAT(refusal([&](auto& b) {
-                attributes(b)["ROTATION"] = b.add(std::vector<float>(6, 1), kFloat, "VEC3");
-              }),
-              HasSubstr("ROTATION of EXT_mesh_gpu_instancing in the glTF does not hold 4 numbers"));
-  EXPECT_THAT(refusal([&](auto& b) {
-                attributes(b)["ROTATION"] =
-                    b.add(std::vector<std::uint8_t>(8, 1), kByte, "VEC4", true);
-              }),
-              HasSubstr("does not hold 4 numbers of type FLOAT, or of normalized BYTE or SHORT"));
+  EXPECT_THAT(
+      refusal([&](auto& b) {
+        attributes(b)["ROTATION"] = b.add(std::vector<float>(6, 1), kFloat, "VEC3");
+      }),
+      HasSubstr("ROTATION of EXT_mesh_gpu_instancing in the glTF does not contain 4 numbers"));
+  EXPECT_THAT(
+      refusal([&](auto& b) {
+        attributes(b)["ROTATION"] = b.add(std::vector<std::uint8_t>(8, 1), kByte, "VEC4", true);
+      }),
+      HasSubstr("does not contain 4 numbers of type FLOAT, or of normalized BYTE or SHORT"));
   EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = 99; }),
-              HasSubstr("number 99 of its \"accessors\""));
+              HasSubstr("index 99 of \"accessors\""));
   EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = "here"; }),
               HasSubstr("\"TRANSLATION\""));
   EXPECT_THAT(refusal([](auto& b) {
@@ -396,7 +397,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "ACME_magic"},
         BadGltf{"cycle", [](auto& j) { j["nodes"][0]["children"] = {0}; }, "its own ancestor"},
         BadGltf{"lost_node", [](auto& j) { j["scenes"][0]["nodes"] = {5}; },
-                "number 5 of its \"nodes\""},
+                "index 5 of \"nodes\""},
         BadGltf{"lost_mesh", [](auto& j) { j["nodes"][0]["mesh"] = 3; }, "\"meshes\""},
         BadGltf{"lost_material", [](auto& j) { j["meshes"][0]["primitives"][0]["material"] = 0; },
                 "material 0"},
@@ -409,7 +410,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& j) { j["accessors"][1]["byteOffset"] = 18446744073709551615u; },
                 "ends before"},
         BadGltf{"view_lies", [](auto& j) { j["bufferViews"][0]["byteLength"] = 1000; },
-                "beyond its buffer"},
+                "beyond the end of its buffer"},
         BadGltf{"negative", [](auto& j) { j["accessors"][0]["count"] = -4; },
                 "\"count\" is not a whole number"},
         BadGltf{"small_stride", [](auto& j) { j["bufferViews"][0]["byteStride"] = 4; }, "stride"},

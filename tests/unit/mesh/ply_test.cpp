@@ -326,7 +326,7 @@ INSTANTIATE_TEST_SUITE_P(
                 kFour),
             "9000000000000000000"},
         BadPly{"long_list", ascii(kSquare + kFace, kFour + "250 0 1 2\n"),
-               "face 0 of 1 (line 14) has a length"},
+               "face 0 of 1 (line 14) is longer"},
         BadPly{"negative_list",
                ascii(kSquare + "element face 1\nproperty list char int vertex_indices\n",
                      kFour + "-3 0 1 2\n"),

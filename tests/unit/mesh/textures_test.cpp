@@ -152,7 +152,8 @@ TEST(Archive, what_is_no_single_scan_is_refused) {
       {"", "empty"},
       {"no zip at all", "cannot be opened"},
       {zip.substr(0, zip.size() / 2), "cannot be opened"},
-      {test::zip_of({{"a.ply", std::string(64 << 20, '\0')}}), "more than 100 times its size"}};
+      {test::zip_of({{"a.ply", std::string(64 << 20, '\0')}}),
+       "more than 100 times as large as the zip"}};
   for (const auto& [bytes, says] : bad) {
     const auto loaded = load_texts({{"a.zip", bytes}});
     ASSERT_FALSE(loaded) << says;

@@ -75,7 +75,7 @@ export const texts = {
     lead: (role) =>
       `Sie wurden mit der Rolle „${role}“ auf diesen Server eingeladen. Wählen Sie ein Passwort für die Anmeldung.`,
     groups: (groups) => `Ihre Gruppen: ${groups}.`,
-    lead_again: "Wählen Sie ein neues Passwort. Bis dahin gilt das alte.",
+    lead_again: "Wählen Sie ein neues Passwort. Bis Sie es speichern, gilt das alte.",
     user: "Benutzername",
     full_name: "Vollständiger Name",
     password: "Passwort",
@@ -229,11 +229,11 @@ export const texts = {
   demo: {
     open: "Demo zurücksetzen…",
     title: "Demo zurücksetzen",
-    lead: "Der Demo-Topf wird neu angelegt, wie er am Anfang war. Alles, was darauf gemalt, gezeichnet oder geschrieben wurde, wird gelöscht und kann nicht wiederhergestellt werden. Andere Modelle und Tabellen des Projekts bleiben.",
+    lead: "Der Demo-Topf wird in den ursprünglichen Zustand zurückgesetzt. Alles, was darauf gemalt, gezeichnet oder geschrieben wurde, wird endgültig gelöscht. Andere Modelle und Tabellen des Projekts bleiben.",
     reset: "Zurücksetzen",
     making: "Demo wird angelegt…",
     failed: "Die Demo wurde nicht angelegt. Versuchen Sie es noch einmal.",
-    done: "Die Demo ist wieder wie am Anfang.",
+    done: "Die Demo wurde zurückgesetzt.",
   },
 
   bin: {
@@ -346,7 +346,7 @@ export const texts = {
     zoom_in: "Vergrößern",
     zoom_out: "Verkleinern",
     next_light: "Nächstes Licht",
-    next_section: "Schnitt: nächste Achse, dann aus",
+    next_section: "Schnitt: zur nächsten Achse wechseln oder ausschalten",
     next_view: "Nächste gespeicherte Ansicht",
     previous_view: "Vorherige gespeicherte Ansicht",
     panel: "Seitenleiste ein- oder ausblenden",
@@ -465,7 +465,10 @@ export const texts = {
   people: {
     you: "Sie",
     role_now: (role) => `Ihre Rolle ist jetzt „${role}“.`,
-    here: (n) => (n === 1 ? "Nur Sie sind hier" : `${n} Personen sind hier`),
+    here: (n) =>
+      n === 1
+        ? "Nur Sie haben dieses Modell geöffnet"
+        : `${n} Personen haben dieses Modell geöffnet`,
   },
 
   together: {
@@ -629,7 +632,7 @@ export const texts = {
     fill: "Füllen",
     erase: "Löschen",
     discard: "Auswahl verwerfen",
-    full: (n) => `Eine Auswahl kann ${n} Umrisse haben. Füllen oder verwerfen Sie sie.`,
+    full: (n) => `Eine Auswahl kann höchstens ${n} Umrisse haben. Füllen oder verwerfen Sie sie.`,
     in_layer: (layer) => `In ${layer}`,
     painted: "kartiert",
     mean: "Mittelwert",
@@ -887,7 +890,7 @@ export const texts = {
     rays_hint: "Mehr Strahlen ergeben glattere Werte und dauern länger",
     bad_rays: (least, most) =>
       `Geben Sie für die Strahlen eine ganze Zahl von ${least} bis ${most} ein.`,
-    absolute: "Koordinate der Stätte statt Höhe über dem tiefsten Punkt verwenden",
+    absolute: "Höhe in Koordinaten der Stätte statt über dem tiefsten Punkt verwenden",
     model: "Zur Oberfläche von",
     property: "Eigenschaft",
     bad_length: "Geben Sie eine Länge größer als 0 ein, in Millimetern.",
@@ -912,7 +915,7 @@ export const texts = {
     bad_angle: "Geben Sie einen Winkel von 1 bis 180 Grad ein.",
     start: "Übertragen",
     job: (model) => `Ebenen aus „${model}“`,
-    matched: (share) => `${share} dieser Oberfläche haben eine Entsprechung.`,
+    matched: (share) => `${share} dieser Oberfläche haben eine Entsprechung auf dem anderen Scan.`,
     layer: "Ebene",
     brought: "Übertragen",
     lost: "Verloren",
@@ -1472,11 +1475,11 @@ export const texts = {
       unlit: "Exakte Farben ohne Licht",
     },
     exposure: "Belichtung",
-    exposure_hint: "Hellt die Oberfläche auf oder dunkelt sie ab. Layer behalten ihre Farben.",
+    exposure_hint: "Hellt die Oberfläche auf oder dunkelt sie ab. Ebenen behalten ihre Farben.",
     fill_light: "Aufhelllicht",
     fill_light_hint: "Licht von der Kamera aus, damit Schatten Zeichnung haben",
-    raking_layers: "Layer",
-    raking_layers_hint: "Deckkraft aller Layer im Streiflicht, damit das Relief sichtbar bleibt",
+    raking_layers: "Ebenen",
+    raking_layers_hint: "Deckkraft aller Ebenen im Streiflicht, damit das Relief sichtbar bleibt",
     light_direction: "Lichtrichtung",
     light_pad_hint:
       "Ziehen Sie, oder drücken Sie die Pfeiltasten. Nahe am Rand streift das Licht die Oberfläche.",
@@ -1703,7 +1706,7 @@ export const texts = {
     accent: "Schaltflächen",
     color_default: "Standardfarbe",
     background_wrong: (now, needed) =>
-      `Text auf diesem Hintergrund hat einen Kontrast von ${now}:1 und braucht ${needed}:1. Wählen Sie einen anderen Hintergrund oder den anderen Raum.`,
+      `Text auf diesem Hintergrund hat einen Kontrast von ${now}:1 und braucht ${needed}:1. Wählen Sie einen anderen Hintergrund, oder ändern Sie „Raum“.`,
     accent_wrong: (now, needed) =>
       `Schaltflächen auf diesem Hintergrund haben einen Kontrast von ${now}:1 und brauchen ${needed}:1. Wählen Sie eine andere Farbe.`,
     font: "Überschriften",
@@ -1719,7 +1722,7 @@ export const texts = {
     media_add: "Bilder, Töne oder Videos hinzufügen",
     media_gone: "Gelöschte Datei",
     file_kinds: { picture: "Bild", sound: "Ton", video: "Video", subtitles: "Untertitel" },
-    files_after_save: "Speichern Sie die Führung einmal, bevor Sie Dateien hinzufügen.",
+    files_after_save: "Speichern Sie zuerst die Führung, und fügen Sie dann Dateien hinzu.",
     sending: (name, percent) => `${name} wird hochgeladen: ${percent} %`,
     caption: "Bildunterschrift",
     alt: "Beschreibung für Bildschirmleser",
@@ -1765,7 +1768,7 @@ export const texts = {
     days: "Gültig für",
     days_unit: "Tage",
     days_hint: "unbegrenzt",
-    days_lead: "Ohne Angabe gilt der Link, bis Sie ihn widerrufen.",
+    days_lead: "Wenn Sie dieses Feld leer lassen, gilt der Link, bis Sie ihn widerrufen.",
     days_wrong: (least, most) =>
       `Geben Sie eine ganze Zahl von ${formatCount(least)} bis ${formatCount(most)} Tagen ein, oder lassen Sie das Feld leer.`,
     phones: "QR-Code für Telefone der Besucher",
@@ -1793,7 +1796,7 @@ export const texts = {
     made_by: (user, day) => `erstellt von ${user}, ${day}`,
     reload: "Neu laden",
     reload_of: (name) => `${name} neu laden`,
-    reload_asked: "Wenn der Bildschirm läuft, lädt er innerhalb einer halben Minute neu.",
+    reload_asked: "Wenn der Bildschirm läuft, lädt er innerhalb von 30 Sekunden neu.",
     revoke: "Widerrufen …",
     revoke_of: (name) => `Link von ${name} widerrufen`,
     revoke_title: (name) => `Link von „${name}“ widerrufen?`,

@@ -48,15 +48,15 @@ export const texts = {
       `At least ${least} characters. A few words are easy to remember and hard to guess.`,
     too_short: (least: number) => `Use at least ${least} characters.`,
     is_the_name: "The password must differ from the user name.",
-    differs: "The passwords do not match. Enter the new one again.",
+    differs: "The passwords do not match. Enter the new password again.",
   },
 
   join: {
     greeting: (name: string) => `Welcome, ${name}`,
     lead: (role: string) =>
-      `You are invited to this site as ${role.toLowerCase()}. Choose a password to sign in with.`,
+      `You are invited to join this site as ${role.toLowerCase()}. Choose a password to sign in with.`,
     groups: (groups: string) => `Your groups: ${groups}.`,
-    lead_again: "Choose a new password. The old one works until then.",
+    lead_again: "Choose a new password. Your old password works until you save the new one.",
     user: "User name",
     full_name: "Full name",
     password: "Password",
@@ -64,12 +64,13 @@ export const texts = {
     button: "Set password and sign in",
     looking: "Checking the invitation…",
     useless_title: "This link no longer works",
-    useless_lead: "It was used, has expired, or was replaced by a newer one. Ask for a new link.",
+    useless_lead:
+      "It was already used, has expired or was replaced by a newer one. Ask for a new link.",
     incomplete_title: "This link is incomplete",
     incomplete_lead: "Copy the whole link into the address bar of your browser.",
     to_sign_in: "Go to sign-in",
     other_person: (signedIn: string, invited: string) =>
-      `Somebody else is signed in at this browser: ${signedIn}. The link is for ${invited}. Sign out first, then continue.`,
+      `Somebody else is signed in to this browser: ${signedIn}. The link is for ${invited}. Sign out first, then continue.`,
     sign_out: (name: string) => `Sign ${name} out`,
   },
 
@@ -83,7 +84,7 @@ export const texts = {
   },
   role_hints: {
     guest: "can see only projects in which they have a role",
-    viewer: "can look, measure and download",
+    viewer: "can view, measure and download",
     annotator: "can also paint and edit tables",
     curator: "can also import scans and create layers and tables",
     administrator: "can also invite and manage people",
@@ -105,7 +106,7 @@ export const texts = {
     full_name: "Full name",
     full_name_saved: "Your name is saved.",
     password: "Password",
-    password_set: "You have no password yet. Without one you can sign in only with a link.",
+    password_set: "You have no password yet. Without one, you can sign in only with a link.",
     current: "Current password",
     current_missing: "Enter your current password.",
     new: "New password",
@@ -119,14 +120,14 @@ export const texts = {
     browser: (browser: string, system: string) =>
       browser && system ? `${browser} on ${system}` : browser || system || "Unknown browser",
     this_browser: "this browser",
-    last_used: (when: string) => `used ${when}`,
+    last_used: (when: string) => `last used ${when}`,
     since: (when: string) => `signed in ${when}`,
     sign_out_of: (where: string) => `Sign out of ${where}`,
     sign_out_others: "Sign out everywhere else",
     signed_out_others: "Your other sessions were signed out.",
     tokens: "Tokens for scripts",
     tokens_lead:
-      "A script sends its token instead of a password. The token's role limits what it can do.",
+      "A script sends a token instead of a password. The role of the token limits what the script can do.",
     no_tokens: "No tokens yet.",
     token_new: "New token",
     token_name: "Purpose",
@@ -144,13 +145,14 @@ export const texts = {
       [3650, "ten years"],
     ] as [number, string][],
     token_make: "Create token",
-    token_made: (name: string) => `Token “${name}”. Copy it now: it will not be shown again.`,
+    token_made: (name: string) =>
+      `Token “${name}” created. Copy it now: it will not be shown again.`,
     token_example: "For example",
     token_line: (role: string, where: string, until: string, used: string) =>
       [role, where, until, used].filter(Boolean).join(" · "),
-    token_until: (when: string) => `until ${when}`,
+    token_until: (when: string) => `valid until ${when}`,
     token_expired: (when: string) => `expired ${when}`,
-    token_used: (when: string) => `used ${when}`,
+    token_used: (when: string) => `last used ${when}`,
     token_unused: "never used",
     token_revoke: (name: string) => `Revoke ${name}`,
     token_revoke_title: (name: string) => `Revoke the token “${name}”?`,
@@ -167,7 +169,7 @@ export const texts = {
   projects: {
     new: "New project",
     new_title: "New project",
-    new_lead: "A project is a site or a collection, with its models, tables and people.",
+    new_lead: "A project contains the models, tables and people of a site or a collection.",
     name: "Name",
     name_hint: "Villa Giulia",
     name_empty: "Enter a name.",
@@ -175,27 +177,28 @@ export const texts = {
     text_hint: "Purpose, dates and people of this project",
     create: "Create project",
     made: (name: string) => `Project “${name}” created.`,
-    made_next: "Next, import scans here, and give people roles: account menu, People.",
+    made_next: "Next, import scans here. To assign roles, open the account menu and choose People.",
     describe: "Rename and describe…",
     describe_title: (name: string) => `Project “${name}”`,
-    describe_lead: (path: string) => `The address stays ${path}, so that links keep working.`,
+    describe_lead: (path: string) =>
+      `The address remains ${path}, so that existing links keep working.`,
     require_version: "Scripts must send the version that they change",
     require_version_hint:
-      "Scripts then cannot overwrite the changes of others: the server refuses a change without a version (HTTP If-Match, 428). This page always sends it.",
+      "Scripts can then no longer overwrite changes by others: the server refuses changes without a version (HTTP If-Match, 428). This page always sends a version.",
     changed: (name: string) =>
-      `Somebody else has changed this project; its name is now “${name}”. Save again to overwrite it.`,
+      `Somebody else has changed this project. Its name is now “${name}”. Save again to overwrite their changes.`,
     delete_title: (name: string) => `Delete the project “${name}”?`,
     delete_lead:
-      "Its roles and its activity are deleted, too. Links to it stop working. This cannot be undone.",
+      "Its roles and its activity list are also deleted. Links to the project stop working. This cannot be undone.",
     delete_tables_lead: (n: number) =>
       n === 1
         ? "Its table is deleted with all records and their history:"
         : `Its ${count(n, "table", "tables")} are deleted with all records and their history:`,
-    type_name: (name: string) => `Type “${name}” to delete them`,
-    kept_title: (name: string) => `“${name}” still has models`,
+    type_name: (name: string) => `Type “${name}” to confirm`,
+    kept_title: (name: string) => `“${name}” still contains models`,
     kept_lead: (n: number) =>
-      `Only an empty project can be deleted, so that no scan is lost by accident. Delete ${n === 1 ? "its model first, from the model's menu" : `its ${count(n, "model", "models")} first, each from its menu`}.`,
-    kept_by_bin_title: (name: string) => `The Trash of “${name}” has models`,
+      `Only an empty project can be deleted, so that no scan is lost by accident. First delete ${n === 1 ? "its model from the model's menu" : `its ${count(n, "model", "models")}, each from its menu`}.`,
+    kept_by_bin_title: (name: string) => `The Trash of “${name}” contains models`,
     kept_by_bin_lead:
       "Only an empty project can be deleted, so that no scan is lost by accident. Restore the models in its Trash, or delete them there permanently.",
   },
@@ -203,11 +206,11 @@ export const texts = {
   demo: {
     open: "Reset the demo…",
     title: "Reset the demo",
-    lead: "The demo pot is created again as it was at first. Everything that people painted, drew or wrote on it is erased, and cannot be restored. Other models and tables of the project stay.",
+    lead: "The demo pot is reset to its original state. Everything that people painted, drew or wrote on it is erased permanently. Other models and tables of the project are kept.",
     reset: "Reset",
     making: "Creating the demo…",
-    failed: "The demo was not created. Try again.",
-    done: "The demo is as it was at first.",
+    failed: "The demo could not be created. Try again.",
+    done: "The demo was reset.",
   },
 
   bin: {
@@ -229,7 +232,7 @@ export const texts = {
     restore_of: (name: string) => `Restore ${name}`,
     restored: (name: string) => `“${name}” was restored.`,
     restored_as: (name: string, before: string, now: string) =>
-      `“${name}” was restored. Its short name is now ${now}, because ${before} is taken.`,
+      `“${name}” was restored. Its short name is now ${now}, because ${before} is already in use.`,
     erase: "Delete permanently",
     erase_of: (name: string) => `Delete ${name} permanently`,
     erase_title: (name: string) => `Delete “${name}” permanently?`,
@@ -260,10 +263,10 @@ export const texts = {
     import: "Import a scan",
     into: "Import into",
     drop_title: "Drop to import",
-    drop_lead: "PLY, OBJ, STL, glTF or zip, with its pictures, or a folder",
+    drop_lead: "A PLY, OBJ, STL, glTF or zip file with its pictures, or a folder",
     empty_title: "No models yet",
     empty_lead:
-      "Drag a scan onto this page, or choose its files: PLY, OBJ, STL or glTF, with its material and picture files, as a folder or zipped. It stays on your own server.",
+      "Drag a scan onto this page, or choose its files: PLY, OBJ, STL or glTF with material and picture files, as a folder or a zip file. The scan stays on your own server.",
     choose_file: "Choose a file",
     open: (name: string) => `Open ${name}`,
     options: (name: string) => `Options for ${name}`,
@@ -272,7 +275,8 @@ export const texts = {
     deleted: (name: string) => `“${name}” was deleted.`,
     triangles: (n: number) => count(n, "triangle", "triangles"),
     empty_viewer: "There are no scans yet. Curators of the project can import them.",
-    empty_guest: "You see only projects in which you have a role. Ask an administrator for one.",
+    empty_guest:
+      "You can see only projects in which you have a role. Ask an administrator for a role.",
     count: (n: number) => count(n, "model", "models"),
     no_picture: "No picture",
     scale_open: "Size not confirmed",
@@ -294,7 +298,7 @@ export const texts = {
     dismiss: (name: string) => `Dismiss the note about ${name}`,
     open: "Open",
     wrong_kind: (name: string) =>
-      `“${name}” is not a supported format. Export the scan as PLY, OBJ, STL, glTF, GLB or a zip of one, then drop it here.`,
+      `“${name}” is not in a supported format. Export the scan as PLY, OBJ, STL, glTF or GLB (also in a zip file), then drop it here.`,
     left_out: (n: number, name: string) =>
       n === 1
         ? `“${name}” was ignored.`
@@ -317,7 +321,7 @@ export const texts = {
     zoom_in: "Zoom in",
     zoom_out: "Zoom out",
     next_light: "Next light",
-    next_section: "Section: next axis, then off",
+    next_section: "Section: switch to the next axis or turn off",
     next_view: "Next saved view",
     previous_view: "Previous saved view",
     panel: "Show or hide the side panel",
@@ -357,7 +361,7 @@ export const texts = {
       loops: (n: number, length: string, longest: string) =>
         n === 1
           ? `1 loop, ${length}`
-          : `${count(n, "loop", "loops")}, ${length} together; the longest ${longest}`,
+          : `${count(n, "loop", "loops")}, ${length} in total; the longest is ${longest}`,
       repairs: "Repaired on import",
       smallest: "Smallest detail, standard layer",
     },
@@ -412,7 +416,7 @@ export const texts = {
       "They stay in this browser and are sent when the server is reachable again. Keep the page open, or open the model here again later.",
     left_saved: (model: string) => `All changes of “${model}” are saved now.`,
     lost_with_model: (n: number, model: string) =>
-      `“${model}” was deleted, and ${count(n, "change", "changes")} with it.`,
+      `“${model}” was deleted, so ${count(n, "change", "changes")} could not be saved.`,
     discarded: (n: number) =>
       `${count(n, "change", "changes")} of the previous user stay in this browser until that user opens the model here again.`,
     taken_up: (n: number) => `${count(n, "earlier change was", "earlier changes were")} sent again`,
@@ -427,7 +431,8 @@ export const texts = {
       "The server was updated, or the connection was lost. Reload the page. Unsaved changes are kept.",
     reload: "Reload",
     lost: "Connection lost. Trying again…",
-    kept: (n: number) => `${count(n, "change is", "changes are")} stored here and will be sent.`,
+    kept: (n: number) =>
+      `${count(n, "change is", "changes are")} stored in this browser and will be sent.`,
     retry: "Retry now",
     back: "Reconnected.",
   },
@@ -435,7 +440,8 @@ export const texts = {
   people: {
     you: "you",
     role_now: (role: string) => `Your role is now ${role.toLowerCase()}.`,
-    here: (n: number) => (n === 1 ? "Only you are here" : `${n} people are here`),
+    here: (n: number) =>
+      n === 1 ? "Only you have this model open" : `${n} people have this model open`,
   },
 
   together: {
@@ -458,7 +464,7 @@ export const texts = {
       n === 0 ? "nobody follows yet" : `${count(n, "person follows", "people follow")}`,
     invites: (name: string) => `${name} invites you to follow`,
     accept: "Follow",
-    left: (name: string) => `${name} left. You control the view again.`,
+    left: (name: string) => `${name} left the model. You control the view again.`,
     refused: (name: string) => `${name} cannot be followed`,
   },
 
@@ -487,13 +493,13 @@ export const texts = {
     fill: "Fill the whole surface",
     fill_title: (layer: string) => `Fill all of “${layer}”?`,
     fill_lead: (what: string) =>
-      `The whole surface gets “${what}”. Existing paint is replaced. You can undo this.`,
-    hidden_layer: (layer: string) => `“${layer}” was hidden. It is visible now.`,
+      `The whole surface is painted with “${what}”. This replaces existing paint. You can undo this.`,
+    hidden_layer: (layer: string) => `“${layer}” was hidden. It is now visible.`,
     bad_value: "Enter a number.",
     out_of_range: (min: string, max: string) => `Enter a number from ${min} to ${max}.`,
-    whole_number: "This layer takes whole numbers only.",
+    whole_number: "This layer can store only whole numbers.",
     not_connected: "Not connected. You can paint again when the server is reachable.",
-    too_much_waits: "Too many unsaved changes. You can paint again when the server has caught up.",
+    too_much_waits: "Too many unsaved changes. You can paint again when the server has saved them.",
     record: "Record key",
     find_record: "Record to paint, by name",
     new_record: "New record",
@@ -504,15 +510,15 @@ export const texts = {
   },
 
   terms: {
-    choose: "Term to paint: type to search, use the arrow keys, press Enter to choose",
+    choose: "Term to paint: type to search, move with the arrow keys, press Enter to choose",
     search: "Search terms",
     show_all: "Show all terms",
     tree: "Terms",
     none_found: "No matching terms.",
-    more_found: (n: number) => `and ${formatCount(n)} more: type more letters`,
+    more_found: (n: number) => `and ${formatCount(n)} more: type more letters to find them`,
     empty: "The list has no terms yet.",
     more: (n: number, all: number) =>
-      `The first ${formatCount(n)} of ${formatCount(all)} terms. Search for the others.`,
+      `The list shows the first ${formatCount(n)} of ${formatCount(all)} terms. Use the search to find others.`,
   },
 
   templates: {
@@ -534,7 +540,7 @@ export const texts = {
     new_shape: "New shape from a picture",
     new_hint: "New shape from a picture: choose a file, or drop one here",
     new_title: "New brush shape",
-    lead: "The brush paints the black part. The square becomes as wide as the brush. Everyone on this site can use the shape.",
+    lead: "The brush paints the black part. The square is scaled to the brush width. Everyone on this site can use the shape.",
     preview: "The shape",
     part: "Take the shape from",
     parts: { opaque: "Opaque parts", light: "Light parts", dark: "Dark parts" },
@@ -547,16 +553,16 @@ export const texts = {
     rename_title: (name: string) => `Rename “${name}”`,
     delete_title: (name: string) => `Delete the shape “${name}”?`,
     delete_lead:
-      "It is deleted for everyone on this site. Paint made with it stays, and can be undone.",
+      "It is deleted for everyone on this site. Paint made with it stays and can still be undone.",
     gone: (name: string) => `The shape “${name}” was deleted. The brush is now round.`,
   },
 
   areas: {
     how: {
       polygon:
-        "Click the corners. Click the first one or press Enter to close. Backspace removes the last corner, Escape cancels. Then drag corners to move them, or the small dots between them to add corners.",
-      lasso: "Draw around the area to select.",
-      bucket: "Click a place to fill the area connected to it.",
+        "Click the corners. Click the first corner or press Enter to close the polygon. Backspace removes the last corner, Escape cancels. Then drag corners to move them, or drag the small dots between them to add corners.",
+      lasso: "Draw an outline around the area to select.",
+      bucket: "Click a point to fill the area connected to it.",
     },
     does: "Action",
     paints: "Paint",
@@ -564,14 +570,14 @@ export const texts = {
     through: "Paint through to the back",
     reach: "Extent",
     connected: "Same value",
-    connected_hint: "The connected area with the same value, or without one",
+    connected_hint: "The connected area with the same value or with no value",
     island: "Whole piece",
     island_hint: "The whole connected piece of the object",
     changed: (area: string) => `${area} changed.`,
     nothing_changed: "Nothing changed there.",
     where: "Fill where…",
     where_title: (layer: string) => `Fill “${layer}” where…`,
-    where_lead: "Changes the surface wherever this condition is true. You can undo this.",
+    where_lead: "Changes the layer wherever this condition is true. You can undo this.",
     condition: "Condition",
     apply: "Fill",
     apply_erase: "Erase",
@@ -579,7 +585,7 @@ export const texts = {
 
   selection: {
     title: "Selection",
-    keys: "Enter fills the selection, Escape discards it. Shift adds an outline, Alt subtracts one, both intersect.",
+    keys: "Enter fills the selection, Escape discards it. Hold Shift to add an outline, Alt to subtract it, or both to intersect it.",
     measuring: "Measuring…",
     nothing: "Nothing selected",
     share: (share: string) => `${share} of the surface`,
@@ -591,13 +597,14 @@ export const texts = {
       replace: "Replaces the selection",
       add: "Adds to the selection (Shift)",
       subtract: "Removes from the selection (Alt)",
-      intersect: "Keeps what both have in common (Shift + Alt)",
+      intersect: "Keeps the area that both have in common (Shift + Alt)",
     },
     delete_corner: "Delete corner",
     fill: "Fill",
     erase: "Erase",
     discard: "Discard selection",
-    full: (n: number) => `A selection can have ${n} outlines. Fill it, or discard it.`,
+    full: (n: number) =>
+      `A selection can have at most ${n} outlines. Fill or discard the selection.`,
     in_layer: (layer: string) => `In ${layer}`,
     painted: "painted",
     mean: "mean",
@@ -608,10 +615,10 @@ export const texts = {
   maps: {
     menu: "Paint from a file…",
     title: (layer: string) => `Paint “${layer}” from a file`,
-    lead: "Measured values (CSV), a map with areas (GeoJSON, shapefile), a raster (GeoTIFF), an orthophoto or a scanned map (TIFF, PNG, JPEG). You can undo this.",
+    lead: "Choose measured values (CSV), a map with areas (GeoJSON, shapefile), a raster (GeoTIFF), an orthophoto or a scanned map (TIFF, PNG, JPEG). You can undo this.",
     file: "File, or files that belong together",
     file_hint:
-      "For a shapefile, choose its .shp and .dbf (and .prj, .cpg), or a zip of them. For a picture, add its world file if there is one.",
+      "For a shapefile, choose its .shp and .dbf files (and .prj and .cpg), or a zip file of them. For a picture, also choose its world file if it has one.",
     unknown: (file: string) =>
       `“${file}” is not supported. Choose .csv, .geojson, .shp with .dbf, .tif, .png, .jpg or .zip.`,
     looking: "Reading the file…",
@@ -622,11 +629,11 @@ export const texts = {
     bounds: (x0: string, x1: string, y0: string, y1: string) =>
       `x from ${x0} to ${x1}, y from ${y0} to ${y1}`,
     readings_hint:
-      "The first line names the columns x, y, z and value, in the model's coordinates and unit. Paint outside the radius stays.",
-    radius: "Radius around each place",
+      "The first line must name the columns x, y, z and value. Use the model's coordinates and unit. Paint outside the radius stays.",
+    radius: "Radius around each point",
     tolerance: "Largest distance from the surface",
     vertices_hint:
-      "One number per line, in the order of the scan's vertices. They replace everything in the layer.",
+      "The file must contain one number per line, in the order of the scan's vertices. The numbers replace all values of the layer.",
     source: "Vertices of",
     attribute: "Each area gets",
     one_value: "the same value",
@@ -634,16 +641,16 @@ export const texts = {
     attribute_text: (name: string) => `${name} (name of a class)`,
     samples: (values: string) => `For example ${values}`,
     names_need_legend:
-      "Names need a layer with classes. Choose such a layer, or an attribute with numbers.",
+      "Names require a layer with classes. Choose such a layer, or an attribute with numbers.",
     names_become: "Names that match a class get that class. Other names become new classes.",
     names: "Class names from",
     no_names: "none",
-    picture_gives: "Each place gets",
+    picture_gives: "Each point gets",
     modes: { luminance: "Brightness", band: "Number", colors: "By color" },
     mode_hints: {
       luminance: "The brightness of the picture, 0 to 255.",
-      band: "The number in the raster. Places without a number stay as they are.",
-      colors: "The value of the color. Places with ignored colors stay as they are.",
+      band: "The number in the raster. Points without a number stay as they are.",
+      colors: "The value of the color. Points with ignored colors stay as they are.",
     },
     band: "Band",
     color: "Color",
@@ -652,12 +659,13 @@ export const texts = {
     left_out: "ignored",
     value_of: (color: string) => `Value of ${color}`,
     color_tolerance: "Color tolerance",
-    color_tolerance_hint: "Larger for faded or noisy scans, smaller for similar colors.",
-    colors_wrong: "Enter a number for every color in use, and use at least one.",
+    color_tolerance_hint:
+      "Use a larger value for faded or noisy scans, a smaller value for similar colors.",
+    colors_wrong: "Enter a number for each color in use. Use at least one color.",
     bad_tolerance: (least: number, most: number) => `Enter a number from ${least} to ${most}.`,
     world: "The six numbers of its world file (.tfw, .pgw, .jgw)",
     world_known: "The file contains its position.",
-    world_wrong: "Enter the six numbers of the picture's world file. They give its position.",
+    world_wrong: "Enter the six numbers of the picture's world file. They define its position.",
     crs: {
       question: (crs: string) =>
         `The map is in ${crs}, but this model has no coordinate system. Are the model's coordinates in ${crs}?`,
@@ -681,7 +689,7 @@ export const texts = {
   orthophoto: {
     open: "Add an orthophoto…",
     title: "Orthophoto as a surface image",
-    lead: "Projects a picture along an axis onto the surface visible from there. The result is a surface image that you can show, hide and blend.",
+    lead: "Projects a picture along an axis onto the surface that is visible in this direction. The result is a surface image that you can show, hide and blend.",
     file: "Picture, with its world file if there is one",
     name: "Name",
     add: "Add",
@@ -698,7 +706,7 @@ export const texts = {
     lead: (file: string) =>
       `“${file}” replaces all values of the layer. Use a file that was saved from a layer of this model. You can undo this.`,
     replace: "Replace",
-    same: "The layer has the same content already.",
+    same: "The layer already has this content.",
     unknown: (file: string) => `“${file}” is not a raster for this layer`,
     known: "Choose a .tif, .png or .npy file of the layer's size.",
   },
@@ -737,7 +745,7 @@ export const texts = {
     more: "More about layers",
     empty_title: "No layers yet",
     empty_lead:
-      "A layer records one property of the surface: where cracks are, which material it is, how moist it is.",
+      "A layer records one property of the surface, such as the position of cracks, the material or the moisture.",
     show: (name: string) => `Show ${name}`,
     hide: (name: string) => `Hide ${name}`,
     select: (name: string) => `Paint on ${name}`,
@@ -746,7 +754,7 @@ export const texts = {
     opacity_of: (name: string) => `Opacity of ${name}`,
     up: "Move up",
     down: "Move down",
-    drag: (name: string) => `Drag ${name} to another place`,
+    drag: (name: string) => `Drag ${name} to another position`,
     edit: "Edit…",
     delete: "Delete…",
     statistics: "Areas…",
@@ -769,15 +777,15 @@ export const texts = {
     widen: "Allow more records…",
     widen_title: (layer: string) => `Allow more records in “${layer}”?`,
     widen_lead: (highest: number) =>
-      `The layer stores keys up to ${formatCount(highest)}. Afterwards it stores all keys and uses more memory. Its paint and history stay.`,
+      `The layer can store keys up to ${formatCount(highest)}. Afterwards it can store all keys, but uses more memory. Its paint and history are kept.`,
     widen_yes: "Allow",
-    widened: "The layer now stores all keys.",
+    widened: "The layer can now store all keys.",
     saved_default: "Your current view is now the default for everyone.",
     personal: "Your layers differ from the default.",
     delete_title: (name: string) => `Delete the layer “${name}”?`,
     delete_lead: "Its paint and its history are deleted.",
     deleted_by_other: (name: string) => `The layer “${name}” was deleted.`,
-    created: (name: string) => `Layer “${name}” is ready to paint.`,
+    created: (name: string) => `Layer “${name}” is ready for painting.`,
     no_labels: "Numbered classes",
     more_classes: (n: number) => `and ${formatCount(n)} more`,
     class_number: (n: number) => `Class ${n}`,
@@ -796,11 +804,11 @@ export const texts = {
     kinds: {
       mean_curvature: {
         title: "Curvature",
-        lead: "Positive where the surface is convex, negative where it is concave: tool marks, reliefs, worn letters.",
+        lead: "Positive where the surface is convex, negative where it is concave. Shows tool marks, reliefs and worn letters.",
       },
       gaussian_curvature: {
         title: "Gaussian curvature",
-        lead: "Positive on bumps and hollows, negative on saddles, 0 where the surface could be unrolled flat.",
+        lead: "Positive on bumps and hollows, negative on saddles, 0 where the surface could be flattened without stretching.",
       },
       max_curvature: {
         title: "Ridges",
@@ -812,13 +820,13 @@ export const texts = {
       },
       roughness: {
         title: "Roughness",
-        lead: "Distance of the surface from its best-fit plane: separates worn from fresh, smooth from tooled.",
+        lead: "Distance of the surface from its best-fit plane. Separates worn from fresh surfaces, and smooth from tooled surfaces.",
       },
       ambient_occlusion: {
         title: "Ambient occlusion",
-        lead: "How much of the surroundings each place can see: 1 in the open, 0 in deep cavities.",
+        lead: "How much of the surroundings is visible from each point: 1 in the open, 0 in deep cavities.",
       },
-      height: { title: "Height", lead: "Above the lowest point, along the up direction." },
+      height: { title: "Height", lead: "Height above the lowest point, along the up direction." },
       slope: { title: "Slope", lead: "0° is flat, 90° is vertical, more is an overhang." },
       azimuth: {
         title: "Facing direction",
@@ -826,15 +834,15 @@ export const texts = {
       },
       boundary_distance: {
         title: "Distance to the edge",
-        lead: "To the nearest open edge of the mesh: the rim of a fragment, a hole.",
+        lead: "Distance to the nearest open edge of the mesh, such as the rim of a fragment or a hole.",
       },
       model_distance: {
         title: "Distance to another model",
-        lead: "Positive where material was added, negative where it was removed: two states of one excavation or object.",
+        lead: "Positive where material was added, negative where it was removed. Compares two states of one excavation or object.",
       },
       vertex_property: {
         title: "Values from the scan's file",
-        lead: "A number that the scanning software stored for each point: quality, confidence, intensity.",
+        lead: "A number that the scanning software stored for each point, such as quality, confidence or intensity.",
       },
     },
     radius: "Within a radius of",
@@ -845,7 +853,7 @@ export const texts = {
     rays_hint: "More rays give smoother values and take longer",
     bad_rays: (least: number, most: number) =>
       `Enter a whole number of rays from ${least} to ${most}.`,
-    absolute: "Use the site's coordinate instead of the height above the lowest point",
+    absolute: "Use the elevation in site coordinates instead of the height above the lowest point",
     model: "To the surface of",
     property: "Property",
     bad_length: "Enter a length larger than 0, in millimeters.",
@@ -857,19 +865,19 @@ export const texts = {
   transfer: {
     open: "Transfer layers…",
     title: "Transfer layers from another scan",
-    lead: "For a new scan of the same object: each place gets the value of the nearest place on the other scan. The other scan is not changed.",
+    lead: "Use this for a new scan of the same object. Each point gets the value of the nearest point on the other scan. The other scan is not changed.",
     from: "From",
     layers: "Layers",
     no_models: "There is no other model.",
     no_layers: "That model has no layers.",
     tolerance: "The scans differ by at most",
-    tolerance_hint: "Places farther from the other surface stay empty.",
+    tolerance_hint: "Points farther from the other surface stay empty.",
     angle: "Largest angle between the surfaces",
     angle_hint: "Separates the two sides of a thin wall. Use a larger angle for rough scans.",
     bad_angle: "Enter an angle from 1 to 180 degrees.",
     start: "Transfer",
     job: (model: string) => `Layers from “${model}”`,
-    matched: (share: string) => `${share} of this surface has a counterpart.`,
+    matched: (share: string) => `${share} of this surface has a counterpart on the other scan.`,
     layer: "Layer",
     brought: "Transferred",
     lost: "Lost",
@@ -901,7 +909,7 @@ export const texts = {
     further: "Each new record gets its own color.",
     without: "No value",
     no_values: "No record has a value in this column yet.",
-    unclassified: (n: number) => `${count(n, "record has", "records have")} rarer values.`,
+    unclassified: (n: number) => `${count(n, "record has", "records have")} less common values.`,
     without_count: (n: number) => `${count(n, "record has", "records have")} no value.`,
     only_me: "Only for me",
     everyone: "For everyone",
@@ -921,7 +929,7 @@ export const texts = {
     into: "Add files to",
     pattern: "File name pattern",
     pattern_hint:
-      "Each {word} stands for some characters. The one named like the column identifies the record.",
+      "Each {word} matches one or more characters. The word with the name of the column identifies the record.",
     matched: (n: number) => `${count(n, "file matches", "files match")} a record`,
     unmatched: (n: number) => `${count(n, "file has", "files have")} no match`,
     duplicates: (n: number) => `${count(n, "file is", "files are")} already attached`,
@@ -929,7 +937,7 @@ export const texts = {
       pattern: "Does not match the pattern",
       record: "No such record",
       several: "Matches several records",
-      attached: "The record has a file of this name",
+      attached: "The record already has a file with this name",
       twice: "Duplicate file name",
     },
     more: (n: number) => `and ${formatCount(n)} more`,
@@ -948,8 +956,8 @@ export const texts = {
     draw_hint: "Saves the record and opens the drawing tool on the model",
     remove: (what: string) => `Remove ${what}`,
     how: {
-      line: "Drag along the surface, or click places and finish with a double click or Enter. The length is shown at the end of the line. Backspace removes the last place, Escape cancels.",
-      point: "Click its position.",
+      line: "Drag along the surface, or click points and finish with a double click or Enter. The length is shown at the end of the line. Backspace removes the last point, Escape cancels.",
+      point: "Click the position of the point.",
     },
     into: "Column",
     no_column: {
@@ -958,11 +966,11 @@ export const texts = {
         "Points belong to records. Choose a layer whose table has a point column, or add such a column.",
     },
     line_cut: (pieces: number) => `The line crossed an edge and was split into ${pieces} pieces.`,
-    line_drawn: (length: string, record: string) => `${length} drawn for “${record}”.`,
+    line_drawn: (length: string, record: string) => `Line of ${length} drawn for “${record}”.`,
     point_set: (record: string) => `Point set for “${record}”.`,
-    missed: "No surface there.",
+    missed: "There is no surface at this point.",
     changed_since:
-      "The table has changed since. Remove the line or point in the record's form, or undo step by step in the table.",
+      "The table has changed since then. Remove the line or point in the record's form, or undo the changes step by step in the table.",
   },
 
   comments: {
@@ -997,11 +1005,11 @@ export const texts = {
     heading: "Comment",
     thread: (user: string) => `Comment by ${user}`,
     text: "Comment",
-    text_hint: "Write about this place. Mention someone with @name",
+    text_hint: "Write a comment about this place. Type @name to mention someone",
     reply_text: "Reply",
     reply_hint: "Reply",
     about: "About",
-    about_nothing: "the place",
+    about_nothing: "this place",
     about_is: (what: string) => `About ${what}`,
     record_of: (record: string, layer: string) => `${record} (${layer})`,
     send: "Comment",
@@ -1018,8 +1026,8 @@ export const texts = {
     link: "Link to this comment",
     names: "People you can mention",
     too_long: (most: number) => `A comment can have at most ${formatCount(most)} characters.`,
-    missed: "No surface there.",
-    missing: "Comment not found. It was deleted, or you cannot see it.",
+    missed: "There is no surface at this point.",
+    missing: "Comment not found. It was deleted, or it is not visible to you.",
     said: (user: string, text: string) => `New comment by ${user}: ${text}`,
     mentioned: (user: string) => `${user} mentioned you`,
     show: "Show",
@@ -1031,9 +1039,9 @@ export const texts = {
     end: "Stop requiring review",
     asked: "Paint by annotators is hatched until a curator accepts it.",
     asked_of_you: "Your paint is hatched until a curator accepts it.",
-    waiting: (n: number) => `${count(n, "stroke waits", "strokes wait")} for review.`,
+    waiting: (n: number) => `${count(n, "stroke is", "strokes are")} waiting for review.`,
     none: "Nothing to review.",
-    none_of_you: "None of your strokes wait for review.",
+    none_of_you: "None of your strokes is waiting for review.",
     failed: "The review list could not be loaded.",
     accept: "Accept",
     reject: "Reject",
@@ -1043,7 +1051,7 @@ export const texts = {
     reason: "Reason (shown to the author)",
     look: "Show the author's view",
     stroke: (what: string, name: string) => `${what}, ${name}`,
-    more: (n: number) => `${formatCount(n)} more appear when you have decided on these.`,
+    more: (n: number) => `${formatCount(n)} more will appear after you accept or reject these.`,
     ops: {
       stroke: "stroke",
       fill: "fill",
@@ -1060,13 +1068,13 @@ export const texts = {
       accept: (user: string, layer: string) => `${user} accepted your paint on ${layer}`,
       reject: (user: string, layer: string) => `${user} rejected your paint on ${layer}`,
       reopen: (user: string, layer: string) =>
-        `Your paint on ${layer} waits for review again (${user})`,
+        `${user} reopened the review of your paint on ${layer}`,
     },
   },
 
   steps: {
     title: "Your steps",
-    lead: "A click goes back or forward to a step.",
+    lead: "Click a step to go back or forward to it.",
     none: "You have no steps on this model that you can undo.",
     failed: "Your steps could not be loaded.",
     before_first: "Before your first step",
@@ -1082,13 +1090,13 @@ export const texts = {
     },
     walking: (n: number, of: number) => `Step ${n} of ${of}`,
     stop: "Stop",
-    elsewhere: "Your steps changed in the meantime. The list shows them as they are now.",
+    elsewhere: "Your steps changed in the meantime. The list shows the current steps.",
     refused: (n: number, of: number) => `Stopped after ${n} of ${count(of, "step", "steps")}`,
   },
 
   past: {
     title: "History",
-    lead: "Move the handle to see the model as it was.",
+    lead: "Move the handle to see an earlier state of the model.",
     close: "Close the history",
     failed: "The history could not be loaded.",
     none: "Nothing has been painted on this model yet.",
@@ -1103,19 +1111,19 @@ export const texts = {
     speed: "Speed",
     previous: "Previous edit",
     next: "Next edit",
-    closer: "Show a shorter time",
-    farther: "Show a longer time",
+    closer: "Show a shorter period",
+    farther: "Show a longer period",
     edits: (n: number) => count(n, "edit", "edits"),
     others: (n: number) => count(n, "other", "others"),
     compare: "Compare",
-    compare_hint: "Show then next to now",
-    divider: "Divider between then and now",
+    compare_hint: "Show the earlier state next to the current state",
+    divider: "Divider between the earlier and the current state",
     restore: "Restore…",
     layer: "Layer",
     no_layer: "There is no layer that you can change.",
     part: "Only a part",
-    draw_part: "Draw a line around the part in the picture. Escape: the whole layer.",
-    same: "The layer is the same now.",
+    draw_part: "Draw a line around the part in the picture. Press Escape to use the whole layer.",
+    same: "The layer has not changed since then.",
     changes: (area: string, share: string) =>
       `The restore changes ${area} (${share} of the surface).`,
     restore_now: "Restore",
@@ -1129,7 +1137,7 @@ export const texts = {
     since_compare: "Compare",
     restored_hint: "You can undo this.",
     saving_first: "Your last changes are still being saved. Try again in a moment.",
-    paint_refused: "You are looking at an earlier state. Go back to now to paint.",
+    paint_refused: "You are viewing an earlier state. To paint, choose “Back to now”.",
   },
 
   activity: {
@@ -1182,7 +1190,7 @@ export const texts = {
       "project changed": "changed the project",
       "records delete": "deleted records of",
       "records import": "imported records into",
-      "records template": "filled from a template",
+      "records template": "used a template to fill",
       "records attach": "added files to records of",
       "records detach": "removed files from records of",
       "records restore": "restored records of",
@@ -1220,7 +1228,7 @@ export const texts = {
       content: "content",
       palette: "colors",
       opacity: "opacity",
-      visible: "visibility by default",
+      visible: "default visibility",
       draw_order: "order",
       group_name: "group",
       blend: "blending mode",
@@ -1246,7 +1254,7 @@ export const texts = {
     title: "Records",
     none: "No layer has a table.",
     none_more:
-      "Layers of objects with records have a table: one record for each object, such as a find or a stone, with its values, terms and photos.",
+      "Layers of objects with records have a table. It contains one record for each object, such as a find or a stone, with its values, terms and photos.",
     chosen: "Selected record",
   },
   tables: {
@@ -1268,7 +1276,7 @@ export const texts = {
     nothing_matches: "No matching records.",
     on_model: "On the model",
     light_up: "Highlight selected records on the model",
-    light_up_hint: "Without a selection, all records that match the filter.",
+    light_up_hint: "If no records are selected, all records that match the filter are highlighted.",
     isolate: "Hide all other records",
     fly: "Zoom to these records",
     nothing_here: "These records have no area, line or point on this model",
@@ -1308,7 +1316,7 @@ export const texts = {
       period: "1560~, 1560/1580, -0043",
       url: "https://",
     } as Partial<Record<string, string>>,
-    bad_number: "Enter a number. Use a point for decimals.",
+    bad_number: "Enter a number. Use a point as the decimal separator.",
     bad_whole: "Enter a whole number.",
     bad_date: "Enter a complete date.",
     correct: "Correct",
@@ -1321,15 +1329,16 @@ export const texts = {
     edited_by: (user: string) => `${user} is editing this.`,
     edited_elsewhere: "You are editing this in another window.",
     taken_over: (user: string) =>
-      `${user} took this over. Your text was not saved. You can copy it here.`,
+      `${user} took over editing. Your text was not saved. You can copy it here.`,
     taken_elsewhere:
-      "You took this over in another window. Your text was not saved. You can copy it here.",
+      "You took over editing in another window. Your text was not saved. You can copy it here.",
     written: "Your text",
     take_over: "Take over",
-    take_over_title: (record: string) => `Take over “${record}”?`,
+    take_over_title: (record: string) => `Take over editing “${record}”?`,
     take_over_lead: (user: string) =>
-      `${user} is editing it. They get a notice, and can copy their unsaved text.`,
-    take_over_own: "You are editing it in another window. You can copy the unsaved text there.",
+      `${user} is editing this record. They will be notified and can copy their unsaved text.`,
+    take_over_own:
+      "You are editing this record in another window. You can copy the unsaved text there.",
     now_is: (value: string) => `Current value: ${value}. Saving overwrites it.`,
     changed_meanwhile: (user: string) =>
       `${user} has changed this record. Check it again, then save.`,
@@ -1374,9 +1383,9 @@ export const texts = {
     save_turtle: "Save the terms as SKOS (Turtle)",
     title: "Import a term list",
     more_title: (list: string) => `Terms for “${list}”`,
-    lead: "SKOS (Turtle, N-Triples or RDF/XML), the format of published thesauri, or CSV with the columns code, parent, label, label-es (or another language), definition, uri, color and pattern. Only code is required.",
+    lead: "Choose SKOS (Turtle, N-Triples or RDF/XML), the format of published thesauri, or CSV with the columns code, parent, label, label-es (or another language), definition, uri, color and pattern. Only code is required.",
     more_lead:
-      "SKOS or CSV. Existing terms are matched by URI or code and updated; their paint stays. Others are added. You can undo this.",
+      "Choose a SKOS or CSV file. Existing terms are matched by URI or code and updated. Their paint stays. Other terms are added. You can undo this.",
     file: "File with terms",
     name: "Name of the list",
     name_missing: "Enter a name for the list.",
@@ -1414,8 +1423,8 @@ export const texts = {
     look_delete_lead: "The image is deleted for everyone. This cannot be undone.",
     no_looks: "No surface images.",
     no_looks_more:
-      "A surface image is a picture in the model's own texture coordinates: its colors, or the same surface under UV light or in infrared. Add a JPEG, PNG, TIFF, WebP, BMP or TGA.",
-    too_many_looks: (n: number) => `A view shows at most ${n} surface images. Hide one first.`,
+      "A surface image is a picture in the model's texture coordinates, such as its colors or the surface under UV light or in infrared. Add a JPEG, PNG, TIFF, WebP, BMP or TGA file.",
+    too_many_looks: (n: number) => `A view can show at most ${n} surface images. Hide one first.`,
     light: "Light",
     lights: { museum: "Museum", headlight: "Headlight", raking: "Raking", unlit: "None" },
     light_hints: {
@@ -1431,16 +1440,16 @@ export const texts = {
     raking_layers: "Layers",
     raking_layers_hint: "Opacity of all layers in raking light, so that relief stays visible",
     light_direction: "Light direction",
-    light_pad_hint: "Drag, or use the arrow keys. Near the rim the light rakes the surface.",
+    light_pad_hint: "Drag, or use the arrow keys. Near the rim, it becomes raking light.",
     light_from: (from: number, above: number) =>
       `From ${Math.round(from / 30) % 12 || 12} o'clock, ${above}° high`,
     section: "Section",
     sections: { off: "Off", x: "X", y: "Y", z: "Z", box: "Box" },
     section_hints: {
       off: "Show the whole model",
-      x: "Cut across the X axis",
-      y: "Cut across the Y axis",
-      z: "Cut across the Z axis",
+      x: "Cut perpendicular to the X axis",
+      y: "Cut perpendicular to the Y axis",
+      z: "Cut perpendicular to the Z axis",
       box: "Show only the inside of a box",
     },
     section_of_view: (planes: number) =>
@@ -1461,7 +1470,7 @@ export const texts = {
     keep: "Save view…",
     none: "No saved views yet.",
     none_more:
-      "Save the camera with its layers, light and section under a name, for others, a report or a tour.",
+      "Save the camera with its layers, light and section under a name, to share it or to use it in a report or a tour.",
     none_viewer: "Annotators can save views.",
     failed: "The views could not be loaded.",
     more: (n: number) => `Show ${formatCount(n)} more`,
@@ -1470,7 +1479,7 @@ export const texts = {
     back: "Back to my view",
     keep_title: "Save view",
     keep_lead:
-      "Saves camera, section, light, surface images and layers for everyone. Later paint appears in the view, too.",
+      "Saves camera, section, light, surface images and layers for everyone. Later paint also appears in the view.",
     keep_yes: "Save",
     kept: (name: string) => `View “${name}” saved.`,
     name: "Name",
@@ -1483,7 +1492,7 @@ export const texts = {
     describe: "Rename and describe…",
     describe_title: (name: string) => `View “${name}”`,
     changed: (name: string) =>
-      `Somebody else has changed this view; its name is now “${name}”. Save again to overwrite it.`,
+      `Somebody else has changed this view. Its name is now “${name}”. Save again to overwrite their changes.`,
     replace: "Update to current view",
     replaced: (name: string) => `“${name}” now shows the current view.`,
     undo: "Undo",
@@ -1511,7 +1520,7 @@ export const texts = {
     pick: "Pick a face…",
     pick_again: "Pick another face…",
     pick_title: "Pick a face",
-    pick_lead: "Click the face to view it straight on. Drag to orbit, Escape goes back.",
+    pick_lead: "Click a face to view it straight on. Drag to orbit. Press Escape to go back.",
     pick_middle: "Use the middle of the view",
     no_face: "Pick a face first.",
     scale: "Scale",
@@ -1537,7 +1546,7 @@ export const texts = {
       tiff: "For publishers and archives",
     },
     written: { title: "Title", caption: "Caption", credit: "Credit" },
-    caption_hint: "West wall, state of spring",
+    caption_hint: "West wall, condition in spring",
     credit_hint: "Author, owner and license",
     legend: "Legend of the visible layers",
     continued: "(continued)",
@@ -1549,9 +1558,9 @@ export const texts = {
     preview: (paper: string, from: string, scale: string) =>
       `Preview of the sheet: ${paper}, seen from: ${from}, scale: ${scale}`,
     preview_hint:
-      "Coarse preview. The figure shows one state of the layers, even while others paint.",
+      "This is a coarse preview. The figure shows one state of the layers, even while others paint.",
     drawing: "Drawing…",
-    see_field: "Some settings are not valid. See the message at the field.",
+    see_field: "Some settings are not valid. See the message next to the field.",
     unsure: "The size of this model is not confirmed, so the scale of the figure may be wrong.",
     unsure_ask: "Ask a curator to check it.",
     make: "Create figure",
@@ -1581,7 +1590,7 @@ export const texts = {
     name_hint: "Once around the pot",
     text: "Description",
     idle: "Restart when idle for",
-    idle_hint: "After this time without a touch the tour restarts and plays automatically.",
+    idle_hint: "After this time without a touch, the tour restarts and plays automatically.",
     languages: "Languages",
     first_language: "default",
     language_add: "Add a language",
@@ -1623,8 +1632,8 @@ export const texts = {
     transitions: { move: "Fly", cut: "Cut" },
     transition_takes: "Duration of the flight",
     swipe: "Layers to swipe between",
-    swipe_hint: "Visitors swipe between the layers. They see only public layers.",
-    layer_names: "Names of these layers for visitors. They are saved with the layer at once.",
+    swipe_hint: "Visitors can swipe between the layers. They can see only public layers.",
+    layer_names: "Names of these layers for visitors. Changes are saved with the layer at once.",
     layer_name: (layer: string, language: string) => `${layer} in ${language}`,
     layer_add: "Add a layer",
     records: "Records",
@@ -1633,7 +1642,8 @@ export const texts = {
     table_remove: (table: string) => `Remove ${table}`,
     no_tables: "The project has no tables.",
     keys_of: (table: string) => `Records of ${table}`,
-    keys_none: "None selected: visitors see the card of the record they touch on the model.",
+    keys_none:
+      "If no records are selected, visitors see the card of the record that they touch on the model.",
     columns: "On the card",
     columns_of: (table: string) => `Columns of ${table} on the card`,
     column_add: "Add a column",
@@ -1647,7 +1657,7 @@ export const texts = {
     accent: "Buttons",
     color_default: "Default color",
     background_wrong: (now: string, needed: string) =>
-      `Text on this background has a contrast of ${now}:1 and needs ${needed}:1. Choose another background, or the other room.`,
+      `Text on this background has a contrast of ${now}:1 and needs ${needed}:1. Choose another background, or change “Room”.`,
     accent_wrong: (now: string, needed: string) =>
       `Buttons on this background have a contrast of ${now}:1 and need ${needed}:1. Choose another color.`,
     font: "Headings",
@@ -1659,11 +1669,11 @@ export const texts = {
     preview_button: "Touch to begin",
     media: "Pictures, sound and video",
     media_hint:
-      "Visitors open them by a touch. Nothing plays automatically. JPEG, PNG, WebP; MP3, M4A, WAV, FLAC, Ogg; MP4, WebM.",
+      "Visitors touch a file to open it. Nothing plays automatically. Formats: JPEG, PNG, WebP; MP3, M4A, WAV, FLAC, Ogg; MP4, WebM.",
     media_add: "Add pictures, sounds or videos",
     media_gone: "Deleted file",
     file_kinds: { picture: "Picture", sound: "Sound", video: "Video", subtitles: "Subtitles" },
-    files_after_save: "Save the tour once before you add files.",
+    files_after_save: "Save the tour first, then add files.",
     sending: (name: string, percent: number) => `Uploading ${name}: ${percent} %`,
     caption: "Caption",
     alt: "Description for screen readers",
@@ -1679,14 +1689,14 @@ export const texts = {
       title_missing: "Enter a title in the default language.",
     },
     wrong_seconds: (least: number, most: number) =>
-      `Enter seconds from ${formatCount(least)} to ${formatCount(most)}.`,
+      `Enter a number of seconds from ${formatCount(least)} to ${formatCount(most)}.`,
     conflict:
-      "Somebody else has changed this tour. Your changes are still here: save again to overwrite theirs.",
+      "Somebody else has changed this tour. Your changes are still here. Save again to overwrite the other changes.",
     take_theirs: "Show their version",
     theirs_title: "Show their version?",
-    gone: "This tour was deleted. Save again to create it as a new one.",
+    gone: "This tour was deleted. Save again to create it as a new tour.",
     leave_title: "Close without saving?",
-    leave_lead: "Your changes of this tour will be lost.",
+    leave_lead: "Your changes to this tour will be lost.",
     leave_yes: "Close without saving",
     saved: (name: string) => `Tour “${name}” saved.`,
   },
@@ -1696,7 +1706,7 @@ export const texts = {
     of_tour: "Kiosk links…",
     title: "Kiosks",
     title_of: (tour: string) => `Kiosks with “${tour}”`,
-    lead: "Screens that show a tour by a link. Create new links from the menu of a tour.",
+    lead: "These screens open a link to show a tour. You can create new links from the menu of a tour.",
     lead_of:
       "Anyone with this link can see this tour and the public parts of its model, without an account. They cannot change anything.",
     none: "No kiosk links yet.",
@@ -1708,9 +1718,9 @@ export const texts = {
     days: "Valid for",
     days_unit: "days",
     days_hint: "no limit",
-    days_lead: "Without a number, the link is valid until you revoke it.",
+    days_lead: "If you leave this field empty, the link is valid until you revoke it.",
     days_wrong: (least: number, most: number) =>
-      `Enter a whole number of days from ${formatCount(least)} to ${formatCount(most)}, or leave it empty.`,
+      `Enter a whole number of days from ${formatCount(least)} to ${formatCount(most)}, or leave the field empty.`,
     phones: "QR code for visitors' phones",
     phones_hint:
       "Visitors can open the tour on their own phones. They see what this screen shows, until you switch this off or revoke the link.",
@@ -1718,7 +1728,7 @@ export const texts = {
     make: "Create link",
     link: (name: string) => `Link for “${name}”`,
     link_lead:
-      "Open it once in the browser of the screen. The link is shown only once: copy it now. If you lose it, revoke it and create a new one.",
+      "Open it once in the browser of the screen. The link is shown only once: copy it now. If you lose the link, revoke it and create a new one.",
     link_done: "Done",
     states: {
       running: "running",
@@ -1736,10 +1746,10 @@ export const texts = {
     made_by: (user: string, day: string) => `created by ${user}, ${day}`,
     reload: "Reload",
     reload_of: (name: string) => `Reload ${name}`,
-    reload_asked: "If the screen is running, it reloads within half a minute.",
+    reload_asked: "If the screen is running, it reloads within 30 seconds.",
     revoke: "Revoke…",
-    revoke_of: (name: string) => `Revoke the link of ${name}`,
-    revoke_title: (name: string) => `Revoke the link of “${name}”?`,
+    revoke_of: (name: string) => `Revoke the link for ${name}`,
+    revoke_title: (name: string) => `Revoke the link for “${name}”?`,
     revoke_lead: "The screen stops showing the tour at once. This cannot be undone.",
     revoke_yes: "Revoke",
   },
@@ -1772,22 +1782,22 @@ export const texts = {
       turn: {
         title: "Orbit the model",
         mouse:
-          "Drag with the right mouse button, or with the left one while Orbit is active. Scroll to zoom.",
+          "Drag with the right mouse button, or with the left button while Orbit is active. Scroll to zoom.",
         touch: "Drag with a finger to orbit. Use two fingers to pan, zoom and rotate.",
       },
       layers: {
         title: "Layers",
-        way: "This button opens them.",
+        way: "This button opens the list of layers.",
         paint:
-          "Layers record properties of the surface. Select a layer to paint on it. The eye shows and hides it.",
-        look: "Layers record properties of the surface. Select a layer to see its legend. The eye shows and hides it.",
+          "Layers record properties of the surface. Select a layer to paint on it. Click the eye to show or hide it.",
+        look: "Layers record properties of the surface. Select a layer to see its legend. Click the eye to show or hide it.",
       },
       brush: {
         title: "Paint",
         mouse:
-          "Choose the brush (B) and drag over the model. Press [ and ] for a narrower or wider brush. Each stroke is saved at once, and others see it while you draw.",
+          "Choose the brush (B) and drag over the model. Press [ or ] for a narrower or wider brush. Each stroke is saved at once, and others can see it while you draw.",
         touch:
-          "Choose the brush and draw on the model with a finger or a pen. Two fingers still pan and zoom. Each stroke is saved at once, and others see it while you draw.",
+          "Choose the brush and draw on the model with a finger or a pen. You can still pan and zoom with two fingers. Each stroke is saved at once, and others can see it while you draw.",
       },
       undo: {
         title: "Undo",
@@ -1799,13 +1809,13 @@ export const texts = {
       values: {
         title: "Read values",
         mouse:
-          "Rest the pointer on the model: the lower right corner shows the values of the layers there. Use this tool (I), or click while Orbit is active, to open the record.",
+          "Rest the pointer on the model to see the values of the layers in the lower right corner. To open the record, use this tool (I), or click while Orbit is active.",
         touch:
           "Choose this tool and tap the model to read the value of the selected layer and open its record.",
       },
       share: {
         title: "Share and get help",
-        text: "Send the address of this page to share the model. View → Views saves a view with its own link. Help lists all keys and gestures, and starts this tour again.",
+        text: "Send the address of this page to share the model. Use View → Views to save a view with its own link. Help lists all keys and gestures, and can start this tour again.",
       },
     },
   },
@@ -1848,7 +1858,7 @@ export const texts = {
     other_status_detail: "Try again. If the problem persists, contact the administrator.",
     unreadable: "The server's answer could not be read",
     unreadable_detail: (what: string) =>
-      `${what}. Reload the page. If the problem persists, the page and the server have different versions.`,
+      `${what}. Reload the page. If the problem persists, the page and the server may have different versions.`,
   },
 
   problems: {

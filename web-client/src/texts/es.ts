@@ -74,7 +74,7 @@ export const texts = {
     lead: (role) =>
       `Tiene una invitación a este servidor con el rol «${role}». Elija una contraseña para iniciar sesión.`,
     groups: (groups) => `Sus grupos: ${groups}.`,
-    lead_again: "Elija una contraseña nueva. Hasta entonces sirve la anterior.",
+    lead_again: "Elija una contraseña nueva. Hasta que la guarde, sirve la anterior.",
     user: "Nombre de usuario",
     full_name: "Nombre completo",
     password: "Contraseña",
@@ -225,11 +225,11 @@ export const texts = {
   demo: {
     open: "Restablecer la demostración…",
     title: "Restablecer la demostración",
-    lead: "La vasija de demostración se crea de nuevo como al principio. Todo lo que se pintó, dibujó o escribió en ella se borra y no se puede recuperar. Los demás modelos y tablas del proyecto se conservan.",
+    lead: "La vasija de demostración vuelve a su estado original. Todo lo que se pintó, dibujó o escribió en ella se borra definitivamente. Los demás modelos y tablas del proyecto se conservan.",
     reset: "Restablecer",
     making: "Creando la demostración…",
     failed: "No se creó la demostración. Inténtelo de nuevo.",
-    done: "La demostración está como al principio.",
+    done: "La demostración se ha restablecido.",
   },
 
   bin: {
@@ -339,7 +339,7 @@ export const texts = {
     zoom_in: "Acercar",
     zoom_out: "Alejar",
     next_light: "Luz siguiente",
-    next_section: "Sección: eje siguiente y, al final, ninguna",
+    next_section: "Sección: pasar al eje siguiente o desactivar",
     next_view: "Vista guardada siguiente",
     previous_view: "Vista guardada anterior",
     panel: "Mostrar u ocultar el panel lateral",
@@ -458,7 +458,8 @@ export const texts = {
   people: {
     you: "usted",
     role_now: (role) => `Su rol es ahora «${role}».`,
-    here: (n) => (n === 1 ? "Solo está usted aquí" : `${n} personas están aquí`),
+    here: (n) =>
+      n === 1 ? "Solo usted tiene abierto este modelo" : `${n} personas tienen abierto este modelo`,
   },
 
   together: {
@@ -623,7 +624,7 @@ export const texts = {
     fill: "Rellenar",
     erase: "Borrar",
     discard: "Descartar la selección",
-    full: (n) => `Una selección puede tener ${n} contornos. Rellénela o descártela.`,
+    full: (n) => `Una selección puede tener como máximo ${n} contornos. Rellénela o descártela.`,
     in_layer: (layer) => `En ${layer}`,
     painted: "pintado",
     mean: "media",
@@ -878,7 +879,8 @@ export const texts = {
     rays: "Rayos por punto",
     rays_hint: "Con más rayos, los valores son más suaves y el cálculo tarda más",
     bad_rays: (least, most) => `Introduzca un número entero de rayos, de ${least} a ${most}.`,
-    absolute: "Usar la coordenada del yacimiento en lugar de la altura sobre el punto más bajo",
+    absolute:
+      "Usar la cota en coordenadas del yacimiento en lugar de la altura sobre el punto más bajo",
     model: "A la superficie de",
     property: "Propiedad",
     bad_length: "Introduzca una longitud mayor que 0, en milímetros.",
@@ -903,7 +905,7 @@ export const texts = {
     bad_angle: "Introduzca un ángulo de 1 a 180 grados.",
     start: "Transferir",
     job: (model) => `Capas de «${model}»`,
-    matched: (share) => `El ${share} de esta superficie tiene correspondencia.`,
+    matched: (share) => `El ${share} de esta superficie tiene correspondencia en el otro escaneo.`,
     layer: "Capa",
     brought: "Transferido",
     lost: "Perdido",
@@ -1360,7 +1362,7 @@ export const texts = {
       "Ha tomado el control en otra ventana. Su texto no se ha guardado. Puede copiarlo aquí.",
     written: "Su texto",
     take_over: "Tomar el control",
-    take_over_title: (record) => `¿Tomar el control de «${record}»?`,
+    take_over_title: (record) => `¿Tomar el control de la edición de «${record}»?`,
     take_over_lead: (user) =>
       `${user} lo está editando. Recibirá un aviso y podrá copiar el texto que no haya guardado.`,
     take_over_own:
@@ -1692,7 +1694,7 @@ export const texts = {
     accent: "Botones",
     color_default: "Color predeterminado",
     background_wrong: (now, needed) =>
-      `El texto sobre este fondo tiene un contraste de ${now}:1 y necesita ${needed}:1. Elija otro fondo o la otra sala.`,
+      `El texto sobre este fondo tiene un contraste de ${now}:1 y necesita ${needed}:1. Elija otro fondo o cambie «Sala».`,
     accent_wrong: (now, needed) =>
       `Los botones sobre este fondo tienen un contraste de ${now}:1 y necesitan ${needed}:1. Elija otro color.`,
     font: "Títulos",
@@ -1708,7 +1710,7 @@ export const texts = {
     media_add: "Añadir imágenes, sonidos o vídeos",
     media_gone: "Archivo eliminado",
     file_kinds: { picture: "Imagen", sound: "Sonido", video: "Vídeo", subtitles: "Subtítulos" },
-    files_after_save: "Guarde el recorrido una vez antes de añadir archivos.",
+    files_after_save: "Guarde primero el recorrido y después añada archivos.",
     sending: (name, percent) => `Subiendo ${name}: ${percent} %`,
     caption: "Pie de imagen",
     alt: "Descripción para lectores de pantalla",
@@ -1753,7 +1755,7 @@ export const texts = {
     days: "Válido durante",
     days_unit: "días",
     days_hint: "sin límite",
-    days_lead: "Sin un número, el enlace es válido hasta que lo revoque.",
+    days_lead: "Si deja este campo vacío, el enlace es válido hasta que lo revoque.",
     days_wrong: (least, most) =>
       `Introduzca un número entero de días, de ${formatCount(least)} a ${formatCount(most)}, o déjelo vacío.`,
     phones: "Código QR para los teléfonos de los visitantes",
@@ -1781,7 +1783,7 @@ export const texts = {
     made_by: (user, day) => `creado por ${user}, ${day}`,
     reload: "Recargar",
     reload_of: (name) => `Recargar ${name}`,
-    reload_asked: "Si la pantalla está en marcha, se recargará en menos de medio minuto.",
+    reload_asked: "Si la pantalla está en marcha, se recargará en menos de 30 segundos.",
     revoke: "Revocar…",
     revoke_of: (name) => `Revocar el enlace de ${name}`,
     revoke_title: (name) => `¿Revocar el enlace de «${name}»?`,

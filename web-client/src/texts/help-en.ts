@@ -17,18 +17,18 @@ export const help = {
     ["One finger", "use the active tool"],
     ["Tap (Orbit, Pan)", "open the record there"],
     ["Two fingers", "drag to pan, pinch to zoom, twist to rotate"],
-    ["Tap with Measure", "set a place; drag to orbit"],
-    ["Pen", "use the active tool; hand and fingers are ignored while the pen is near"],
+    ["Tap with Measure", "set a point; drag to orbit"],
+    ["Pen", "use the active tool; your hand and fingers are ignored while the pen is near"],
     ["One finger after using a pen", "orbit, even with a paint or drawing tool"],
   ],
   tool_keys: "While a tool is active",
   tool_rows: [
     ["Enter · Backspace · Escape", "finish the polygon or line · remove the last corner · cancel"],
-    ["C, then click", "comment there; Enter: in the middle of the view"],
+    ["C, then click", "comment on that point; Enter: on the middle of the view"],
     ["Ctrl + Enter · Escape", "send the comment · close it and keep the draft"],
     [
       "M, then click",
-      "measure lengths, areas and profiles; M again: a place in the middle; Enter finishes, Escape clears",
+      "measure lengths, areas and profiles; M again: a point in the middle; Enter finishes, Escape clears",
     ],
     ["I, then click", "on a layer with records: open the record there and paint with it"],
   ],
@@ -38,7 +38,7 @@ export const help = {
     ["Enter, F2, or click again", "edit the cell; on the key: open the record's form"],
     [
       "Letters and digits",
-      "type into text cells; digits also into numbers, dates and times; in other cells they are shortcuts of the page, such as T, D and V; after Escape always",
+      "type into text cells; digits also into number, date and time cells; in other cells, and after Escape in all cells, use shortcuts of the page such as T, D and V",
     ],
     [
       "Funnel of a column",
@@ -50,19 +50,19 @@ export const help = {
     ["Ctrl + Z · Ctrl + Shift + Z", "undo · redo your table changes"],
     [
       "A column's ⋯ → Change",
-      "rename it, also in other languages; each user sees the language of their browser",
+      "rename it, also in other languages; each user sees the name in the language of their browser",
     ],
-    ["Drop a CSV", "preview the changes, then import; on a term list also SKOS"],
+    ["Drop a CSV file", "preview the changes, then import them; term lists also accept SKOS"],
   ],
   brush: "Brush options",
   brush_rows: [
     [
       "Shape",
-      "round, square, or a picture: choose + or drop a PNG or JPEG next to the shapes; everyone on the site shares them",
+      "round, square, or a picture: choose + or drop a PNG or JPEG next to the shapes; everyone on the site can use them",
     ],
     [
       "Skip surfaces tilted more than",
-      "leaves out surfaces at a flat angle to your view; orbit to paint them",
+      "skips surfaces that you see at a low angle; orbit to paint them",
     ],
     ["Paint through to the back", "also paints hidden surfaces"],
   ],
@@ -82,7 +82,7 @@ export const help = {
     ],
     [
       "Layers ⋯ → Import a term list",
-      "CSV or SKOS (Turtle, RDF/XML) with a preview; update and export a list in its table's ⋯",
+      "CSV or SKOS (Turtle, RDF/XML) with a preview; update and export a list from its table's ⋯",
     ],
     [
       "A layer's ⋯ → Paint from a file",
@@ -97,10 +97,13 @@ export const help = {
       "New layer → From an expression",
       "values computed from other layers, their records and the surface",
     ],
-    ["New layer → From the shape", "values computed from the mesh: curvature, slope, distances"],
+    [
+      "New layer → From the shape",
+      "values computed from the mesh, such as curvature, slope or distances",
+    ],
     [
       "Layers ⋯ → Transfer layers",
-      "paint of an earlier scan of the object, with a report of what was lost",
+      "transfer paint from an earlier scan of the object, with a report of losses",
     ],
     [
       "View → Tours",

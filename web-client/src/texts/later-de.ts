@@ -195,7 +195,7 @@ export const laterTexts = {
     table_of_records: (table, n) => `${table} (${count(n, "Datensatz", "Datensätze")})`,
     formula: "Aus einem Ausdruck",
     formula_lead:
-      "Berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche: Risiko = Feuchte × Salz.",
+      "Berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche. Beispiel: Risiko = Feuchte × Salz.",
     formula_hint: "Risiko",
     expression: "Ausdruck: eine Zahl oder eine Bedingung (kartiert, wo sie wahr ist)",
     expression_missing: "Geben Sie einen Ausdruck ein.",
@@ -239,7 +239,7 @@ export const laterTexts = {
   },
   measure: {
     title: "Messen",
-    how: "Klicken oder tippen Sie Punkte auf der Oberfläche an. Ziehen dreht das Modell, auch zwischen zwei Punkten. M setzt einen Punkt in die Mitte der Ansicht.",
+    how: "Klicken oder tippen Sie Punkte auf der Oberfläche an. Ziehen dreht das Modell, auch während Sie Punkte setzen. M setzt einen Punkt in die Mitte der Ansicht.",
     how_on:
       "Ein Klick auf den letzten Punkt oder Enter beendet die Linie. Die Rücktaste entfernt den letzten Punkt, Esc löscht alle.",
     how_anew: "Beendet. Klicken oder tippen Sie, um eine neue Linie zu beginnen.",
@@ -289,7 +289,7 @@ export const laterTexts = {
   },
   snapshots: {
     title: "Schnappschüsse",
-    name_now: "Jetzigen Stand benennen…",
+    name_now: "Aktuellen Stand benennen…",
     name_then: "Diesen Stand benennen…",
     none: "Noch kein Stand dieses Modells hat einen Namen.",
     failed: "Die Schnappschüsse konnten nicht geladen werden.",

@@ -192,7 +192,7 @@ export const laterTexts = {
     table_of_records: (table, n) => `${table} (${count(n, "registro", "registros")})`,
     formula: "A partir de una expresión",
     formula_lead:
-      "Calculada a partir de otras capas, sus registros y la superficie: riesgo = humedad × sal.",
+      "Calculada a partir de otras capas, sus registros y la superficie. Ejemplo: riesgo = humedad × sal.",
     formula_hint: "Riesgo",
     expression: "Expresión: un número o una condición (se pinta donde se cumple)",
     expression_missing: "Introduzca una expresión.",
@@ -235,7 +235,7 @@ export const laterTexts = {
   },
   measure: {
     title: "Medir",
-    how: "Haga clic o toque puntos de la superficie. Arrastre para girar, también entre dos puntos. Pulse M para poner un punto en el centro de la vista.",
+    how: "Haga clic o toque puntos de la superficie. Arrastre para girar, también mientras pone puntos. Pulse M para poner un punto en el centro de la vista.",
     how_on:
       "Haga clic en el último punto o pulse Intro para terminar. Retroceso quita el último punto, Esc lo borra todo.",
     how_anew: "Línea terminada. Haga clic o toque para empezar otra.",
@@ -284,7 +284,7 @@ export const laterTexts = {
   },
   snapshots: {
     title: "Instantáneas",
-    name_now: "Dar nombre al estado de ahora…",
+    name_now: "Dar nombre al estado actual…",
     name_then: "Dar nombre a este estado…",
     none: "Ningún estado de este modelo tiene nombre todavía.",
     failed: "No se han podido cargar las instantáneas.",

@@ -41,11 +41,11 @@ Result<GltfDocument::Form> GltfDocument::form(std::uint64_t accessor,
   form.normalized =
       normalized != found->end() && normalized->is_boolean() && normalized->get<bool>();
   if (bytes_of_component(form.component_type) == 0)
-    return refuse_file(name_of_accessor(accessor, what) + " holds " +
+    return refuse_file(name_of_accessor(accessor, what) + " contains " +
                        name_of_component(form.component_type) + ", which glTF does not define.");
   if (form.components == 0)
-    return refuse_file(name_of_accessor(accessor, what) + " holds elements of type \"" +
-                       shape.substr(0, 20) + "\", which is not used for this.");
+    return refuse_file(name_of_accessor(accessor, what) + " contains elements of type \"" +
+                       shape.substr(0, 20) + "\", which are not allowed here.");
   return form;
 }
 
@@ -62,19 +62,21 @@ Result<GltfDocument::Layout> GltfDocument::layout(std::uint64_t accessor, const 
   if (!source.contains("bufferView")) {  // zeros, for sparse values to change
     std::uint64_t most = kZerosAlways;
     for (const auto& file : files_->all()) most += file.bytes.size();
-    if (form->count > most) return refuse_file(name + " has more values than the file can hold.");
+    if (form->count > most)
+      return refuse_file(name + " has more values than the file can contain.");
     return layout;
   }
   const auto index = STRATA_TRY(whole_number(source, "bufferView"));
   const auto bytes = STRATA_TRY(view(index));
   if (bytes.stride != 0) layout.stride = bytes.stride;
-  if (layout.stride < size) return refuse_file(name + " has a stride smaller than its values.");
+  if (layout.stride < size)
+    return refuse_file(name + " has a stride that is smaller than its values.");
   const std::uint64_t room = bytes.bytes.size(), count = form->count;
   if (offset > room ||
       (count > 0 && (room - offset < size || (room - offset - size) / layout.stride < count - 1)))
     return refuse_file(
-        name + " announces " + std::to_string(count) +
-        " values, but its buffer view ends before them: the file is cut short or damaged.");
+        name + " declares " + std::to_string(count) +
+        " values, but its buffer view ends before them: the file is incomplete or damaged.");
   layout.bytes = bytes.bytes.subspan(offset);
   return layout;
 }
@@ -99,8 +101,9 @@ Result<void> GltfDocument::for_each_element(std::uint64_t accessor, const std::s
     if (!*number) return tl::unexpected(number->error());
   const int type = static_cast<int>(std::min<std::uint64_t>(*index_type, 1u << 30));
   if (!is_index_type(type))
-    return refuse_file(name + " counts its sparse values in " + name_of_component(type) +
-                       "; glTF has unsigned whole numbers there.");
+    return refuse_file(name + " uses " + name_of_component(type) +
+                       " as indices of its sparse values, but glTF requires unsigned whole "
+                       "numbers.");
   const auto index_bytes = view(*index_view), value_bytes = view(*value_view);
   if (!index_bytes) return tl::unexpected(index_bytes.error());
   if (!value_bytes) return tl::unexpected(value_bytes.error());
@@ -148,7 +151,7 @@ Result<std::vector<std::uint32_t>> GltfDocument::indices(std::uint64_t accessor)
   const int type = layout->form.component_type;
   if (layout->form.components != 1 || !is_index_type(type))
     return refuse_file(name_of_accessor(accessor, "indices") +
-                       " does not hold unsigned whole numbers.");
+                       " does not contain unsigned whole numbers.");
   std::vector<std::uint32_t> indices(layout->form.count);
   const auto put = [&](std::uint64_t i, const std::uint8_t* from) {
     indices[i] = stored_index(from, type);

@@ -93,7 +93,7 @@ Result<void> GltfDocument::read_container() {
       return refuse_file("The GLB ends within its header: the file is incomplete.");
     if (little_endian(file, 4) != 2)
       return refuse_file("The version of the GLB is " + std::to_string(little_endian(file, 4)) +
-                         ". The server reads version 2 only.");
+                         ". The server can read only version 2.");
     const std::uint64_t length = little_endian(file, 8);
     if (length > file.size())
       return refuse_file("The GLB should have " + std::to_string(length) + " bytes, but has " +
@@ -103,7 +103,7 @@ Result<void> GltfDocument::read_container() {
       const std::uint64_t size = little_endian(file, at), type = little_endian(file, at + 4);
       if (size > length - at - 8)
         return refuse_file("A chunk of the GLB should have " + std::to_string(size) +
-                           " bytes, but " + std::to_string(length - at - 8) + " are left.");
+                           " bytes, but only " + std::to_string(length - at - 8) + " are left.");
       if (type == kJsonChunk && text.empty()) text = file.subspan(at + 8, size);
       if (type == kBinaryChunk && !has_glb_binary_) {
         glb_binary_ = file.subspan(at + 8, size);
@@ -139,7 +139,7 @@ Result<void> GltfDocument::check_version_and_extensions() const {
   for (const json& name : *required) {
     if (!name.is_string())
       return refuse_file(
-          "In the glTF, \"extensionsRequired\" contains something that is not a name.");
+          "In the glTF, \"extensionsRequired\" contains an element that is not a name.");
     const auto& text = name.get_ref<const std::string&>();
     const bool known =
         text.starts_with("KHR_materials_") ||
@@ -155,8 +155,8 @@ Result<const json*> GltfDocument::element(const char* array, std::uint64_t index
   const auto found = json_.find(array);
   const std::size_t size = found != json_.end() && found->is_array() ? found->size() : 0;
   if (index < size && (*found)[index].is_object()) return &(*found)[index];
-  return refuse_file("The glTF refers to number " + std::to_string(index) + " of its \"" + array +
-                     "\", but has " + std::to_string(size) + ".");
+  return refuse_file("The glTF refers to index " + std::to_string(index) + " of \"" + array +
+                     "\", but the number of elements is " + std::to_string(size) + ".");
 }
 
 Result<std::span<const std::uint8_t>> GltfDocument::buffer(std::uint64_t index) {
@@ -184,12 +184,14 @@ Result<std::span<const std::uint8_t>> GltfDocument::buffer(std::uint64_t index) 
     if (!file)
       return refuse_file(
           "The glTF stores its data in \"" + path.substr(0, 200) +
-          "\", but the upload does not contain this file. Send it, too, or export a GLB.");
+          "\", but the upload does not contain this file. Send this file too, or export a GLB "
+          "file.");
     bytes = file->bytes;
   }
   if (length > bytes.size())
     return refuse_file(name + " should have " + std::to_string(length) + " bytes, but has " +
-                       std::to_string(bytes.size()) + ": it is incomplete, or another file.");
+                       std::to_string(bytes.size()) +
+                       ": the file is incomplete, or it is a different file.");
   return bytes.first(length);
 }
 
@@ -209,7 +211,7 @@ Result<GltfDocument::View> GltfDocument::view(std::uint64_t index) {
   const auto bytes = STRATA_TRY(buffer(*buffer_index));
   if (*offset > bytes.size() || *length > bytes.size() - *offset)
     return refuse_file("Buffer view " + std::to_string(index) +
-                       " of the glTF reaches beyond its buffer.");
+                       " of the glTF extends beyond the end of its buffer.");
   return View{bytes.subspan(*offset, *length), *stride};
 }
 
@@ -229,13 +231,13 @@ Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json
     return View{done->second, shape.stride};
   const auto whole = STRATA_TRY(buffer(*buffer_index));
   if (*offset > whole.size() || *length > whole.size() - *offset)
-    return refuse_file(name + " reaches beyond its buffer.");
+    return refuse_file(name + " extends beyond the end of its buffer.");
   auto out =
       decode_meshopt(whole.subspan(*offset, *length),
                      {text_of(extension, "mode"), text_of(extension, "filter"), *count, *stride},
                      kMaxDecoded - decoded_bytes_);
   if (!out)
-    return refuse_file(name + " is not what " + extension_name + " makes: " + out.error() + ".");
+    return refuse_file(name + " is not valid data of " + extension_name + ": " + out.error() + ".");
   decoded_bytes_ += out->size();
   return View{decoded_views_.emplace(index, std::move(*out)).first->second, shape.stride};
 }

@@ -42,11 +42,11 @@ Result<GltfDocument::Values> read_attribute(const draco::Mesh& mesh, const std::
   const draco::DataType stored = attribute->data_type();
   const int components = attribute->num_components(), size = draco::DataTypeLength(stored);
   if (components < 1 || components > 4 || size < 1 || attribute->buffer() == nullptr)
-    return refuse_file("The Draco data of the glTF keeps " + name +
-                       " as a type of number that glTF does not define.");
+    return refuse_file("The Draco data of the glTF stores " + name +
+                       " in a number type that glTF does not define.");
   if (request.form && request.form->components != components)
     return refuse_file("The Draco data of the glTF has " + std::to_string(components) +
-                       " numbers a vertex for " + name + ", but its accessor says " +
+                       " numbers per vertex for " + name + ", but the accessor declares " +
                        std::to_string(request.form->components) + ".");
   const int type = request.form ? request.form->component_type : component_type_of(stored);
   const bool normalized =
@@ -62,8 +62,8 @@ Result<GltfDocument::Values> read_attribute(const draco::Mesh& mesh, const std::
     const std::uint64_t at =
         value.value() < attribute->size() ? attribute->GetBytePos(value) : held;
     if (at > held || held - at < each)
-      return refuse_file("The Draco data of the glTF is damaged: " + name +
-                         " has values that are missing.");
+      return refuse_file("The Draco data of the glTF is damaged: values of " + name +
+                         " are missing.");
     for (int k = 0; k < components; ++k)
       *out++ = static_cast<float>(
           gltf_number(raw_number(bytes + at + k * size, stored), type, normalized));

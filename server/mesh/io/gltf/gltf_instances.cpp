@@ -53,14 +53,14 @@ Result<GltfInstances> GltfInstances::read(GltfDocument& document, const json& no
     const bool allowed =
         form.component_type == kFloat || (part.components == 4 && whole && form.normalized);
     if (form.components != part.components || !allowed)
-      return refuse_file(name + " in the glTF does not hold " + std::to_string(part.components) +
+      return refuse_file(name + " in the glTF does not contain " + std::to_string(part.components) +
                          (part.components == 4
                               ? " numbers of type FLOAT, or of normalized BYTE or SHORT."
                               : " numbers of type FLOAT."));
     if (form.count > kMaxInstances)
-      return refuse_file("The glTF repeats a mesh " + std::to_string(form.count) + " times by " +
-                         kExtension + "; up to " + std::to_string(kMaxInstances) +
-                         " are allowed. Export the parts that you need as meshes.");
+      return refuse_file("The glTF repeats a mesh " + std::to_string(form.count) + " times with " +
+                         kExtension + ". At most " + std::to_string(kMaxInstances) +
+                         " repetitions are allowed. Export the parts that you need as meshes.");
     if (count && *count != form.count)
       return refuse_file(name + " in the glTF has " + std::to_string(form.count) +
                          " values, but another attribute has " + std::to_string(*count) + ".");

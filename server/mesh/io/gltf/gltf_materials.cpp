@@ -36,7 +36,7 @@ class MaterialReader {
     const auto list = document_.root().find("materials");
     if (list == document_.root().end()) return materials;
     if (!list->is_array() || list->size() >= kNoMaterial)
-      return refuse_file("In the glTF, \"materials\" is not a list of fewer than 65535.");
+      return refuse_file("In the glTF, \"materials\" is not a list of fewer than 65535 materials.");
     for (const json& source : *list) {
       if (!source.is_object()) return refuse_file("A material of the glTF is not an object.");
       auto material = STRATA_TRY(read_material(source));

@@ -72,14 +72,14 @@ class PrimitiveReader {
     const int type = form.component_type;
     if (form.components < attribute.least_components || form.components > attribute.most_components)
       return refuse_file(
-          name + " has " + std::to_string(form.components) + " numbers a vertex; " +
+          name + " has " + std::to_string(form.components) + " numbers per vertex; " +
           std::to_string(attribute.least_components) +
           (attribute.is_color ? " or " + std::to_string(attribute.most_components) : "") +
           " are required.");
     const bool is_signed = type == kByte || type == kShort;
     if (type == kUnsignedInt || (attribute.is_color && is_signed))
-      return refuse_file(name + " holds " + name_of_component(type) +
-                         ", which glTF does not allow there. Export it with " +
+      return refuse_file(name + " contains " + name_of_component(type) +
+                         ", which glTF does not allow here. Export it with " +
                          (attribute.is_color ? "UNSIGNED_BYTE, UNSIGNED_SHORT or FLOAT."
                                              : "FLOAT, or with numbers of KHR_mesh_quantization."));
     // Integer colors up to 255 or 65535 have no other meaning.
@@ -156,7 +156,7 @@ class PrimitiveReader {
       if (values.components < attribute.least_components ||
           values.components > attribute.most_components)
         return refuse_file("A primitive of the glTF has " + std::to_string(values.components) +
-                           " numbers a vertex for " + attribute.name + ".");
+                           " numbers per vertex for " + attribute.name + ".");
       if (values.count == count) continue;
       return refuse_file("A primitive of the glTF has " + std::to_string(count) +
                          " positions, but " + std::to_string(values.count) + " values of " +
@@ -165,7 +165,8 @@ class PrimitiveReader {
     for (const std::uint32_t index : primitive_.indices)
       if (index >= count)
         return refuse_file("A triangle of the glTF refers to vertex " + std::to_string(index) +
-                           ", but its primitive has " + std::to_string(count) + ".");
+                           ", but the number of vertices of its primitive is " +
+                           std::to_string(count) + ".");
     return {};
   }
 

@@ -51,9 +51,9 @@ class GltfReader {
   tl::unexpected<Error> nothing_to_see() const {
     const auto meshes = document_.root().find("meshes");
     if (remarks_.points_and_lines > 0)
-      return refuse_file("The glTF contains points or lines only, but no triangles.");
+      return refuse_file("The glTF contains only points or lines, but no triangles.");
     if (remarks_.without_positions > 0)
-      return refuse_file("The meshes of the glTF have no POSITION, and so no triangles.");
+      return refuse_file("The meshes of the glTF have no POSITION and therefore no triangles.");
     if (meshes == document_.root().end() || meshes->empty())
       return refuse_file("The glTF contains no meshes.");
     if (!mesh_shown_)
@@ -173,7 +173,8 @@ class GltfReader {
       const auto index = STRATA_TRY(whole_number(source, "material"));
       if (index >= materials_.size())
         return refuse_file("A primitive of the glTF refers to material " + std::to_string(index) +
-                           ", but there are " + std::to_string(materials_.size()) + ".");
+                           ", but the number of materials is " + std::to_string(materials_.size()) +
+                           ".");
       material = materials_[index];
     }
     const auto primitive =

@@ -172,7 +172,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
                  [](const Request& request, const Target& target) -> Result<room::EditRequest> {
                    auto body = STRATA_TRY(body_of<protocol::Restore>(request));
                    if (body.sequence > target.room->edits().sequence())
-                     return fail(ErrorCode::invalid, "Sequence not reached",
+                     return fail(ErrorCode::invalid, "Sequence out of range",
                                  "The newest sequence of this model is " +
                                      std::to_string(target.room->edits().sequence()) + ".",
                                  "sequence");

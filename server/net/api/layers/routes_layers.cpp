@@ -88,7 +88,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
     return fail(ErrorCode::invalid, "Invalid kind of layer", "A computed layer must be numeric.",
                 "kind");
   if (body.compute && body.expression)
-    return fail(ErrorCode::invalid, "Two computations",
+    return fail(ErrorCode::invalid, "Too many parameters",
                 "Send either `compute` or `expression`, but not both.", "expression");
   if (body.recompute && !body.expression)
     return fail(ErrorCode::invalid, "No expression",
@@ -109,14 +109,14 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
     return fail(ErrorCode::invalid, "Table on a numeric layer",
                 "Only layers of records can have a table.", body.table ? "table" : "columns");
   if (body.table && body.columns)
-    return fail(ErrorCode::invalid, "Table and columns",
+    return fail(ErrorCode::invalid, "Table and columns together",
                 "Send either an existing table or the columns of a new table, but not both.",
                 "columns");
   layer.resolution =
       body.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
   if (layer.resolution < model.atlas.lowest_resolution)
     return fail(ErrorCode::invalid, "Resolution too low",
-                "Layers of this model need at least " +
+                "Layers of this model must have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                 "resolution");
   layer.unit = body.unit;
@@ -126,8 +126,8 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   layer.group = group_of(body.group.value_or(""));
   const bool is_computed = body.compute || body.expression;
   if (is_computed && body.locked == false)
-    return fail(ErrorCode::invalid, "Locked when created",
-                "The server locks a computed layer when it creates it. Unlock the layer "
+    return fail(ErrorCode::invalid, "Lock not allowed",
+                "The server locks computed layers when it creates them. Unlock the layer "
                 "afterwards to edit it by hand.",
                 "locked");
   const bool is_condition = body.expression && !computes_numbers(body);
@@ -259,7 +259,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
     protocol::LayerPatch alone;
     alone.type = body.type;
     if (!(body == alone))
-      return fail(ErrorCode::invalid, "Type with other changes",
+      return fail(ErrorCode::invalid, "Type together with other changes",
                   "Change the type of a layer in a separate request.", "type");
     auto widened =
         room->layers().widen(*layer, *body.type, idempotent_response<Layer>(request, answer));

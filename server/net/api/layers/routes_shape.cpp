@@ -68,12 +68,11 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
   if (!source) return tl::unexpected(source.error());
   if (source->id == target.id)
     return fail(ErrorCode::invalid, "Same model",
-                "A model cannot get layers from itself. Choose the other version of the scan.",
-                "from");
+                "A model cannot get layers from itself. Choose another model.", "from");
   if (!source->crs.empty() && !target.crs.empty() && source->crs != target.crs)
     return fail(ErrorCode::invalid, "Different coordinate systems",
-                "The coordinate system of this model is " + target.crs +
-                    ", that of the other model is " + source->crs +
+                "This model has the coordinate system " + target.crs +
+                    ", but the other model has " + source->crs +
                     ". Transform both scans into one coordinate system and import them again.",
                 "from");
   auto layers =
@@ -175,7 +174,7 @@ Result<std::string> scan_of(const Model& model, const std::string& requested) {
     if (has_order && (requested.empty() || source.name == requested)) scans.push_back(source.name);
   }
   if (scans.size() == 1) return scans.front();
-  return fail(ErrorCode::invalid, "Source file not clear",
+  return fail(ErrorCode::invalid, "Source file not specified",
               scans.empty()
                   ? "This model has no matching PLY or OBJ file for these values."
                   : "Several files of this model have vertices. Specify one of them as `source`.",

@@ -119,11 +119,11 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "`into` paints on a layer. This needs the role annotator.", "into");
+                "`into` paints on a layer. This requires the role annotator.", "into");
   if (!body.where || body.within || body.at || body.changed)
     return fail(ErrorCode::invalid, "Cannot paint this area",
-                "`into` paints where a condition is true now. Send `where`, but none of "
-                "`within`, `changed` and `at`.",
+                "`into` paints where a condition is true now. Send `where` without `within`, "
+                "`changed` and `at`.",
                 "into");
   const auto layer = room.layers().find(protocol::to_ref(body.into->layer));
   if (!layer) {

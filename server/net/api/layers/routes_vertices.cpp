@@ -36,7 +36,7 @@ Result<std::vector<query::LayerView>> layer_views(const Request& request, room::
     for (const query::LayerView& other : views)
       if (other.layer.id == layer.id)
         return fail(ErrorCode::invalid, "Duplicate layer",
-                    "The request contains a layer twice. Send each layer once.", "layers");
+                    "The request contains a layer twice. Send each layer only once.", "layers");
     auto tiles = STRATA_TRY(room.queries().tiles(layer.slug, at));
     views.push_back({layer, std::move(tiles)});
   }

@@ -42,7 +42,7 @@ Result<std::optional<Camera>> read_shown(const RouteContext& context, const Requ
     return body.camera;
   }
   if (body.camera || body.layers || body.looks || body.light)
-    return fail(ErrorCode::invalid, "View with other settings",
+    return fail(ErrorCode::invalid, "View together with other settings",
                 "A figure of a saved view uses the settings of the view. Leave out camera, "
                 "layers, looks and light.",
                 "view");

@@ -143,7 +143,8 @@ Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
   if (!nearest.hit || nearest.distance > farthest)
     return fail(
         ErrorCode::invalid, "Not on the model",
-        "`position` must lie on the surface or within 5 % of the model's diagonal from it, in world coordinates.",
+        "`position` must be in world coordinates. Its distance from the surface must be at most "
+        "5 % of the model's diagonal.",
         "position");
   return Comment::Place{nearest.position, glm::dvec3(nearest.normal)};
 }
@@ -154,7 +155,7 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room,
   if (!body.layer) {
     if (body.record)
       return fail(ErrorCode::invalid, "Record without a layer",
-                  "`record` is a key of a `layer`. Send the `layer`, too.", "layer");
+                  "`record` is the key of a record of a layer. Also send `layer`.", "layer");
     return {};
   }
   const auto layers = STRATA_TRY(find_layers(room, {protocol::to_ref(*body.layer)}, "layer"));
@@ -227,13 +228,13 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
     if (comment.deleted)
       return fail(
           ErrorCode::conflict, "Already deleted",
-          "Somebody deleted this comment. The page shows its place only because it has replies.",
+          "Somebody deleted this comment. The page still shows its place because it has replies.",
           "text");
     comment.text = *body.text;
   }
   if (body.state) {
     if (comment.thread)
-      return fail(ErrorCode::invalid, "State of a reply",
+      return fail(ErrorCode::invalid, "Reply has no state",
                   "Only the first comment of a thread has a state. Change comment " +
                       to_string(*comment.thread) + ".",
                   "state");

@@ -67,7 +67,7 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   if (patch.default_resolution) {
     if (*patch.default_resolution < model.atlas.lowest_resolution)
       return fail(ErrorCode::invalid, "Resolution too low",
-                  "Layers of this model need at least " +
+                  "Layers of this model must have at least " +
                       std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                   "default_resolution");
     model.default_resolution = *patch.default_resolution;

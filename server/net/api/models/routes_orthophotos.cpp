@@ -35,8 +35,8 @@ Result<OrthophotoRequest> orthophoto_request(const Request& request) {
   OrthophotoRequest requested{{}, axis, 0};
   requested.image.name = request.query_or("name", {});
   if (requested.image.name.empty() || requested.image.name.size() > 200)
-    return fail(ErrorCode::invalid, "Name missing",
-                "The name of a surface image must have 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "The name of a surface image must be 1 to 200 bytes long.", "name");
   requested.image.description = request.query_or("description", {});
   if (const std::string text = request.query_or("resolution", {}); !text.empty()) {
     const auto resolution =
@@ -72,7 +72,7 @@ Result<SurfaceImage> bake(room::Room& room, const OrthophotoRequest& requested,
   if (progress.cancelled()) return cancelled_problem();
   if (!tiles) return tl::unexpected(tiles.error());
   if (tiles->empty())
-    return fail(ErrorCode::invalid, "Picture misses the model",
+    return fail(ErrorCode::invalid, "Picture outside the model",
                 "The picture does not cover any part of the model. Check its position, the "
                 "direction and the unit.",
                 "world");
@@ -105,7 +105,7 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
   const Model model = (*room)->model();
   if (requested->resolution != 0 && requested->resolution < model.atlas.lowest_resolution)
     return fail(ErrorCode::invalid, "Resolution too low",
-                "Pictures of this model need at least " +
+                "Pictures of this model must have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                 "resolution");
   const auto files = STRATA_TRY(take_map(request, context.options.upload_dir));

@@ -29,7 +29,7 @@ Result<Response> put_view(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::PersonalView>(request));
   for (std::size_t i = 0; i < body.layers.size(); ++i)
     if (body.layers[i].highlight)
-      return fail(ErrorCode::invalid, "Not saved",
+      return fail(ErrorCode::invalid, "Highlights not allowed",
                   "Only saved views can store highlighted records. Leave them out here.",
                   "layers[" + std::to_string(i) + "].highlight");
   const auto room = STRATA_TRY(open_room(context, request));

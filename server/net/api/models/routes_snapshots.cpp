@@ -46,7 +46,7 @@ Result<NamedPart> find_own_snapshot(const RouteContext& context, const Request& 
     return fail(
         ErrorCode::forbidden, "Not allowed",
         "Only " + snapshot.user +
-            " and curators can change this snapshot. Make your own snapshot of this state.");
+            " and curators can change this snapshot. Create your own snapshot of this state.");
   return snapshot;
 }
 

@@ -49,8 +49,8 @@ Result<SurfaceImage> new_surface_image(const Request& request) {
   SurfaceImage image;
   image.name = request.query_or("name", {});
   if (image.name.empty() || image.name.size() > 200)
-    return fail(ErrorCode::invalid, "Name missing",
-                "The name of a surface image must have 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "The name of a surface image must be 1 to 200 bytes long.", "name");
   image.description = request.query_or("description", {});
   const std::string visible = request.query_or("visible", "false");
   if (visible != "true" && visible != "false")

@@ -107,7 +107,8 @@ Result<Response> steps(const RouteContext& context, const Request& request) {
   const auto after = STRATA_TRY(number_in(request, "after", 0, INT64_MAX));
   const auto limit = STRATA_TRY(number_in(request, "limit", 1, kMaxSteps));
   if (before && after)
-    return fail(ErrorCode::invalid, "Two directions", "Send either `before` or `after`.", "after");
+    return fail(ErrorCode::invalid, "Too many parameters",
+                "Send either `before` or `after`, but not both.", "after");
   const auto model = STRATA_TRY(stored_model(context, request));
   const auto layers = STRATA_TRY(seen_layers(context, request, model));
   const auto found = STRATA_TRY(context.store.journal().timeline_steps(

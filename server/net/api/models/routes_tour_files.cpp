@@ -66,21 +66,22 @@ Result<store::NewTourFile> accepted(const Upload& upload, const std::string& req
   const auto kind = tour_file_kind(file.media_type);
   if (!kind)
     return fail(ErrorCode::unsupported, "Format not accepted",
-                "Browsers do not show or play this file (" + found.media_type + "). " +
+                "Browsers cannot show or play this file (" + found.media_type + "). " +
                     "A tour accepts JPEG, PNG and WebP, MP3, M4A, WAV, FLAC and Ogg, MP4 and WebM, "
                     "and WebVTT.");
   std::error_code unreadable;
   const auto bytes = std::filesystem::file_size(upload.file, unreadable);
   if (unreadable || bytes > max_bytes(*kind))
     return fail(ErrorCode::invalid, "File too large",
-                "A " + std::string(protocol::name(*kind)) + " file of a tour has at most " +
-                    std::to_string(max_bytes(*kind) >> 20) + " MiB.");
+                "A " + std::string(protocol::name(*kind)) + " file of a tour can be at most " +
+                    std::to_string(max_bytes(*kind) >> 20) + " MiB large.");
   if (*kind == Kind::picture && !(file.width && file.height))
     return fail(ErrorCode::invalid, "Picture not readable",
                 "The picture is damaged. Save it again in another program.");
   if (*kind == Kind::picture && std::max(*file.width, *file.height) > kMaxSide)
-    return fail(ErrorCode::invalid, "Picture too large",
-                "The sides of a picture have at most " + std::to_string(kMaxSide) + " pixels.");
+    return fail(
+        ErrorCode::invalid, "Picture too large",
+        "Each side of a picture can be at most " + std::to_string(kMaxSide) + " pixels long.");
   return file;
 }
 
@@ -89,7 +90,7 @@ Result<Response> add_file(const RouteContext& context, const Request& request) {
   const auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir, kTourFile));
   const UploadedFiles cut_out(uploads, request.body_file);
   if (uploads.size() != 1)
-    return fail(ErrorCode::invalid, "Several files", "Send one file at a time.");
+    return fail(ErrorCode::invalid, "Too many files", "Send one file at a time.");
   const auto file = STRATA_TRY(accepted(uploads.front(), request.query_or("name", {})));
   const std::string own = "/api/v1/models/" + request.param("model") + "/tours/" + tour.slug;
   const auto answer = [own](const store::TourFile& made) {

@@ -23,10 +23,10 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   if (const auto before = request.query.find("before"); before != request.query.end()) {
     query.before = place_of(before->second);
     if (!query.before)
-      return fail(
-          ErrorCode::invalid, "Page not found",
-          "`before` must be the value of `next` from an answer, for example 1777896570120000-7.",
-          "before");
+      return fail(ErrorCode::invalid, "Invalid page",
+                  "`before` must be the value of `next` from an earlier response, for example "
+                  "1777896570120000-7.",
+                  "before");
   }
   const auto project = STRATA_TRY(stored_project(context, request));
   if (const auto ref = request.query.find("model"); ref != request.query.end()) {

@@ -128,7 +128,9 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
   const auto kiosk = STRATA_TRY(context.store.kiosks().find(body.link));
   if (!kiosk)
     return fail(ErrorCode::unauthenticated, "Link is not valid",
-                "This link is unknown, expired or revoked. Ask a curator for a new link.", "link");
+                "This link does not exist, has expired or was revoked. Ask a curator for a new "
+                "link.",
+                "link");
   gate.was_right(address, {});
   if (!kiosk->is_phone) STRATA_TRY(context.store.kiosks().seen(kiosk->id, true));
   auto response = self(context, *kiosk, kiosk->is_phone, false);

@@ -94,10 +94,10 @@ Result<Response> invite(const RouteContext& context, const Request& request) {
 Result<Person> somebody_else(const RouteContext& context, const Request& request) {
   auto person = STRATA_TRY(context.store.accounts().find(request.param("user")));
   if (person.name == request.user())
-    return fail(ErrorCode::conflict, "Your own account",
+    return fail(ErrorCode::conflict, "Cannot change your own account",
                 "You cannot change your own account here. Ask another administrator.");
   if (person.role == Role::owner)
-    return fail(ErrorCode::conflict, "Account of the owner",
+    return fail(ErrorCode::conflict, "Cannot change the owner",
                 "Only the owner can change the owner's account.");
   // Otherwise one administrator could sign in as another.
   if (person.role == Role::administrator && request.principal->role < Role::owner)
@@ -139,7 +139,8 @@ Result<Person> invited_by(const RouteContext& context, const std::string& invita
   const auto principal = STRATA_TRY(context.store.tokens().find(invitation));
   if (!principal || principal->kind != TokenKind::invitation)
     return fail(ErrorCode::unauthenticated, "Link is not valid",
-                "This invitation has been used or has expired. Ask for a new one.", "invitation");
+                "This invitation has already been used or has expired. Ask for a new invitation.",
+                "invitation");
   return context.store.accounts().find(principal->user);
 }
 
@@ -158,7 +159,8 @@ Result<Response> accept_invitation(const RouteContext& context, const Request& r
       body.invitation, hash, body.full_name, kSessionLifetime, agent_of(request)));
   if (!session)
     return fail(ErrorCode::unauthenticated, "Link is not valid",
-                "Somebody used this invitation in the meantime. Ask for a new one.", "invitation");
+                "Somebody used this invitation in the meantime. Ask for a new invitation.",
+                "invitation");
   context.auth.forget();
   context.live_sockets.close_user(person.name, kClosePolicy, "the password was changed");
   return signed_in(context, request, *session);

@@ -46,8 +46,8 @@ Result<Response> list_tools(const RouteContext& context, const Request& request)
 Result<std::string> name_of(const Request& request) {
   std::string name = request.query_or("name", {});
   if (name.empty() || name.size() > kMaxToolNameLength)
-    return fail(ErrorCode::invalid, "Name missing", "The name of a tool must have 1 to 200 bytes.",
-                "name");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "The name of a tool must be 1 to 200 bytes long.", "name");
   return name;
 }
 
@@ -90,7 +90,8 @@ Result<Tool> present_tool(const RouteContext& context, const Request& request) {
   auto tool = context.store.tools().find(request.param("tool"));
   if (tool && tool->deleted)
     return fail(ErrorCode::not_found, "Tool deleted",
-                "The tool `" + tool->name + "` is deleted. You can read it, but not change it.");
+                "The tool `" + tool->name +
+                    "` was deleted. You can still read it, but you cannot change it.");
   if (!tool) return tool;
   STRATA_TRY(check_if_match(request, tool->version));
   return tool;

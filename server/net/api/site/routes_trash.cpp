@@ -132,7 +132,7 @@ Result<TrashEntry> find_entry(const RouteContext& context, const Request& reques
                                        sight_of(context, request));
   }
   return fail(ErrorCode::not_found, "Not in the Trash",
-              "The project's Trash has no `" + std::string(ref.substr(0, 100)) + "`.");
+              "The project's Trash does not contain `" + std::string(ref.substr(0, 100)) + "`.");
 }
 
 Result<Response> restore(const RouteContext& context, const Request& request) {

@@ -69,8 +69,9 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   const UploadedFiles cut_out(uploads, request.body_file);
   const std::string name = request.query_or("name", {});
   if (!name.empty() && uploads.size() > 1)
-    return fail(ErrorCode::invalid, "Name for several files",
-                "`name` works for a single file only. In a form, each file has its own name.",
+    return fail(ErrorCode::invalid, "Name given for several files",
+                "You can use `name` only with a single file. In a form, each file has its own "
+                "name.",
                 "name");
   const auto visibility = parse_visibility(request.query_or("visibility", "public"));
   if (!visibility)

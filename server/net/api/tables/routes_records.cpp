@@ -249,7 +249,7 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
                                   const app::RecordPlace& place) {
   auto body = STRATA_TRY(body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes));
   if (body.records && (body.key || body.values))
-    return fail(ErrorCode::invalid, "One record or several",
+    return fail(ErrorCode::invalid, "Too many parameters",
                 "Send either `records`, or the `key` and `values` of a single record.", "records");
   store::WriteRecords write;
   write.may_change = false;
@@ -360,8 +360,8 @@ Result<Response> create_records(const RouteContext& context, const Request& requ
   if (to_lower(request.header("content-type")).starts_with("text/csv"))
     return import_csv(context, request, place);
   if (request.query.contains("dry_run"))
-    return fail(ErrorCode::invalid, "Not for JSON", "`dry_run` works for records in text/csv only.",
-                "dry_run");
+    return fail(ErrorCode::invalid, "Dry run not supported",
+                "You can use `dry_run` only with records in text/csv.", "dry_run");
   return create_from_json(context, request, place);
 }
 
@@ -426,7 +426,8 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   std::optional<std::int64_t> to;
   if ((texels == "reassign") != request.query.contains("to"))
     return fail(ErrorCode::invalid, "Record not specified",
-                "texels=reassign needs `to`, the key that the texels get.", "to");
+                "texels=reassign requires `to`, the key that replaces the old key in the texels.",
+                "to");
   auto place = STRATA_TRY(record_place(context, request));
   const Table& table = place.table;
   if (texels == "reassign") {

@@ -223,7 +223,7 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
     protocol::ColumnPatch alone;
     alone.visibility = body.visibility;
     if (!(body == alone))
-      return fail(ErrorCode::invalid, "Visibility and other changes",
+      return fail(ErrorCode::invalid, "Visibility together with other changes",
                   "Change the visibility of a column in a separate request.", "visibility");
     return show_column(context, request, table, *found, *body.visibility);
   }

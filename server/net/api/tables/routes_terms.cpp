@@ -99,8 +99,8 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
   store::NewTable new_table;
   new_table.table.name = request.query_or("name", {});
   if (new_table.table.name.empty() || new_table.table.name.size() > kMaxListNameLength)
-    return fail(ErrorCode::invalid, "Name missing",
-                "Send the name of the list as `name`, with 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Invalid name",
+                "Send the name of the list as `name`. It must be 1 to 200 bytes long.", "name");
   auto slug = STRATA_TRY(slug_of({}, new_table.table.name));
   new_table.table.slug = slug;
   auto project = STRATA_TRY(stored_project(context, request));
@@ -209,15 +209,16 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   const auto language = STRATA_TRY(requested_language(request));
   auto table = STRATA_TRY(stored_table(context, request));
   if (!term_columns(table))
-    return fail(ErrorCode::conflict, "Not a term list",
-                table.name + " is a table of records, not a term list. Read its `/records`.");
+    return fail(
+        ErrorCode::conflict, "Not a term list",
+        table.name + " is a table of records, not a term list. Request its `/records` instead.");
   store::RecordQuery all;
   all.limit = store::kMaxRecords;
   auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), all));
   const auto columns = term_columns(page.table);
   if (!columns)
     return fail(ErrorCode::conflict, "Not a term list",
-                table.name + " was changed in the meantime.");
+                table.name + " is no longer a term list. Somebody changed it in the meantime.");
   const auto listed = list_terms(*columns, page.records);
   Response response;
   if (format == "json") {

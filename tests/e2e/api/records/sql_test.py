@@ -378,7 +378,7 @@ def test_without_the_option_nobody_listens(server, port):
 def test_command_line(server):
     binary = server.binary
     for listen, code, words in (
-        ("0.0.0.0:5433", 1, "loopback only"),
+        ("0.0.0.0:5433", 1, "only on loopback"),
         ("127.0.0.1:0", 106, "port"),
         ("nonsense", 106, "HOST:PORT"),
     ):

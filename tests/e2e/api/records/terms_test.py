@@ -114,7 +114,7 @@ def test_import_again(server):
     ]
     server.ok("POST", LIST + "/redo")
     for text, line, title in [
-        ("code,parent\nloss,worn\n", 2, "Terms form a circle"),
+        ("code,parent\nloss,worn\n", 2, "Circular hierarchy of terms"),
         ("code,parent\nloss,\nx,y\n", 3, "Parent not found"),
         ("code,color\nloss,\nx,red\n", 3, "Invalid color"),
         ("code\na\na\n", 3, "Duplicate code"),

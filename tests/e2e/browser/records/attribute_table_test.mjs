@@ -371,11 +371,11 @@ test("a painted record that is to be deleted asks what becomes of that", async (
 
 test("a CSV is looked at first: nothing is written while a row is wrong", async () => {
   await drop_csv("finds.csv", "code,depth,note\nSU 1,9,changed\nNew 1,deep,\nNew 1,2,\n");
-  await dialog.getByText('"Depth" holds finite numbers.').waitFor();
+  await dialog.getByText('"Depth" can contain only finite numbers.').waitFor();
   await shot("csv-report");
   assert.ok(await button(words.tables.csv_import).isDisabled());
   await button(words.cancel).click();
-  await dialog.getByText('"Depth" holds finite numbers.').waitFor({ state: "hidden" });
+  await dialog.getByText('"Depth" can contain only finite numbers.').waitFor({ state: "hidden" });
   await drop_csv("finds.csv", "key,code,depth,note\n1,SU 1,9,changed\n,New 1,2,\n");
   await dialog.getByText(words.reports.good).waitFor();
   assert.equal((await record(1)).note, "Charcoal");

@@ -119,7 +119,7 @@ test("a second form of it can be read, but not changed", async () => {
 test("taken over after a question, the other form keeps what was written, to be copied", async () => {
   await note(ada).fill("Mine, and not saved");
   await button(bea, words.tables.take_over).click();
-  await bea.page.getByText("ada is editing it.").waitFor();
+  await bea.page.getByText("ada is editing this record.").waitFor();
   await shoot(bea, "question");
   await agree(bea, words.cancel);
   assert.equal(
@@ -129,7 +129,7 @@ test("taken over after a question, the other form keeps what was written, to be 
   );
   await button(bea, words.tables.take_over).click();
   await agree(bea, words.tables.take_over);
-  await form(ada).getByText("bea took this over.").waitFor();
+  await form(ada).getByText("bea took over editing.").waitFor();
   assert.equal(await note(ada).getAttribute("readonly"), "");
   assert.equal(await note(ada).inputValue(), "Mine, and not saved");
   assert.equal(
@@ -146,7 +146,7 @@ test("taken over after a question, the other form keeps what was written, to be 
 });
 
 test("left by the other it is one's own again: the text is still there, and what was saved meanwhile is told", async () => {
-  await form(ada).getByText("bea took this over.").waitFor({ state: "detached" });
+  await form(ada).getByText("bea took over editing.").waitFor({ state: "detached" });
   assert.equal(await note(ada).inputValue(), "Mine, and not saved");
   await save(ada).click();
   await form(ada).getByText(words.tables.changed_meanwhile("bea")).waitFor();
@@ -182,7 +182,7 @@ test("a cell that is written into is seen, asked for and taken over; its text st
   await bea.page.getByText(words.tables.take_over_title("SU 3")).waitFor();
   await agree(bea, words.tables.take_over);
   await editor(bea).waitFor();
-  await bubble(ada).getByText("bea took this over.").waitFor();
+  await bubble(ada).getByText("bea took over editing.").waitFor();
   assert.equal(await editor(ada).getByRole("textbox").inputValue(), "Half a sen");
   await ada.page.keyboard.press("Enter");
   await mark(ada, 3, "bea").waitFor();
@@ -192,7 +192,7 @@ test("a cell that is written into is seen, asked for and taken over; its text st
   await bea.page.keyboard.type("A whole sentence");
   await bea.page.keyboard.press("Enter");
   await stored(3, "note", "A whole sentence");
-  await bubble(ada).getByText("bea took this over.").waitFor({ state: "detached" });
+  await bubble(ada).getByText("bea took over editing.").waitFor({ state: "detached" });
   await ada.page.keyboard.press("Escape");
   await editor(ada).waitFor({ state: "detached" });
   await mark(bea, 3, "ada").waitFor({ state: "detached" });
