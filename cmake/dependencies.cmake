@@ -1,4 +1,4 @@
-# Finds every library that the project links, once. Modules name the imported targets that they use.
+# Finds every library that the project links. Modules name the imported targets that they use.
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
@@ -34,15 +34,15 @@ pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 pkg_check_modules(PANGOCAIRO REQUIRED IMPORTED_TARGET pangocairo)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 
-# Used as a header only, which one unit compiles for the required formats: the package's library
-# reads more formats.
+# Only the header of the package is used. One unit compiles it for the required formats, because the
+# package's library reads more formats.
 find_path(STB_INCLUDE stb_image.h PATH_SUFFIXES stb REQUIRED)
 add_library(strata_stb INTERFACE)
 target_include_directories(strata_stb SYSTEM INTERFACE ${STB_INCLUDE})
 
-# Raptor's Debian package conflicts with some flavors of libcurl's. On such a machine `./run` and
-# `./test` unpack its headers into build/deps and pass their folder here; the library is the
-# installed one.
+# Raptor's Debian package conflicts with the packages of some libcurl flavors. On such a machine
+# `./run` and `./test` unpack Raptor's headers into build/deps and pass their folder here. The
+# library itself is the installed one.
 set(STRATA_RAPTOR_INCLUDE "" CACHE PATH "Folder that holds raptor2.h, when it is not the system's")
 find_path(RAPTOR_INCLUDE raptor2.h HINTS ${STRATA_RAPTOR_INCLUDE} PATH_SUFFIXES raptor2 REQUIRED)
 find_library(RAPTOR_LIBRARY NAMES raptor2 libraptor2.so.0 REQUIRED)
@@ -50,9 +50,9 @@ add_library(strata_raptor INTERFACE)
 target_include_directories(strata_raptor SYSTEM INTERFACE ${RAPTOR_INCLUDE})
 target_link_libraries(strata_raptor INTERFACE ${RAPTOR_LIBRARY})
 
-# Boost 1.81 is used as headers only (Asio, Beast compiled in one unit, Uuid). If the machine has
-# another version, `./run` and `./test` unpack 1.81 into build/deps and pass its folder here; the
-# installed packages do not change.
+# Only the headers of Boost 1.81 are used (Asio, Uuid, and Beast, which is compiled in one unit). If
+# the machine has another version, `./run` and `./test` unpack 1.81 into build/deps and pass its
+# folder here. The installed packages do not change.
 set(STRATA_BOOST_INCLUDE "" CACHE PATH "Folder that holds boost/version.hpp of 1.81, when it is not the system's")
 add_library(strata_boost INTERFACE)
 if(STRATA_BOOST_INCLUDE)

@@ -1,12 +1,12 @@
-# `scripts/make_package` makes strata_VERSION_ARCH.deb from the files that `cmake --install` copies,
-# and from the files that only a package has: the service, its settings, the manual page and the
-# completion. These are a separate component, so that `cmake --install --prefix` writes nothing
-# outside the prefix.
+# `scripts/make_package` makes strata_VERSION_ARCH.deb from two groups of files: those that
+# `cmake --install` copies, and those that only a package has (the service, its settings, the
+# manual page and the completion). The second group is a separate component, so
+# `cmake --install --prefix` writes nothing outside the prefix.
 set(debian ${PROJECT_SOURCE_DIR}/packaging/debian)
 set(made ${PROJECT_BINARY_DIR}/packaging)
 
-# scripts/setup.sh lists the programs and the libraries that are loaded at run time; dpkg-shlibdeps
-# finds the linked libraries.
+# scripts/setup.sh lists the programs and the libraries that are loaded at run time. dpkg-shlibdeps
+# determines the linked libraries.
 file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/setup.sh run_packages REGEX "^run_packages=")
 string(REGEX REPLACE "^run_packages=\\((.*)\\)$" "\\1" run_packages "${run_packages}")
 separate_arguments(run_packages)
@@ -16,7 +16,7 @@ list(JOIN run_packages ", " depends)
 
 string(TIMESTAMP STRATA_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
 set(STRATA_PACKAGE_CONTACT "The Strata maintainers <maintainers@strata.invalid>" CACHE STRING "Who answers for the package")
-# The texts of licenses, from their first words on, in the form of Debian's copyright file.
+# Reads the text of a license, beginning with `begin`, in the format of Debian's copyright file.
 function(read_license file begin variable)
   file(READ ${PROJECT_SOURCE_DIR}/${file} text)
   string(REGEX REPLACE "^.*\n(${begin})" "\\1" text "${text}")

@@ -1,7 +1,8 @@
-# Compiles the headers that nearly every unit reads once for each kind of target: parsing them took
-# half of the build time. build/tidy does not share headers (scripts/check_tidy), so that it finds
-# units with missing includes. A unit with different options does not use them either
-# (SKIP_PRECOMPILE_HEADERS): GCC 12 crashes on some options that differ from those of the headers.
+# Precompiles the headers that nearly every unit reads, once for each kind of target, because
+# parsing them took half of the build time. build/tidy does not share headers (scripts/check_tidy),
+# so it detects units with missing includes. Units with different options do not share them either
+# (SKIP_PRECOMPILE_HEADERS), because GCC 12 crashes on some options that differ from those of the
+# headers.
 set(STRATA_STANDARD_HEADERS
   <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstdint> <cstring> <deque> <filesystem> <fstream> <functional>
   <future> <limits> <map> <memory> <mutex> <numeric> <optional> <random> <set> <span> <sstream> <string> <string_view> <thread>
@@ -12,9 +13,9 @@ set(STRATA_NET_HEADERS ${STRATA_STANDARD_HEADERS}
   <boost/asio/thread_pool.hpp> <boost/asio/use_awaitable.hpp>)
 set(STRATA_TESTS_HEADERS ${STRATA_STANDARD_HEADERS} <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>)
 
-# strata_shared_headers(TARGET standard|net|tests [COMPUTES]). Under sanitizers, optimization takes
-# the compiler longer than the unoptimized tests run, except for targets that compute texels and
-# triangles (COMPUTES).
+# strata_shared_headers(TARGET standard|net|tests [COMPUTES]). COMPUTES is for targets that compute
+# texels and triangles. For other targets under sanitizers, the compiler needs more time to optimize
+# than the unoptimized tests need to run.
 function(strata_shared_headers target kind)
   cmake_parse_arguments(HEADERS "COMPUTES" "" "" ${ARGN})
   string(TOUPPER STRATA_${kind}_HEADERS list)

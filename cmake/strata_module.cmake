@@ -1,12 +1,12 @@
-# strata_module(NAME SOURCES… [PUBLIC libs…] [PRIVATE libs…]): one module of the server, a static
-# library `strata_NAME`. A module may include only the modules that it links: the drawing in
+# strata_module(NAME SOURCES… [PUBLIC libs…] [PRIVATE libs…]) adds one module of the server, a
+# static library `strata_NAME`. A module may include only the modules that it links. The drawing in
 # docs/developer/architecture/overview.md shows these links.
 function(strata_module name)
   cmake_parse_arguments(MODULE "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(strata_${name} STATIC ${MODULE_SOURCES})
   target_include_directories(strata_${name} PUBLIC ${PROJECT_BINARY_DIR}/modules/${name})
-  # A module finds its own headers and those of the modules that it links: each module exports only
-  # its own folder.
+  # Each module exports only its own folder, so a module finds only its own headers and those of the
+  # modules that it links.
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/modules/${name})
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/modules/${name}/${name} SYMBOLIC)
   if(name MATCHES "^(net|cli)$")
@@ -16,9 +16,9 @@ function(strata_module name)
   elseif(NOT name STREQUAL "figure")  # pango needs other compiler flags
     strata_shared_headers(strata_${name} standard)
   endif()
-  # These modules take more than half of a release build's time. Units of eight files halve it. A
-  # file is compiled alone (SKIP_UNITY_BUILD_INCLUSION) if a name in its unnamed namespace also
-  # exists in another file of the module.
+  # These modules take more than half of the time of a release build. Units of eight files halve
+  # that time. A file is compiled alone (SKIP_UNITY_BUILD_INCLUSION) if a name in its unnamed
+  # namespace also exists in another file of the module.
   if(STRATA_UNITY AND name MATCHES "^(app|net|store)$")
     set_target_properties(strata_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
@@ -27,11 +27,13 @@ endfunction()
 
 add_library(strata_warnings INTERFACE)
 target_compile_options(strata_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
-# False alarms of GCC 12: members of std::string (its bug 105651), frames of Asio's coroutines.
+# Suppresses false warnings of GCC 12 about members of std::string (GCC bug 105651) and frames of
+# Asio's coroutines.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(strata_warnings INTERFACE -Wno-array-bounds -Wno-mismatched-new-delete -Wno-restrict -Wno-stringop-overflow)
 endif()
-# Also for members of the standard library, if a sanitizer adds checks between their statements.
+# With sanitizers, these false warnings also concern members of the standard library, because the
+# sanitizer adds checks between their statements.
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(strata_warnings INTERFACE -Wno-maybe-uninitialized)
 endif()

@@ -18,14 +18,14 @@ def main() -> int:
         return 2
     site = Strata(sys.argv[1], os.environ["STRATA_OWNER_TOKEN"])
 
-    # Nine o'clock: the scan. If the file has no unit, the page asks for it.
+    # Nine o'clock: import the scan. If the file has no unit, the page asks for the unit.
     model = site.import_model(sys.argv[2], name="Wall", unit="mm")
     path = f"/models/{model['slug']}"
     low, high = model["bounds"]["min"], model["bounds"]["max"]
     size = max(b - a for a, b in zip(low, high))
     print(f"{model['name']}: {model['triangles']} triangles, {model['area_m2']:.4f} m²")
 
-    # The layers: classes of damage, and percent of moisture.
+    # Create the layers: classes of damage, and moisture in percent.
     palette = {
         "mode": "categorical",
         "points": [
@@ -41,7 +41,8 @@ def main() -> int:
         f"{path}/layers", {"name": "Moisture", "kind": "numeric", "type": "f32", "unit": "%"}
     )
 
-    # Until noon: values at measured points, each painted on the surface around its point.
+    # Until noon: import values at measured points, and paint each one on the surface around its
+    # point.
     places = site.post(
         f"{path}/positions",
         {
@@ -59,7 +60,7 @@ def main() -> int:
             "text/csv",
         )
 
-    # In the evening: the area of each class, and the wet area.
+    # In the evening: get the area of each class, and the wet area.
     statistics = site.get(f"{path}/layers/{damage['slug']}/statistics")
     for key in statistics["keys"]:
         name = DAMAGES[key["key"] - 1][0]

@@ -51,7 +51,8 @@ class Strata:
                 data, kind = json.dumps(body).encode(), "application/json"
             headers["Content-Type"] = content_type or kind
         if method in ("POST", "PATCH", "DELETE"):
-            # With this key, a repeat after a broken connection has no second effect.
+            # With this key, a request that is repeated after a broken connection has no second
+            # effect.
             headers["Idempotency-Key"] = str(uuid.uuid4())
         asked = urllib.request.Request(self.base + path, data=data, headers=headers, method=method)
         try:

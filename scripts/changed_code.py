@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 
-# A raw string, a string, a character, or a comment.
+# Matches a raw string, a string, a character, or a comment.
 TOKEN = re.compile(
     r'(?P<text>R"(?P<mark>[^\s()\\]*)\(.*?\)(?P=mark)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')'
     r"|//[^\n]*|/\*.*?\*/",
@@ -18,7 +18,7 @@ TOKEN = re.compile(
 
 def code_of(source):
     without = TOKEN.sub(lambda found: '""' if found["text"] else " ", source)
-    # Adjacent strings are one, as clang-format splits them.
+    # Join adjacent strings, because clang-format splits strings.
     return re.sub(r'""(\s*"")+', '""', re.sub(r"\s+", "", without))
 
 

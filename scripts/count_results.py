@@ -38,8 +38,8 @@ def main():
         for case in ET.parse(ctest).getroot().iter("testcase"):
             ran_wrong = case.find("failure") is not None or case.get("status") == "fail"
             if case.get("name") in reported:
-                # A program whose cases all passed but that failed afterward (a leak report, say) is
-                # a failure, too.
+                # A program also counts as failed if all its cases passed but it failed afterward,
+                # for example because of a leak report.
                 if ran_wrong and total[1] == 0:
                     total[1] += 1
             elif ran_wrong:

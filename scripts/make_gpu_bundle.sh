@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# make_gpu_bundle.sh BUILD_DIR: copies the benchmark, the GL tests, their shaders and every library
-# that belongs neither to the C library nor to a graphics driver into BUILD_DIR/gpu-bundle (and
-# .tar.gz). The bundle runs on a machine that has only a driver with libglvnd. Fails above 60 MiB.
+# make_gpu_bundle.sh BUILD_DIR: makes BUILD_DIR/gpu-bundle (and .tar.gz), a bundle that runs on a
+# machine that has only a driver with libglvnd. Copies the benchmark, the GL tests, their shaders,
+# and every library that belongs neither to the C library nor to a graphics driver. Fails if the
+# bundle exceeds 60 MiB.
 set -euo pipefail
 build=$(realpath "$1")
 source=$(realpath "$(dirname "$0")/..")
 bundle=$build/gpu-bundle
 programs="strata-bench gl_test render_edit_test render_picture_test render_thread_test render_paper_test stream_viewer_test"
-# The machine has these: the C library, and libglvnd with its driver.
+# These libraries exist on the machine: the C library, and libglvnd with its driver.
 own_to_the_machine='^(ld-linux.*|lib(c|m|dl|rt|pthread|resolv)\.so.*|lib(EGL|GL|GLX|GLdispatch|OpenGL|GLESv2)\.so.*|lib(X11|xcb|Xau|Xdmcp|drm|gbm|glapi)\b.*)$'
 
 rm -rf "$bundle"
@@ -26,14 +27,14 @@ git -C "$source" rev-parse --short HEAD > "$bundle/commit"
 cat > "$bundle/run" <<'RUN'
 #!/bin/sh
 # ./run PROGRAM [ARGUMENT…]: runs one of the programs in bin/ with the bundle's libraries and
-# shaders. ./run tests: all GL tests.
+# shaders. ./run tests: runs all GL tests.
 here=$(cd "$(dirname "$0")" && pwd)
 export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 export STRATA_SHADERS="$here/shaders" STRATA_PEER_SHADERS="$here/peer-shaders" STRATA_COMMIT=$(cat "$here/commit")
 if [ "$1" = tests ]; then
   failed=0
   for test in "$here"/bin/*_test; do "$test" || failed=$((failed + 1)); done
-  # Test painting on the CPU's path, too.
+  # Also test painting on the CPU.
   for test in render_edit_test render_picture_test render_paper_test; do
     STRATA_TEST_EDIT_PATH=kernel "$here/bin/$test" || failed=$((failed + 1))
   done

@@ -1,10 +1,10 @@
-# Sourced by scripts/setup.sh: shows the progress of each step. In a terminal a step is one line
-# that updates; in a log it gets a line now and then. The output of the tools goes to $progress_log;
-# when a step fails, the end of that file is shown.
+# scripts/setup.sh sources this file, which shows the progress of each step. In a terminal, a step
+# is one line that updates. In a log, a step adds a line every $progress_log_every seconds. The
+# output of the tools goes to $progress_log. If a step fails, the end of that file is shown.
 # shellcheck shell=bash
 
 progress_log=$PWD/build/setup.log
-progress_log_every=30  # seconds between the lines of a log
+progress_log_every=30  # seconds between two lines of a log
 progress_steps=0 progress_step=0 progress_name='' progress_begun=0 progress_shown=''
 if [ -t 2 ] && [ "${TERM:-dumb}" != dumb ]; then progress_terminal=1; else progress_terminal=; fi
 
@@ -13,7 +13,7 @@ duration() {
   if [ "$1" -lt 90 ]; then echo "$1 s"; else echo "$((($1 + 30) / 60)) min"; fi
 }
 
-# number_steps COUNT: the next COUNT steps are numbered.
+# number_steps COUNT: starts to number the next COUNT steps.
 number_steps() { progress_steps=$1 progress_step=0; }
 
 progress_line() {
@@ -28,7 +28,7 @@ begin_step() {  # NAME
   printf '\n== %s, %s\n' "$progress_name" "$(date '+%F %T')" >>"$progress_log"
 }
 
-# show_progress TEXT: TEXT has one line and at most 60 characters.
+# show_progress TEXT: shows TEXT, one line of at most 60 characters.
 show_progress() {
   if [ -n "$progress_terminal" ]; then
     printf '\r\033[K%s' "$(progress_line "$1")" >&2
@@ -45,7 +45,7 @@ end_step() {
 
 fail_step() {  # WHAT
   [ -z "$progress_terminal" ] || printf '\r\033[K' >&2
-  # From the first error if the tool marks it (Ninja); otherwise the last lines.
+  # Print from the first error if the tool marks errors (Ninja), otherwise the last lines.
   awk '/^== /      { lines = 0; failed = 0 }
        /^FAILED: / { if (!failed) { lines = 0; failed = 1 } }
                    { kept[lines++] = $0 }
@@ -55,14 +55,14 @@ fail_step() {  # WHAT
   die "$1 The lines above say why; all of them are in $progress_log."
 }
 
-# in_step TEXT COMMAND…: runs a part of a step that reports no progress.
+# in_step TEXT COMMAND…: runs a part of a step that does not report its progress.
 in_step() {
   show_progress "$1"
   shift
   "$@" >>"$progress_log" 2>&1
 }
 
-# Shows the progress that apt-get writes to APT::Status-Fd; other lines go to the log.
+# Shows the progress that apt-get writes to APT::Status-Fd. Other lines go to the log.
 show_apt_progress() {
   local line kind percent
   while IFS= read -r line; do
@@ -75,10 +75,11 @@ show_apt_progress() {
   done
 }
 
-# unit_weight LINE: a unit of several files takes the compiler as long as some fourteen others.
+# unit_weight LINE: prints the weight of a unit. A unit of several files takes the compiler about
+# fourteen times as long as a unit of one file.
 unit_weight() { case $1 in *Unity/*) echo 14 ;; *) echo 1 ;; esac; }
 
-# weigh_units: prints the sum of the weights of the lines of `ninja -n` on standard input.
+# weigh_units: prints the total weight of the lines of `ninja -n` on standard input.
 weigh_units() {
   local line sum=0
   while IFS= read -r line; do
@@ -88,15 +89,15 @@ weigh_units() {
 }
 
 # show_ninja_progress WEIGHT MILLISECONDS: reads Ninja's output with NINJA_STATUS='[%f/%t] '. WEIGHT
-# is the sum of all units. MILLISECONDS is the usual time for a weight of 1 on this machine; the
-# estimate counts it as much as a fifth of the units.
+# is the total weight of all units. MILLISECONDS is the usual time for a weight of 1 on this
+# machine. In the estimate of the remaining time, it counts as much as a fifth of the units.
 show_ninja_progress() {
   local weight=$1 unit_ms=$2 line partial='' finished=0 total=0 done_weight=0 begun=$SECONDS known left code
   while true; do
     code=0
     IFS= read -r -t 1 line || code=$?
     if [ $code -gt 128 ]; then
-      partial+=$line  # a second passed; the rest of the line follows
+      partial+=$line  # a second has passed; the rest of the line follows
     else
       [ $code = 0 ] || [ -n "$partial$line" ] || break
       line=$partial$line partial=''

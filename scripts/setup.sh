@@ -1,5 +1,6 @@
-# Sourced by ./run and ./test: installs missing packages on Debian 12 and changes nothing else. Sets
-# STRATA_CMAKE_ARGS. Quick if nothing is missing. Callers set pipefail.
+# ./run and ./test source this file. It installs missing packages on Debian 12 and changes nothing
+# else on the machine. It sets STRATA_CMAKE_ARGS. It is quick if no package is missing. Callers must
+# set pipefail.
 # shellcheck shell=bash
 # shellcheck disable=SC2034  # the scripts that source this use the lists of packages
 
@@ -16,8 +17,8 @@ as_root() {
   else die "This step needs root: $* — run as root, or install sudo."; fi
 }
 
-# dpkg lists the installed packages; one query for all packages takes a few milliseconds. On a new
-# machine dpkg-query has no entry for most of them, and fails.
+# Uses one query for all packages, which takes a few milliseconds. On a new machine, dpkg-query has
+# no entry for most packages, so it fails.
 missing_packages() {
   local installed package
   installed=$({ dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null || true; } | awk '/install ok installed/ {print $1}')
@@ -32,7 +33,7 @@ update_package_lists() {
   apt_updated=1
 }
 
-# --no-remove: never removes an installed package to resolve a conflict.
+# The option --no-remove prevents apt from removing an installed package to resolve a conflict.
 install_packages() {
   local missing
   mapfile -t missing < <(missing_packages "$@")
@@ -40,14 +41,14 @@ install_packages() {
   command -v apt-get >/dev/null || die "Strata is built on Debian 12, and there is no apt-get here. docker/README.md tells of containers."
   [ "$(id -u)" = 0 ] || command -v sudo >/dev/null || die "Packages are missing: ${missing[*]}. Run this as root, or install sudo."
   begin_step Packages
-  # Without this, Debian's PostgreSQL starts an unneeded cluster.
+  # Without this setting, Debian's PostgreSQL starts an unneeded cluster.
   if [[ " ${missing[*]}" == *" postgresql"* ]] && [ ! -e /etc/postgresql-common/createcluster.conf ]; then
     as_root mkdir -p /etc/postgresql-common
     echo 'create_main_cluster = false' | as_root tee /etc/postgresql-common/createcluster.conf >/dev/null
   fi
   update_package_lists
-  # The progress uses a separate descriptor: apt closes it for dpkg, whose scripts would otherwise
-  # have no standard output.
+  # The progress uses a separate descriptor, because apt closes it for dpkg. With standard output
+  # instead, dpkg's scripts would have no standard output.
   # shellcheck disable=SC2016  # the inner shell expands its parameters
   as_root env DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' apt-get -q -o Dpkg::Use-Pty=0 -o APT::Status-Fd=3 \
     install -y --no-install-recommends --no-remove "${missing[@]}" 2>&1 | show_apt_progress ||
@@ -56,22 +57,22 @@ install_packages() {
 }
 
 # Lists the conflicting packages that can be installed on this machine. setup_conflicting unpacks
-# the rest.
+# the others.
 installable_conflicting() {
   # Boost 1.81 conflicts with Debian's 1.74.
   [ -z "$(missing_packages libboost1.74-dev)" ] || echo libboost1.81-dev
-  # Raptor's development package depends on one flavor of libcurl's, which conflicts with the
-  # others. Strata also uses libcurl; any flavor is suitable.
+  # Raptor's development package depends on one flavor of libcurl's development package, which
+  # conflicts with the other flavors. Strata also uses libcurl, and any flavor is suitable.
   if [ -n "$(missing_packages libcurl4-openssl-dev)" ] && [ -n "$(missing_packages libcurl4-nss-dev)" ]; then echo libraptor2-dev
   else echo libraptor2-0; fi
 }
 
-# Any Node from version 18 is suitable; Debian's is installed only if the machine has no Node.
+# Any version of Node from 18 is suitable. Debian's is installed only if the machine has no Node.
 node_packages() {
   if ! command -v node >/dev/null || ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
 }
 
-# packages_to_build: prints the packages that building the server and the page needs here, one per
+# packages_to_build: prints the packages that are needed to build the server and the page, one per
 # line.
 packages_to_build() {
   printf '%s\n' "${build_packages[@]}"
@@ -87,8 +88,8 @@ run_packages=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri postgresql-15 font
 test_packages=(libgtest-dev libgmock-dev dpkg-dev chromium openssl libpcre2-8-0 poppler-utils clang-format-14 clang-tidy-16 black flake8 isort shellcheck xz-utils python3-pytest python3-pandas python3-openpyxl)
 fuzz_packages=(clang-14 libclang-rt-14-dev llvm-14)
 
-# unpack_beside PACKAGE FILE-OF-IT WHY: unpacks a package that should not be installed into
-# build/deps.
+# unpack_beside PACKAGE FILE-OF-IT WHY: unpacks a package into build/deps if it should not be
+# installed.
 unpack_beside() {
   local package=$1 file=$2 why=$3 deps=$PWD/build/deps
   [ ! -e "$deps/$file" ] || return 0
@@ -112,7 +113,8 @@ setup_conflicting() {
   fi
 }
 
-# The tests run nginx in front of the server. An installed nginx would start and use port 80.
+# The tests run nginx in front of the server. An installed nginx would start a server and use port
+# 80.
 setup_nginx() {
   PATH=$PATH:/usr/sbin command -v nginx >/dev/null || unpack_beside nginx usr/sbin/nginx "installed, it would start a server of its own"
 }
@@ -123,8 +125,9 @@ require_node() {
   [ "$major" -ge 18 ] || die "Node $major is too old: 18 or newer is needed."
 }
 
-# A stamp holds the checksum of the source files of a result: stamp_of FILES on standard input;
-# is_current NAME STAMP.
+# A stamp contains the checksum of the source files of a result.
+# stamp_of: prints the stamp of the files on standard input. is_current NAME STAMP: succeeds if the
+# stored stamp is STAMP.
 stamp_of() { xargs -d '\n' sha256sum | sha256sum; }
 is_current() { [ "$(cat "build/stamps/$1" 2>/dev/null)" = "$2" ]; }
 write_stamp() {
@@ -132,8 +135,8 @@ write_stamp() {
   echo "$2" >"build/stamps/$1"
 }
 
-# The page is web-client; its guide is docs, built into web-client/dist/guide, where the server
-# finds it.
+# The source of the page is web-client. The source of its guide is docs, which is built into
+# web-client/dist/guide, where the server finds it.
 modules_stamp() { printf '%s\n' "$1/package.json" "$1/package-lock.json" | stamp_of; }
 modules_are_current() { [ -d "$1/node_modules" ] && is_current "${1//\//-}-modules" "$(modules_stamp "$1")"; }
 web_client_stamp() {
@@ -175,8 +178,8 @@ setup_web_client() {
   end_step
 }
 
-# Number of compilers that run at once: one for each core, fewer if memory is short. A unit may take
-# 1.2 GB.
+# The number of compilers that run at the same time: one for each core, fewer if memory is short. A
+# unit may take 1.2 GB.
 build_jobs() {
   local cores memory
   cores=$(nproc) memory=$(awk '/^MemAvailable/ { print int($2 / 1200000) }' /proc/meminfo)
@@ -193,7 +196,7 @@ needs_build() {
 
 # configure_and_build PRESET [TARGET…]
 configure_and_build() {
-  # A unit usually takes a core 1.6 seconds.
+  # A unit usually takes 1.6 seconds of one core.
   local preset=$1 targets=() jobs=${STRATA_BUILD_JOBS:-$(build_jobs)} name=Server unit_ms=1600 weight
   shift
   needs_build "$preset" "$@" || return 0

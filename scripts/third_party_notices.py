@@ -12,8 +12,8 @@ import re
 import subprocess
 import sys
 
-# The C and C++ libraries of the system and of the compiler are not parts of a program (GCC's
-# runtime library exception, section 5 of the LGPL).
+# The C and C++ libraries of the system and of the compiler do not count as parts of a program
+# (runtime library exception of GCC, section 5 of the LGPL).
 OF_THE_SYSTEM = re.compile(
     r"^(libc6|libc6-dev|linux-libc-dev|libstdc\+\+.*|libgcc.*|gcc-\d+-base|cpp.*)$"
 )

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# PostgreSQL's image runs this once, if its folder is empty: creates Strata's role, which is no
-# superuser, and the database that it owns.
+# PostgreSQL's image runs this script once, if the data folder is empty. The script creates Strata's
+# role, which is not a superuser, and a database that this role owns.
 set -euo pipefail
 psql --username "${POSTGRES_USER:-postgres}" --dbname postgres --no-psqlrc --quiet --set ON_ERROR_STOP=1 <<'SQL'
 \getenv password STRATA_DATABASE_PASSWORD

@@ -33,7 +33,7 @@ def with_note(line: str, note: str | None) -> str:
 class Writer:
     def __init__(self, protocol: Protocol):
         self.protocol = protocol
-        self.enums: dict[str, list[str]] = {}  # enums inside structs, by C++ name, in order
+        self.enums: dict[str, list[str]] = {}  # enums in structs, by C++ name, in order
         self.order = protocol.in_order()
 
     # --- types

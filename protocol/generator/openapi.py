@@ -21,8 +21,8 @@ def point_to_components(node):
     return [point_to_components(value) for value in node] if isinstance(node, list) else node
 
 
-# Answers that every call may have: the description of openapi.yaml gives the reasons.
-# In addition, calls with a JSON body may have 415, and reads 406.
+# Responses that every call may have. The description in openapi.yaml explains them. In addition,
+# calls with a JSON body may have 415, and reads may have 406.
 OF_ANY_CALL = {
     "421": "UnknownHost",
     "429": "TooFast",
@@ -48,8 +48,9 @@ def add_common_answers(document) -> None:
             operation["responses"] = dict(sorted(operation["responses"].items()))
 
 
-# Reads whose answers have no ETag: answers that are given once or as events happen, answers that
-# must not be stored, and answers with the version of a record for If-Match but with more content.
+# Reads whose responses have no ETag of their content. Some responses are sent once or as a stream
+# of events. Others must not be stored. For others, the ETag is the version of a record for
+# If-Match, but they contain more than the record.
 WITHOUT_ANSWER_ETAG = (
     "/login",
     "/live",

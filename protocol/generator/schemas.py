@@ -5,7 +5,7 @@ import json
 import pathlib
 from dataclasses import dataclass, field
 
-# The order affects only the generated files: common parts come first.
+# The order affects only the generated files. Common definitions come first.
 FILES = ["common", "client", "server", "http"]
 MAX_INT32 = 2**31 - 1
 
@@ -19,13 +19,13 @@ class Type:
     """kind: string, uuid, number, int32, int64, boolean, const, enum, array, map, nullable, ref, union, scalar_union, any, object."""
 
     kind: str
-    name: str = ""  # ref: the definition; enum: its own name
+    name: str = ""  # ref: name of the definition; enum: name of the enum
     items: "Type | None" = None
-    count: "int | None" = None  # array: fixed length
-    # enum: the words or numbers; const: one value; union: definition names
+    count: "int | None" = None  # array: the fixed length
+    # enum: the texts or numbers; const: the value; union: the names of the definitions
     values: list = field(default_factory=list)
-    members: list = field(default_factory=list)  # object
-    choices: list = field(default_factory=list)  # any: types
+    members: list = field(default_factory=list)  # object: the members
+    choices: list = field(default_factory=list)  # any: the types
     description: str = ""
 
 
@@ -34,7 +34,7 @@ class Member:
     name: str
     type: Type
     required: bool
-    default: object  # None when the schema states none
+    default: object  # None if the schema has no default
     description: str
 
 
@@ -63,7 +63,7 @@ class Protocol:
 
     def __init__(self, folder: pathlib.Path):
         self.definitions: dict[str, Definition] = {}
-        self.unions: dict[str, list[str]] = {}  # ClientMessage, ServerMessage → definition names
+        self.unions: dict[str, list[str]] = {}  # names of the definitions in each union
         sources = {name: json.loads((folder / f"{name}.schema.json").read_text()) for name in FILES}
         self.schemas: dict[str, dict] = {}
         for file, source in sources.items():
@@ -148,7 +148,7 @@ class Protocol:
             return Type("union", values=names)
         if [choice.get("type") for choice in choices] == ["integer", "string"]:
             return Type("scalar_union")
-        # for definitions with `x-cpp-type`: unchanged values
+        # Such definitions have `x-cpp-type`. Their values stay unchanged.
         if all("type" in choice for choice in choices):
             return Type(
                 "any",

@@ -6,11 +6,11 @@
 
 namespace strata::app {
 
-// Notifies connected users of the changes of a use case. Thread-safe.
+// Notifies connected users of the changes that a use case makes. Thread-safe.
 class ChangeNotifier {
  public:
   virtual ~ChangeNotifier() = default;
-  // `user`: the author of the change.
+  // `user` is the author of the change.
   virtual void records_changed(const store::TableChange& change, const std::string& user) const = 0;
 };
 

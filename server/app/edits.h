@@ -8,12 +8,13 @@
 
 namespace strata::app {
 
-// Counts edits since the server's start, for its metrics. Any thread may add.
+// Counts the edits since the start of the server, for its metrics. All threads may increment the
+// counters.
 struct EditCounters {
   std::atomic<std::uint64_t> applied{0}, saved{0}, unsaved{0}, refused{0};
 };
 
-// Submits the edit to the room and waits until it is durable or refused. Blocks.
+// Submits the edit to the room and waits until the edit is durable or refused. Blocks.
 Result<room::EditAnswer> edit_and_wait(room::Room& room, room::EditRequest edit,
                                        EditCounters& counters);
 

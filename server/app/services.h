@@ -12,7 +12,8 @@ namespace strata::app {
 class ChangeNotifier;
 struct EditCounters;
 
-// The parts that use cases need; all outlive them. A file that uses a part includes its header.
+// The services that use cases need. All of them must outlive this object. A file that uses a
+// service includes its header.
 struct Services {
   store::Store& store;
   room::Rooms& rooms;

@@ -25,7 +25,7 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-// Returns the label in a language or its base language; null if there is no label.
+// Returns the label in a language or in its base language. Returns null if there is no label.
 const std::string* label_of(const std::optional<protocol::Labels>& labels,
                             const std::optional<std::string>& language) {
   if (!labels || !language) return nullptr;
@@ -59,7 +59,7 @@ Result<TermList> terms_of(const std::vector<protocol::TemplateTerm>& terms,
     if (!codes.insert(term.code).second)
       return fail(ErrorCode::invalid, "Duplicate code",
                   "The code " + term.code + " appears twice.");
-    // A term follows its parent, so cycles are impossible.
+    // A term must follow its parent, so cycles are impossible.
     if (!term.parent.empty() && !codes.contains(term.parent))
       return fail(ErrorCode::invalid, "Parent not found",
                   term.code + " has the parent " + term.parent + ", which must come before it.");
@@ -87,7 +87,7 @@ Result<Column> column_of(const protocol::ColumnCreate& definition,
   if (definition.choices) column.choices = *definition.choices;
   column.minimum = definition.minimum;
   column.maximum = definition.maximum;
-  if (definition.target) column.target = kOwnTable;  // placeholder until the table is resolved
+  if (definition.target) column.target = kOwnTable;  // placeholder until the target table is found
   STRATA_TRY(check_column(column));
   return column;
 }

@@ -6,7 +6,7 @@ namespace strata::app {
 namespace {
 
 constexpr std::chrono::hours kBetweenLooks{1};
-constexpr std::chrono::minutes kAfterFailure{1};  // the database may be reachable again by then
+constexpr std::chrono::minutes kAfterFailure{1};  // the database may be reachable by then
 
 }  // namespace
 

@@ -9,13 +9,14 @@
 
 namespace strata::app {
 
-// Erases the entries of the trash that have expired, at start and every hour, and at once those
-// that people erase, in small steps. When the server stops, the rest waits for its next start.
+// Erases expired entries of the trash when the server starts and every hour. Erases entries
+// immediately if users request it. Works in small steps. If the server stops, it erases the
+// remaining entries after its next start.
 class TrashPurger {
  public:
-  TrashPurger(store::Trash& trash, std::chrono::days keep);  // the Trash must outlive it
+  TrashPurger(store::Trash& trash, std::chrono::days keep);  // `trash` must outlive it
   ~TrashPurger() { stop(); }
-  void check_now();  // call when entries are to be erased; does not wait
+  void check_now();  // call it when entries must be erased; does not wait
   void stop();       // waits for the current step
 
  private:

@@ -1,4 +1,4 @@
-// `strata backup` and `strata restore`: copy a whole site into a folder and back.
+// `strata backup` and `strata restore` copy a whole site to a folder and back.
 #include <iostream>
 
 #include "cli/commands.h"
@@ -20,7 +20,7 @@ struct BackupOptions {
 };
 
 std::string summary(const store::BackupFacts& facts) {
-  // `before`: the table's name in older backups.
+  // `before` is the name of the table in older backups.
   const auto count = [&](const char* table, const char* what, const char* before = "") {
     const auto rows = facts.rows_of(table) + facts.rows_of(before);
     return std::to_string(rows) + " " + what + (rows == 1 ? "" : "s");
@@ -32,7 +32,8 @@ std::string summary(const store::BackupFacts& facts) {
          std::to_string(facts.schema_version) + ", of " + facts.made;
 }
 
-// Finds the database without changing it: a server of this or another version may be using it.
+// Finds the database without changing it, because a server of this or another version may be using
+// it.
 struct Source {
   std::unique_ptr<store::Cluster> cluster;
   std::string dsn;
@@ -64,8 +65,8 @@ int backup(const BackupOptions& options) {
   return 0;
 }
 
-// Restores into a temporary folder first, so that an interrupted restore leaves no partial database
-// in the place where a server would start.
+// Restores to a temporary folder first. An interrupted restore then leaves no incomplete database
+// that a server would start with.
 Result<void> restore_into_folder(const BackupOptions& options, const store::BackupFacts& facts,
                                  Progress& progress) {
   const fs::path data = fs::absolute(options.data.data), place = data / "postgres",
@@ -75,7 +76,7 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
     return fail(ErrorCode::conflict, "Data folder not empty",
                 data.string() + " already contains a site. Specify a new folder with --data.",
                 "--data");
-  fs::remove_all(beside, error);  // left by a killed restore
+  fs::remove_all(beside, error);  // left by an interrupted restore
   const auto restored = [&]() -> Result<void> {
     auto cluster = STRATA_TRY(store::Cluster::start(beside));
     return store::restore_backup(options.folder, facts, cluster->dsn(), progress);

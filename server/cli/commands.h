@@ -5,8 +5,9 @@
 
 namespace strata::cli {
 
-// Each function adds its subcommand; the returned function runs it after parsing and returns the
-// exit code: 0 done, 1 failed (reason on stderr). CLI11 reports wrong usage (exit 2 by main).
+// Each function adds its subcommand. The returned function runs the subcommand after parsing. It
+// returns the exit code, which is 0 on success and 1 on failure, with the reason on stderr. CLI11
+// reports wrong usage, and main then exits with 2.
 using Command = std::function<int()>;
 Command add_serve(CLI::App& app);
 Command add_import(CLI::App& app);

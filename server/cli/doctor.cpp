@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kGiB = 1024.0 * 1024 * 1024;
 
-// Prints one line per finding, with advice after an arrow.
+// Prints one line per result, with advice after an arrow.
 class Report {
  public:
   void good(const std::string& what, const std::string& value) { line("ok  ", what, value); }
@@ -91,7 +91,7 @@ void check_connection(Report& report, const std::string& dsn, const std::string&
   report.good("Database size", gib(double(state->bytes)));
 }
 
-// Reads only: makes, starts and migrates nothing, and does not disturb a running server.
+// Only reads. Does not create, start or migrate a database, and does not disturb a running server.
 void check_database(Report& report, const DataOptions& options) {
   if (!options.database.empty()) return check_connection(report, options.database, "external");
   const auto state = store::Cluster::inspect(options.data);

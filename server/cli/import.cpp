@@ -28,8 +28,8 @@ Result<std::string> import_locally(store::Store& store, const jobs::ImportReques
   return to_json(model, project.slug).dump(2);
 }
 
-// Returns one list of files per model, with the files that each mesh names. Other given files
-// belong to the only mesh (or archive) of the command.
+// Returns one list of files per model. A list contains the mesh and the files to which it refers.
+// All other files belong to the mesh or archive if the command names only one.
 Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
     const std::vector<std::string>& paths) {
   std::vector<std::vector<jobs::ImportFile>> scans;

@@ -4,8 +4,9 @@
 
 namespace strata::cli {
 
-// The folders of the files that are installed with the program: next to the binary in an installed
-// tree (`share/strata`), in the source tree otherwise; STRATA_SHARE overrides both.
+// The folders of the files that are installed with the program. In an installed tree, they are next
+// to the binary (`share/strata`). Otherwise, they are in the source tree. STRATA_SHARE overrides
+// both.
 struct InstallDirs {
   std::filesystem::path shaders, migrations, web_client, protocol, templates;
 };

@@ -1,5 +1,5 @@
-// `strata kiosk`: manages the links of screens that show a tour, on the server's machine, also
-// while the server runs.
+// `strata kiosk` manages the links of screens that show a tour. It runs on the server's machine,
+// even while the server is running.
 #include <iomanip>
 #include <iostream>
 

@@ -10,7 +10,7 @@ Command add_migrate(CLI::App& app) {
   auto options = std::make_shared<DataOptions>();
   add_data_options(*command, *options);
   return [options] {
-    auto database = open_database(*options);  // opening migrates
+    auto database = open_database(*options);  // migrates the database
     if (!database) return report(database.error());
     auto info = (*database)->store->info();
     if (!info) return report(info.error());

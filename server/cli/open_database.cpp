@@ -54,7 +54,8 @@ Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& op
                     ". Specify the server's folder with --data, or start the server to create a "
                     "database.");
   if (!state.running) return open_database(options);
-  // Only the server's own start migrates its database, never another program while it runs.
+  // While a server is running, no other program may migrate its database. The server migrates it
+  // when it starts.
   const auto schema = STRATA_TRY(store::inspect_database(state.dsn, install_dirs().migrations));
   if (schema.schema_version != schema.known_version)
     return fail(ErrorCode::conflict, "Version mismatch",

@@ -11,24 +11,25 @@
 
 namespace strata::cli {
 
-// The options that name the data, and the database that they select.
+// The options that select the data, and the database that they select.
 struct DataOptions {
   std::filesystem::path data = "data";
   std::string database;
-  std::optional<store::Cluster::SqlListen> sql{};  // of `serve`
+  std::optional<store::Cluster::SqlListen> sql{};  // only for `serve`
 };
 void add_data_options(CLI::App& command, DataOptions& options);
 
 struct OpenDatabase {
   std::unique_ptr<store::Cluster> cluster;  // null with --database
-  std::unique_ptr<store::Store> store;      // destroyed before its cluster
+  std::unique_ptr<store::Store> store;      // destroyed before the cluster
   ~OpenDatabase() { store.reset(); }
 };
 Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options);
-// The same, but if a server runs on that data, connects to its database.
+// Opens the database like `open_database`. If a server is running on the data, connects to its
+// database.
 Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& options);
 
-// "title: detail" on stderr; returns 1.
+// Prints "title: detail" on stderr. Returns 1.
 int report(const Error& problem);
 
 }  // namespace strata::cli

@@ -1,5 +1,5 @@
-// `strata user` and `strata token`: manage accounts on the server's machine, also while the server
-// runs.
+// `strata user` and `strata token` manage accounts. They run on the server's machine, even while
+// the server is running.
 #include <iomanip>
 #include <iostream>
 #include <iterator>
@@ -39,7 +39,7 @@ void add_password(CLI::App& command, const Options& options) {
       ->capture_default_str();
 }
 
-// Reads the password from standard input; nothing if the user gets a link.
+// Reads the password from standard input. Returns nothing if the user gets a link instead.
 Result<std::optional<std::string>> given_password(const PeopleOptions& options,
                                                   const std::string& name) {
   if (!options.password_stdin) return std::nullopt;
@@ -50,7 +50,7 @@ Result<std::optional<std::string>> given_password(const PeopleOptions& options,
   return password;
 }
 
-// Sets the given password, or prints a link with which the person chooses one.
+// Sets the given password, or prints a link that lets the user choose a password.
 Result<void> let_in(store::Store& store, const PeopleOptions& options, const store::Person& person,
                     const std::optional<std::string>& password) {
   if (password) {
@@ -67,7 +67,7 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
 }
 
 Result<void> add_person(store::Store& store, const PeopleOptions& options) {
-  // read first, so that a failure leaves no account without a password
+  // Reads the password first, so a failure leaves no account without a password.
   const auto password = STRATA_TRY(given_password(options, options.name));
   const auto person = STRATA_TRY(store.accounts().create(
       options.name, options.full_name, parse_role(options.role).value_or(Role::annotator)));
@@ -105,7 +105,7 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
   return {};
 }
 
-// Returns work that changes an existing account.
+// Returns a function that changes an existing account.
 Work<PeopleOptions> changing(
     std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
   return [change = std::move(change)](store::Store& store,
@@ -159,7 +159,8 @@ Result<void> remove_person(store::Store& store, const PeopleOptions&, const stor
   return store.accounts().remove(person.name);
 }
 
-// Returns a user's role in a project: the highest of the general, the project and the group roles.
+// Returns the role of a user in a project. It is the highest of the user's roles on the site, in
+// the project, and in groups.
 Result<Role> role_there(store::Store& store, const store::Person& person, ProjectId project) {
   Role role = person.role;
   const auto members = STRATA_TRY(store.members().of_project(project));

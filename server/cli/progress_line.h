@@ -13,8 +13,8 @@
 
 namespace strata::cli {
 
-// Shows a Progress on stderr as long as it exists: one rewritten line on a terminal, otherwise one
-// line per step.
+// Shows a Progress on stderr during its lifetime. On a terminal, it rewrites one line. Otherwise,
+// it prints one line per step.
 class ProgressLine {
  public:
   explicit ProgressLine(const Progress& progress)

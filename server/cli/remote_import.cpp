@@ -28,7 +28,7 @@ tl::unexpected<Error> not_strata(const std::string& what) {
           "proxy changes the responses.");
 }
 
-// Returns the JSON object in a reply; checks that it has these members.
+// Returns the JSON object in a reply. Checks that it has these members.
 Result<nlohmann::json> object_in(const Reply& reply, std::initializer_list<const char*> members) {
   auto json = nlohmann::json::parse(reply.body, nullptr, false);
   if (!json.is_object()) return not_strata("The answer");
@@ -44,7 +44,7 @@ std::string text_of(const nlohmann::json& object, const char* member) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-// Returns the server's problem; where members are missing, the HTTP status and the given texts.
+// Returns the server's problem. Replaces missing members by the HTTP status and the given texts.
 Error problem_of(const nlohmann::json& json, int status, const std::string& title,
                  const std::string& detail) {
   const auto code = protocol::code_of_problem_type(text_of(json, "type"));
@@ -60,7 +60,8 @@ size_t collect(char* data, size_t size, size_t count, void* body) {
   return size * count;
 }
 
-// A local server's certificate has its public name, and there is no network in between.
+// Returns whether the server runs on this machine. The certificate of a local server names a
+// different host. The check can be omitted because there is no network in between.
 bool is_this_machine(const std::string& base) {
   for (const char* host : {"https://127.0.0.1", "https://localhost", "https://[::1]"})
     if (base.starts_with(host)) {
@@ -78,7 +79,7 @@ class Client {
     headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
     curl_slist_append(headers_.get(), "Content-Type: application/octet-stream");
     curl_slist_append(headers_.get(), "Expect:");
-    // curl sets the Content-Type
+    // No Content-Type here, because curl sets it.
     form_headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
     curl_slist_append(form_headers_.get(), "Expect:");
   }
@@ -88,7 +89,7 @@ class Client {
     return perform(path, headers_.get());
   }
 
-  // Streams the files, one as the body, several as a form; reports the uploaded share.
+  // Streams a single file as the body, or several files as a form. Reports the uploaded fraction.
   Result<Reply> post_files(const std::string& path, const std::vector<jobs::ImportFile>& files,
                            Progress& progress) {
     curl_easy_reset(curl_.get());

@@ -70,7 +70,8 @@ Result<Address> parse_address(const std::string& text, const std::string& option
 
 Result<Address> parse_listen(const std::string& text) { return parse_address(text, "--listen"); }
 
-// Only accounts protect a server that others can reach.
+// A server that is reachable from other machines needs an account, because only accounts protect
+// it.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
   if (is_loopback(address.host)) return {};
   const auto has_account = STRATA_TRY(store.accounts().administrator_has_password());
@@ -103,7 +104,7 @@ Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
   return store::Cluster::SqlListen{address.host, address.port};
 }
 
-// For CLI11: text that is not an address is wrong usage.
+// For CLI11. Text that is not an address is reported as wrong usage.
 template <class Parse>
 std::string usage_of(Parse parse, const std::string& text) {
   const auto address = parse(text);
@@ -116,8 +117,8 @@ std::string owner_token() {
   return token ? token : "";
 }
 
-// `wait_for_end` receives the signals instead of handlers: all threads inherit the mask that is set
-// before they start.
+// `wait_for_end` receives the signals, so no handlers are needed. All threads inherit the signal
+// mask because it is set before they start.
 sigset_t block_signals() {
   sigset_t ending;
   sigemptyset(&ending);
@@ -135,7 +136,8 @@ void wait_for_end(const sigset_t& ending) {
   }
 }
 
-// Each connection needs a descriptor, and the default limit is half of the server's maximum.
+// Each connection needs a file descriptor. The default limit is half of the maximum number of
+// connections.
 void raise_descriptor_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -225,7 +227,7 @@ int run(ServeOptions options) {
     std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port
               << ": database strata, user strata_reader, password in "
               << (options.data.data / "sql-password").string() << std::endl;
-  // An owner with a password needs no link, which would be in logs.
+  // An owner with a password does not need a link, which would appear in logs.
   if (owner->has_password) {
     std::cout << "sign in at: " << url << "/" << std::endl;
   } else {

@@ -10,8 +10,8 @@
 #include "cli/commands.h"
 #include "cli/open_database.h"
 
-// Commands with subcommands that work on the database, also while a server runs on it. `Options`
-// has the DataOptions `data`.
+// Commands with subcommands that use the database, even while a server is running on it. `Options`
+// must have the member `data` with DataOptions.
 namespace strata::cli {
 
 template <class Options>

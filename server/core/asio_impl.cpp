@@ -1,3 +1,2 @@
-// The compiled part of Boost.Asio (BOOST_ASIO_SEPARATE_COMPILATION), once for all modules. `net`
-// compiles the part of Beast.
+// Compiles Boost.Asio once for all modules (BOOST_ASIO_SEPARATE_COMPILATION). `net` compiles Beast.
 #include <boost/asio/impl/src.hpp>

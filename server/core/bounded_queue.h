@@ -8,7 +8,7 @@
 
 namespace strata {
 
-// A queue between threads with a limited size. `push` returns false if the queue is full or closed;
+// A queue of limited size between threads. `push` returns false if the queue is full or closed, and
 // the caller handles that case.
 template <class T>
 class BoundedQueue {
@@ -22,7 +22,7 @@ class BoundedQueue {
     changed_.notify_one();
     return true;
   }
-  // Waits for an item; empty if the queue is closed and drained.
+  // Waits for an item. Returns nullopt when the queue is closed and has no more items.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || !items_.empty(); });

@@ -8,13 +8,14 @@
 
 namespace strata {
 
-// Limits the total memory of large answers and bodies. One that is larger than the budget can have
-// all of it. Thread-safe.
+// Limits the total memory of large responses and request bodies. A response or body that is larger
+// than the budget is accepted only while nothing else is reserved. Thread-safe.
 class ByteBudget {
  public:
   explicit ByteBudget(std::uint64_t total) : total_(total) {}
 
-  // Holds the bytes until the last copy is destroyed; 503 if others hold too much.
+  // Reserves the bytes until the last copy of the result is destroyed. Returns the error `busy` if
+  // the other reservations leave too little.
   Result<std::shared_ptr<const void>> take(std::uint64_t bytes) {
     std::uint64_t held = held_->load();
     do {

@@ -3,8 +3,8 @@
 namespace strata {
 
 // A sum of doubles that compensates rounding errors (Neumaier 1974, with the branch-free step of
-// Knuth, TAOCP 2, 4.2.2): as precise as with twice the digits, for any sizes and order of the
-// numbers. Finite numbers only.
+// Knuth, TAOCP 2, 4.2.2). It is as precise as a sum with twice as many digits, for numbers of any
+// size and in any order. Accepts only finite numbers.
 class CompensatedSum {
  public:
   CompensatedSum(double value = 0) : sum_(value) {}

@@ -4,9 +4,9 @@
 
 namespace strata {
 
-// Returns freed memory to the system: after long work and after viewers leave, the allocator keeps
-// up to a gigabyte in small pieces. Takes tens of milliseconds per gigabyte, in which other threads
-// may wait for memory.
+// Returns freed memory to the system. After long work, and after viewers leave, the allocator keeps
+// up to a gigabyte in small pieces. The call takes tens of milliseconds per gigabyte, and other
+// threads that allocate memory may wait for that time.
 inline void give_back_memory() { ::malloc_trim(0); }
 
 }  // namespace strata

@@ -8,17 +8,17 @@
 #include <string>
 #include <vector>
 
-// The ids of rows: one type per kind, so that an id of a layer is never used for a table. Numbers
-// are converted to ids at the input (a reference in an address, a message, a row of the database)
-// and back at the output.
+// The ids of rows. Each kind of row has its own type, so the id of a layer cannot be used for a
+// table. At the input (a reference in an address, a message, a row of the database), numbers are
+// converted to ids. At the output, ids are converted to numbers.
 namespace strata {
 
 template <class Kind>
 class Id {
  public:
-  constexpr Id() = default;  // no row has this id
+  constexpr Id() = default;  // no row has this default id
   constexpr explicit Id(std::int64_t number) : number_(number) {}
-  // a literal number in the code
+  // Accepts a literal number in the code.
   // NOLINTNEXTLINE(google-explicit-constructor, hicpp-explicit-conversions)
   consteval Id(int number) : number_(number) {}
 
@@ -40,7 +40,7 @@ class Id {
   std::int64_t number_ = 0;
 };
 
-// Converts numbers from outside.
+// Converts the numbers of a request.
 template <class Id>
 std::vector<Id> ids_of(std::span<const std::int64_t> numbers) {
   std::vector<Id> ids;

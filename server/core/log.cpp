@@ -23,7 +23,7 @@ void set_level(Level level) {
                                                    spdlog::level::warn, spdlog::level::err};
   logger().set_level(kLevels[static_cast<int>(level)]);
 }
-// The message is data, never a format string.
+// The message is data. It is not used as a format string.
 void debug(std::string_view message) { logger().debug("{}", message); }
 void info(std::string_view message) { logger().info("{}", message); }
 void warning(std::string_view message) { logger().warn("{}", message); }

@@ -6,7 +6,8 @@ namespace strata::log {
 
 enum class Level { debug, info, warning, error };
 
-// Write one line to stderr with time and level. Log or propagate an error, never both.
+// Write one line with the time and the level to stderr. Either log an error or return it, but not
+// both.
 void set_level(Level level);
 void debug(std::string_view message);
 void info(std::string_view message);

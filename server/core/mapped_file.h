@@ -9,11 +9,12 @@
 
 namespace strata {
 
-// A file as read-only memory. The file must not shrink while it is mapped: uploads and imports are
-// complete before they are read.
+// A file that is mapped into memory, read-only. The file must not become shorter while it is
+// mapped. Uploads and imports are therefore complete before they are read.
 class MappedFile {
  public:
-  // Error `invalid`: the reason why the file cannot be read. An empty file has no bytes.
+  // Returns the error `invalid`, with the reason, if the file cannot be read. An empty file has no
+  // bytes.
   static Result<MappedFile> open(const std::filesystem::path& file);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;
@@ -22,8 +23,8 @@ class MappedFile {
   std::span<const std::uint8_t> bytes() const {
     return {static_cast<const std::uint8_t*>(data_), size_};
   }
-  // Releases the memory that holds this part; a later access reads it from the file again. A single
-  // pass through gigabytes thus needs little memory.
+  // Releases the memory that holds this part. A later access reads the part from the file again. So
+  // a single pass through gigabytes needs little memory.
   void release(std::string_view part) const;
   std::string_view view() const { return {static_cast<const char*>(data_), size_}; }
 

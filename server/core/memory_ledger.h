@@ -10,11 +10,12 @@
 
 namespace strata {
 
-// Accounts for one kind of memory: every large object holds a share of the budget as long as it
-// exists. Thread-safe except `set_budget` and `set_evictor`: call these at the start and the end.
+// Counts the use of one kind of memory. Each large object holds a share of the budget while it
+// exists. Thread-safe except `set_budget` and `set_evictor`: call these only at the start and at
+// the end.
 class MemoryLedger {
  public:
-  // A counted number of bytes, released on destruction. Move-only; must not outlive the ledger.
+  // A counted number of bytes, released by the destructor. Move-only. Must not outlive the ledger.
   class Share {
    public:
     Share() = default;
@@ -22,8 +23,8 @@ class MemoryLedger {
     Share& operator=(Share&& other) noexcept;
     ~Share() { reset(); }
     std::uint64_t bytes() const { return bytes_; }
-    // Corrects the size of an object that has grown or shrunk already, also beyond the budget. Not
-    // for an empty share.
+    // Corrects the size after the object has grown or shrunk, even if the total then exceeds the
+    // budget. Not for an empty share.
     void recount(std::uint64_t bytes);
     void reset();
 
@@ -34,21 +35,21 @@ class MemoryLedger {
     std::uint64_t bytes_ = 0;
   };
 
-  // `kind` and `option` appear in messages: "GPU memory", "--gpu-memory".
+  // The messages contain `kind` and `option`, such as "GPU memory" and "--gpu-memory".
   MemoryLedger(std::string kind, std::string option, std::uint64_t budget_bytes)
       : kind_(std::move(kind)), option_(std::move(option)), budget_bytes_(budget_bytes) {}
   void set_budget(std::uint64_t budget_bytes) { budget_bytes_ = budget_bytes; }
   std::uint64_t budget() const { return budget_bytes_; }
   std::uint64_t used() const { return used_bytes_; }
-  // without eviction
+  // Returns whether the bytes fit without eviction.
   bool fits(std::uint64_t bytes) const { return used_bytes_ + bytes <= budget_bytes_; }
   bool exceeded() const { return used_bytes_ > budget_bytes_; }
 
-  // Frees one object that is unused or can be made again; false if no such object exists. `reserve`
-  // calls it on its thread.
+  // Sets the function that frees one object that is unused or can be made again. It returns false
+  // if no such object exists. `reserve` calls it on its own thread.
   void set_evictor(std::function<bool()> evict_one) { evict_one_ = std::move(evict_one); }
-  // Error `out_of_memory`: `bytes` do not fit even after eviction; `what` names their use in the
-  // message.
+  // Returns the error `out_of_memory` if `bytes` do not fit even after eviction. `what` names the
+  // use of the bytes in the message.
   Result<Share> reserve(std::uint64_t bytes, std::string_view what);
   Error used_up(std::uint64_t bytes, std::string_view what) const;
 

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// The standard message for an entity that does not exist or is not visible to the caller: "There is
-// no layer `cracks`." `ref` is the id or slug of the request.
+// Returns the standard error for an entity that does not exist or that the caller cannot see:
+// "There is no layer `cracks`." `ref` is the id or slug in the request.
 inline tl::unexpected<Error> no_such(std::string_view kind, const std::string& ref,
                                      std::string field = {}) {
   return fail(ErrorCode::not_found, "Not found",

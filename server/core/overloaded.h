@@ -2,7 +2,7 @@
 
 namespace strata {
 
-// Combines several lambdas to one visitor of std::visit, as on cppreference.
+// Combines several lambdas into one visitor for std::visit (from cppreference).
 template <class... Visitors>
 struct Overloaded : Visitors... {
   using Visitors::operator()...;

@@ -50,7 +50,7 @@ bool PolygonArea::contains(const glm::dvec2& point) const {
     const Edge& edge = edges_[i];
     if (point.y < edge.lower.y || point.y >= edge.upper.y) continue;
     const glm::dvec2 along = edge.upper - edge.lower;
-    // Left of the edge, seen upward.
+    // The point is on the left of the upward edge.
     if (along.x * (point.y - edge.lower.y) - along.y * (point.x - edge.lower.x) > 0)
       inside = !inside;
   }

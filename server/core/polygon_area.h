@@ -5,16 +5,16 @@
 
 namespace strata {
 
-// The inside of closed rings in a plane by the even-odd rule: a ring within a ring is a hole, and
-// an area that a ring encloses twice is outside. A point on an edge belongs to one of its sides.
-// Tests only the edges at the point's height.
+// The inside of closed rings in a plane, by the even-odd rule. A ring within a ring is a hole, and
+// an area that one ring encloses twice is outside. A point on an edge belongs to one of the two
+// sides. A test visits only the edges at the height of the point.
 class PolygonArea {
  public:
-  // Each ring is closed by an edge from its last point to the first. Coordinates are finite.
+  // Each ring is closed by an edge from its last point to its first. Coordinates must be finite.
   explicit PolygonArea(const std::vector<std::vector<glm::dvec2>>& rings);
 
   bool contains(const glm::dvec2& point) const;
-  // of the bounding box of all rings; above high() without rings
+  // The bounding box of all rings. Without rings, low() is above high().
   glm::dvec2 low() const { return low_; }
   glm::dvec2 high() const { return high_; }
 
@@ -25,8 +25,8 @@ class PolygonArea {
   int row_of(double y) const;
 
   glm::dvec2 low_, high_;
-  std::vector<Edge> edges_;        // by rows; each row has the edges that cross it
-  std::vector<std::size_t> rows_;  // index of each row's first edge, and the end
+  std::vector<Edge> edges_;        // by row; each row lists the edges that cross it
+  std::vector<std::size_t> rows_;  // index of the first edge of each row, then the end
 };
 
 }  // namespace strata

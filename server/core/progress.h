@@ -10,12 +10,12 @@
 
 namespace strata {
 
-// Shared between a long task and its observers. The worker calls `report`, and when `cancelled()`
-// becomes true it soon stops by returning `cancelled_problem()`. Thread-safe.
+// The progress of a long task, shared with its observers. The worker calls `report`. When
+// `cancelled()` becomes true, the worker soon returns `cancelled_problem()`. Thread-safe.
 class Progress {
  public:
-  // Maps later reports to the share [from, to] of the whole, so that a step does not depend on its
-  // place in the task.
+  // Maps later reports to the part [from, to] of the whole task. So a step does not depend on its
+  // position in the task.
   void begin_stage(double from, double to) {
     std::lock_guard lock(mutex_);
     from_ = from;
@@ -34,9 +34,9 @@ class Progress {
     std::lock_guard lock(mutex_);
     return message_;
   }
-  // The reporting job, for the stored result; 0: no job.
+  // The id of the job that reports, for the stored result. 0 if the task is not a job.
   JobId job() const { return job_; }
-  void set_job(JobId job) { job_ = job; }  // before the work begins
+  void set_job(JobId job) { job_ = job; }  // call before the work begins
 
   void cancel() { cancelled_ = true; }
   bool cancelled() const { return cancelled_; }

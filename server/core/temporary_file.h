@@ -8,10 +8,10 @@
 
 namespace strata {
 
-// A file that was made for one user. The destructor deletes it.
+// A file that was made for one user. The destructor deletes the file.
 struct TemporaryFile {
   std::filesystem::path path;
-  std::string name, media_type;  // for the user's download
+  std::string name, media_type;  // for the download
   std::uint64_t bytes = 0;
   TemporaryFile() = default;
   explicit TemporaryFile(std::filesystem::path file) : path(std::move(file)) {}

@@ -17,7 +17,7 @@ Uuid random_uuid() {
 }
 
 std::optional<Uuid> parse_uuid(std::string_view text) {
-  // Boost's parser accepts other forms, too, and throws.
+  // Boost's parser also accepts other forms, and throws exceptions.
   if (text.size() != 36) return std::nullopt;
   Uuid uuid;
   for (std::size_t i = 0, at = 0; i < uuid.bytes.size(); ++i, at += 2) {

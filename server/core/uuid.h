@@ -9,7 +9,7 @@
 
 namespace strata {
 
-// The RFC 4122 identifier of a changing message or a session.
+// The identifier of a message that changes data, or of a session (RFC 4122).
 struct Uuid {
   std::array<std::uint8_t, 16> bytes{};
   auto operator<=>(const Uuid&) const = default;

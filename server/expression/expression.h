@@ -9,19 +9,19 @@
 
 namespace strata {
 
-// A parsed formula (expression/expression_parser) of a fill, a selection, a filter of records or a
-// computed layer: a condition, a number, a text or a time at each texel or record.
+// A parsed formula (expression/expression_parser) for a fill, a selection, a filter of records or a
+// computed layer. At each texel or record, it gives a condition, a number, a text or a time.
 //
-// A missing value of a layer or column is unknown, and so is a result computed from it, or a result
-// that is not finite (1/0). Conditions are three-valued as in SQL: a comparison with an unknown
-// number is unknown, `false and unknown` is false, `true or unknown` is true. Only `valid(layer)`
-// and `known` are always known. Where a condition is unknown, it has no effect.
+// The missing value of a layer or column is unknown. A result is unknown if it is computed from an
+// unknown value or is not finite (1/0). Conditions have three values, as in SQL. A comparison with
+// an unknown number is unknown, `false and unknown` is false, and `true or unknown` is true. Only
+// `valid(layer)` and `known` are never unknown. An unknown condition has no effect.
 struct Expression {
   enum class Op {
     // numbers
-    number,          // `number`; NaN: unknown
+    number,          // `number`; NaN if unknown
     layer,           // the value of the layer whose slug is `name`
-    add,             // of two parts, as the next ones
+    add,             // of two parts, like the next three
     subtract,        //
     multiply,        //
     divide,          //
@@ -29,82 +29,83 @@ struct Expression {
     absolute,        // of one part
     least,           // of two or more parts
     greatest,        // of two or more parts
-    choose,          // parts: a condition, the number if it is true, the number if it is false
-    power,           // of two parts, as the next ones
+    choose,          // parts: a condition, the number if it is true, and the number if it is false
+    power,           // of two parts, like the next two
     remainder,       // of a division towards zero
     whole_division,  // the quotient without its fraction
-    square_root,     // of one part, as the next ones
+    square_root,     // of one part, like the next six
     exponential,     //
     natural_log,     //
     decimal_log,     //
     floor,           //
     ceiling,         //
     round,           // halves away from zero
-    sine,            // of radians, as the next ones
+    sine,            // of an angle in radians, like the next two
     cosine,          //
     tangent,         //
-    arc_sine,        // in radians, as the next ones
+    arc_sine,        // an angle in radians, like the next two
     arc_cosine,      //
     arc_tangent,     //
     radians,         // of degrees
     degrees,         // of radians
-    x,               // of the texel's position in the world, model units, as the next ones
+    x,               // position of the texel in the world, in model units, like the next two
     y,               //
     z,               //
-    area,            // of the texel, m²
-    // number `index` of the values read from records (expression/record_parts), for the key that
-    // the layer `name` holds
+    area,            // of the texel, in m²
+    // The number at `index` of the values that are read from records (expression/record_parts), for
+    // the key in the layer `name`.
     record_number,
-    // of any kind
-    // `path` of a record: the one whose key the layer `name` holds, or, without a name, the
-    // filtered record
+    // Of any type: `path` of the record whose key the layer `name` holds. Without a name, `path` of
+    // the filtered record.
     column,
-    // texts, which also write times: ISO 8601, EDTF
+    // Texts. They also represent times (ISO 8601, EDTF).
     text,          // `text`
     fold_case,     // of one part
     fold_accents,  // of one part
-    keys,          // of records: parts are numbers
-    // conditions
+    keys,          // keys of records; the parts are numbers
+    // Conditions.
     truth,          // `number` is 1 or 0
     valid,          // the layer has a value
     known,          // the part is known
-    less,           // of two parts of one kind, as the next ones
+    less,           // of two parts of one type, like the next five
     less_equal,     //
     greater,        //
     greater_equal,  //
     equal,          //
     not_equal,      //
-    // of a text and a pattern: % for any characters, _ for one, \ before a literal character
+    // Of a text and a pattern: % matches any characters, _ matches one character, and \ precedes a
+    // literal character.
     like,
     all,           // of two or more conditions
     any,           // of two or more conditions
     negation,      // of one condition
     holds,         // of a column of booleans
-    before,        // of two times, as the next ones: all of the first is before all of the second
-    after,         //
+    before,        // of two times, like the next six: the first ends before the second begins
+    after,         // the first begins after the second ends
     during,        // the first is within the second
     contains,      // the second is within the first
-    intersects,    // they have a moment in common
-    disjoint,      // they have no moment in common
-    coincides,     // they begin and end together
-    has_all,       // of a relation and keys: it contains all of them
-    has_any,       // it contains one of them
-    has_only,      // it contains only them
-    has_exactly,   // it contains exactly them
-    record_truth,  // as record_number
+    intersects,    // the times have a moment in common
+    disjoint,      // the times have no moment in common
+    coincides,     // the times begin and end together
+    has_all,       // of a relation and keys, like the next three: has all of the keys
+    has_any,       // has at least one of the keys
+    has_only,      // has no other keys
+    has_exactly,   // has the keys and no others
+    record_truth,  // like record_number, for a condition
   };
 
-  // Position in the source text, in characters (Unicode code points); not compared.
+  // The position in the source text, in characters (Unicode code points). Ignored in comparisons.
   struct Position {
-    std::size_t at = 0;      // characters before it
-    std::size_t length = 0;  // of a name or text; 0 for others
+    std::size_t at = 0;      // number of characters before the position
+    std::size_t length = 0;  // of a name or text; 0 for other parts
     bool operator==(const Position&) const { return true; }
   };
 
   Op op = Op::number;
   double number = 0;
   std::string name;  // slug of a layer
-  // slugs of columns: of the record, then of the record whose key the previous column holds
+  // Slugs of columns: first a column of the record, then columns of the record whose key the
+  // previous column holds.
   std::vector<std::string> path;
   std::string text;
   std::size_t index = 0;
@@ -117,7 +118,7 @@ struct Expression {
   bool operator==(const Expression&) const = default;
 };
 
-// Kinds of mistakes in an expression. Programs can depend on the names
+// Kinds of mistakes in an expression. Programs can depend on the names of the kinds
 // (docs/reference/errors.md).
 namespace mistake {
 inline constexpr std::string_view kSyntax = "syntax";
@@ -133,16 +134,17 @@ inline constexpr std::string_view kComputedLayersOnly = "computed_layers_only";
 inline constexpr std::string_view kTooLarge = "too_large";
 }  // namespace mistake
 
-// Returns an Error (invalid) for a mistake at a character (from 0) of an expression's text.
-// `suggestions` are texts that would correct the characters of `position`.
+// Returns an Error (invalid) for a mistake at a character (counted from 0) of an expression.
+// `suggestions` are texts that correct the mistake if they replace the characters at `position`.
 Error expression_problem(const std::string& what, Expression::Position position,
                          const std::string& field, std::string_view reason = mistake::kSyntax,
                          std::vector<std::string> suggestions = {});
 
-// Returns the slugs of the layers that it reads, each once, in order of their first use.
+// Returns the slugs of the layers that the expression reads, without duplicates, in the order of
+// their first use.
 std::vector<std::string> layers_of(const Expression& expression);
 
-// Whether it reads a column of a record.
+// Returns whether the expression reads a column of a record.
 bool reads_records(const Expression& expression);
 
 }  // namespace strata

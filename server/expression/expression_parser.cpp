@@ -28,21 +28,22 @@ struct Token {
   enum class Kind { end, number, word, quoted, text, symbol };
   Kind kind = Kind::end;
   std::size_t at = 0;  // position in the text
-  std::string text;    // words in lower case
+  std::string text;    // words are in lowercase
   double number = 0;
 };
 
 constexpr std::array<std::string_view, 16> kKeywords{
     "and",  "or",  "not", "true",    "false", "case", "when", "then",
     "else", "end", "is",  "between", "in",    "null", "like", "div"};
-// Words that can follow a number or a condition.
+// The words that can follow a number or a condition.
 const std::vector<std::string> kJoiningWords{"and", "or", "not", "is", "between", "like", "div"};
-// Units that people write after numbers. The inch is missing: `in` is a word of the language.
+// The units that users write after numbers. The inch is missing, because `in` is a keyword of the
+// language.
 constexpr std::array<std::string_view, 11> kUnits{"mm",  "cm", "m",  "km", "um",     "nm",
                                                   "deg", "g",  "kg", "ft", "percent"};
 
-// A recursive descent parser. The first error is kept and ends the text, so that every level
-// returns, with any intermediate result.
+// A recursive descent parser. It keeps the first error and then moves to the end of the text, so
+// every level returns with any intermediate result.
 class Parser {
  public:
   Parser(std::string_view text, const std::string& field, Names names)
@@ -84,7 +85,7 @@ class Parser {
     return {};
   }
 
-  // The text ends here, but more follows: perhaps a unit, or a word with a typing mistake.
+  // Reports that the expression is complete but text follows, perhaps a unit or a misspelled word.
   void refuse_rest() {
     const std::string what = "'" + token_.text + "' was not expected here";
     const std::string word = token_.text;
@@ -188,7 +189,7 @@ class Parser {
     at_ = end + 1;
   }
 
-  // A quote inside the text is doubled.
+  // A quote inside the text is written twice.
   void take_text() {
     token_.kind = Token::Kind::text;
     std::size_t at = at_ + 1;
@@ -239,7 +240,7 @@ class Parser {
     while (next < text_.size() && is_space(text_[next])) ++next;
     return next < text_.size() && text_[next] == '(';
   }
-  // Returns the operator of this form at the current token.
+  // Returns the operator with this form at the current token.
   const Operator* operator_here(Form form) const {
     const auto row = std::ranges::find_if(operators(), [&](const Operator& each) {
       return each.form == form && (is(each.name) || (!each.alias.empty() && is(each.alias)));
@@ -317,7 +318,7 @@ class Parser {
     return make(op, at, std::move(left), std::move(right));
   }
 
-  // The pattern follows.
+  // Parses the pattern after `like`.
   Expression likeness(Expression text, std::size_t at) {
     if (!text.is_text() && !text.is_column()) refuse("'like' works for texts only", at);
     advance();
@@ -339,7 +340,7 @@ class Parser {
     return negated ? known : make(Op::negation, at, std::move(known));
   }
 
-  // Both ends are included.
+  // Parses the limits after `between`. Both limits are included.
   Expression between(Expression middle, std::size_t at) {
     advance();
     const auto low_at = token_.at;
@@ -482,7 +483,8 @@ class Parser {
     return std::ranges::any_of(kKeywords, [&](std::string_view word) { return is(word); });
   }
 
-  // Parses a layer, a column, or a column of the record that a layer or another column refers to.
+  // Parses the name of a layer or a column, or of a column of the record that a layer or another
+  // column refers to.
   Expression named() {
     const auto at = token_.at;
     const std::string what = "the name of " + std::string(what_names_are());
@@ -555,7 +557,7 @@ class Parser {
     return expression;
   }
 
-  // In the form of EDTF.
+  // Builds an interval in the EDTF notation.
   Expression interval() {
     advance();
     expect("(");
@@ -629,7 +631,7 @@ class Parser {
     return number;
   }
 
-  // case when … then … else … end: a chain of choices.
+  // Parses `case when … then … else … end` as a chain of choices.
   Expression cases() {
     const auto at = token_.at;
     advance();
@@ -649,7 +651,8 @@ class Parser {
     return chain;
   }
 
-  // A table of limits: from each limit on its value, below the first limit the value before it.
+  // Parses a table of limits. Each value applies from its limit up to the next one. The value
+  // before the first limit applies below it.
   Expression reclass() {
     const auto at = token_.at;
     advance();
@@ -684,7 +687,7 @@ class Parser {
     return numeric(disjunction(), at);
   }
 
-  // --- kinds; the types of columns are unknown here
+  // --- types; the types of columns are not known here
 
   Expression condition(Expression expression, std::size_t at) {
     if (expression.is_column()) return make(Op::holds, at, std::move(expression));
@@ -720,7 +723,8 @@ class Parser {
     return left;
   }
 
-  // Copies an expression for a second use, within a limit: results must not grow exponentially.
+  // Copies an expression for a second use. The total is limited, because results must not grow
+  // exponentially.
   Expression again(const Expression& expression) {
     repeated_ += size_of(expression);
     if (repeated_ > kMaxExpressionLength)
@@ -740,7 +744,8 @@ class Parser {
     expression.op = op;
     expression.position.at = characters_before(at);
     (expression.parts.push_back(std::move(parts)), ...);
-    // a + b + c + … nests to the left; evaluation and destruction are recursive.
+    // The limit protects the stack: a + b + c + … nests to the left, and evaluation and destruction
+    // are recursive.
     if (depth_of(expression) > kMaxExpressionDepth)
       refuse("This expression is nested too deeply", at, mistake::kTooLarge);
     return expression;
@@ -752,7 +757,7 @@ class Parser {
     return deepest + 1;
   }
 
-  // Counts the levels that can recurse without limit.
+  // Counts the nesting levels, because recursion must have a limit.
   struct Nesting {
     explicit Nesting(Parser& owner) : parser(owner) {
       if (++parser.depth_ > 3 * kMaxExpressionDepth)

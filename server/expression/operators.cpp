@@ -92,7 +92,7 @@ constexpr Operator of_keys(Op op, std::string_view name, const char* sql) {
 constexpr double kRadiansOfDegree = std::numbers::pi / 180;
 constexpr double kDegreesOfRadian = 180 / std::numbers::pi;
 
-// In SQL, roots, logarithms and powers are guarded where they have no value: otherwise PostgreSQL
+// The SQL returns NULL for roots, logarithms and powers that have no value. Otherwise PostgreSQL
 // would abort the whole query.
 constexpr std::array kOperators{
     infix(Op::add, Form::sum, "+", "({a} + {b})", std::plus<>{}),
@@ -110,7 +110,9 @@ constexpr std::array kOperators{
         [](double x, double y) { return std::pow(x, y); }),
     prefix(Op::negate, "-", "(- {a})", std::negate<>{}),
 
-    // "Before" means that it has ended, "after" that it has not begun; up to and from include it.
+    // A time is "before" another if it ends before the other begins, and "after" if it begins after
+    // the other ends. With <=, it ends before or with the other. With >=, it begins with or after
+    // it.
     comparison(Op::equal, "=", "==", "({a} = {b})", "({a} = {b} AND {a_end} = {b_end})",
                std::equal_to<>{}),
     comparison(Op::not_equal, "<>", "!=", "({a} <> {b})", "({a} <> {b} OR {a_end} <> {b_end})",
@@ -167,7 +169,7 @@ constexpr std::array kOperators{
 
 constexpr auto kLastOp = Op::record_truth;
 
-// The evaluator looks up the row for each block of texels.
+// An array, because the evaluator looks up the row for each block of texels.
 constexpr auto kRowOfOp = [] {
   std::array<const Operator*, static_cast<std::size_t>(kLastOp) + 1> rows{};
   for (const Operator& row : kOperators) rows[static_cast<std::size_t>(row.op)] = &row;

@@ -11,13 +11,13 @@
 
 namespace strata {
 
-// A row of the table of operators and functions: the syntax, the operands, and the evaluation at
-// texels and in the database. Elements with a separate grammar are not in it: names, literals,
-// choices, `like`, `and`, `or`, `not`, tests for known values.
+// A row in the table of operators and functions, with the syntax, the operands, and the evaluation
+// at texels and in the database. The table does not contain elements that have their own grammar:
+// names, literals, choices, `like`, `and`, `or`, `not`, and tests for known values.
 struct Operator {
-  // The place in the grammar and the kind of the operands.
+  // The position in the grammar and the type of the operands.
   enum class Form {
-    sum,  // infix, of numbers, as the next three; in order of increasing precedence
+    sum,  // infix, of numbers, like the next two; in order of increasing precedence
     product,
     power,
     sign,        // prefix, of a number
@@ -25,26 +25,28 @@ struct Operator {
     number_function,
     text_function,
     time_function,  // of two times
-    key_function,   // of a relation and keys
+    key_function,   // of a relation and a list of keys
   };
   static constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 
   Expression::Op op;
   Form form;
-  std::string_view name;     // the syntax
-  std::string_view alias{};  // an alternative syntax
+  std::string_view name;     // the name in the syntax
+  std::string_view alias{};  // an alternative name
   std::size_t min_operands = 2, max_operands = 2;
 
-  // For numbers: replaces a by the result; b is empty for one operand. Non-finite means unknown.
+  // For numbers: replaces each number in `a` by the result. `b` is empty if the operation has one
+  // operand. A result that is not finite is unknown.
   void (*apply)(std::span<double> a, std::span<const double> b) = nullptr;
-  // For comparisons of numbers, at most 64: sets a bit for each that is true; the second function
-  // has one number on the right.
+  // For comparisons of at most 64 numbers: sets the bit of each comparison that is true. The second
+  // function compares with one number on the right.
   std::uint64_t (*compare)(std::span<const double> a, std::span<const double> b) = nullptr;
   std::uint64_t (*compare_with)(std::span<const double> a, double b) = nullptr;
 
-  // The PostgreSQL expression over {a} and {b}; NULL without a value.
+  // The PostgreSQL expression over {a} and {b}. NULL if it has no value.
   const char* sql = nullptr;
-  // For times, which have a first and a last moment: over {a}, {a_end}, {b} and {b_end}.
+  // For times, which have a first and a last moment. The expression over {a}, {a_end}, {b} and
+  // {b_end}.
   const char* times_sql = nullptr;
 
   bool is_called(std::string_view text) const {
@@ -52,13 +54,13 @@ struct Operator {
   }
 };
 
-// All operators; those of one form are in the order in which messages list them.
+// Returns all operators. Operators with the same form are in the order in which messages list them.
 std::span<const Operator> operators();
 
-// Returns the row of an operation; null for one with a separate grammar.
+// Returns the row of an operation, or null if the operation has its own grammar.
 const Operator* find_operator(Expression::Op op);
 
-// "min, max, …": the names of the functions of a form.
+// Returns the names of the functions with this form: "min, max, …".
 std::string names_of(Operator::Form form);
 
 }  // namespace strata

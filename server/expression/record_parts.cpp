@@ -7,10 +7,10 @@ namespace {
 
 using Op = Expression::Op;
 
-constexpr std::uint32_t kMaxDense = 1u << 16;  // most keys are consecutive: at most half a MiB
+constexpr std::uint32_t kMaxDense = 1u << 16;  // most keys are consecutive; at most 0.5 MiB
 
-// Returns the only layer whose records the expression reads; null if it reads a layer's values or
-// the records of several layers.
+// Returns the only layer whose records the expression reads. Returns null if the expression reads
+// the values of a layer, or the records of several layers.
 const std::string* only_record(const Expression& e) {
   const std::string* found = nullptr;
   if (e.op == Op::layer || e.op == Op::valid) return nullptr;
@@ -24,7 +24,7 @@ const std::string* only_record(const Expression& e) {
   return found;
 }
 
-// Rewrites the expression as one over the record's columns.
+// Rewrites the expression so that it reads the columns of the record directly.
 Expression over_columns(Expression e) {
   e.name.clear();
   for (Expression& part : e.parts) part = over_columns(std::move(part));

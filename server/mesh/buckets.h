@@ -7,13 +7,13 @@
 
 namespace strata::mesh {
 
-// The items of each bucket in a row of buckets; an item that extends over several is in each of
-// them.
+// A row of buckets and the items in each of them. An item that extends over several buckets is in
+// each of them.
 class Buckets {
  public:
   Buckets() = default;
-  // reach_of(item) of 0 … items - 1 returns the pair of the first and last bucket of an item. It is
-  // called twice for each.
+  // For each item from 0 to items - 1, reach_of(item) returns the pair of its first and last
+  // bucket. It is called twice for each item.
   template <class ReachOf>
   Buckets(int count, std::uint32_t items, const ReachOf& reach_of)
       : first_(static_cast<std::size_t>(count) + 1, 0) {

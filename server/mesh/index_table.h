@@ -12,14 +12,15 @@ inline std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29);
 }
 
-// Hash table (open addressing) of indices into other arrays: 4 bytes a slot, at most 3/4 full.
+// A hash table (open addressing) of indices into other arrays. A slot has 4 bytes, and at most 3/4
+// of the slots are used.
 class IndexTable {
  public:
   explicit IndexTable(std::size_t expected)
       : slots_(std::bit_ceil(std::max<std::size_t>(16, expected + expected / 3 + 1)), kEmpty) {}
 
-  // Returns an index inserted earlier that is `equal` to `index`, or inserts `index` and returns
-  // it.
+  // Returns an index inserted earlier that is `equal` to `index`. If no such index exists, inserts
+  // `index` and returns it.
   template <class Equal>
   std::uint32_t find_or_insert(std::uint64_t hash, std::uint32_t index, Equal equal) {
     for (std::size_t slot = first(hash);; slot = (slot + 1) & (slots_.size() - 1)) {
@@ -28,12 +29,12 @@ class IndexTable {
     }
   }
 
-  // Inserts `index` even if an equal one is present.
+  // Inserts `index` even if the table has an equal one.
   void insert(std::uint64_t hash, std::uint32_t index) {
     find_or_insert(hash, index, [](std::uint32_t) { return false; });
   }
 
-  // Calls visit(index) for all indices inserted with this hash, and perhaps others.
+  // Calls visit(index) for all indices inserted with this hash, and possibly for others.
   template <class Visit>
   void for_each(std::uint64_t hash, Visit visit) const {
     for (std::size_t slot = first(hash); slots_[slot] != kEmpty;

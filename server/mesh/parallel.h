@@ -11,7 +11,7 @@
 
 namespace strata::mesh {
 
-// Number of threads for long work during which people paint and view: on many cores, half of them.
+// The number of threads for long work while users paint and view: half of the cores, at least two.
 inline int background_threads() {
   return static_cast<int>(std::max(2u, std::thread::hardware_concurrency() / 2));
 }
@@ -20,8 +20,8 @@ inline int hardware_threads() {
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-// Runs work(0) … work(count - 1) on up to `threads` threads (including the calling one), each index
-// once, in any order. Before each index it checks whether the current question
+// Runs work(0) … work(count - 1) on up to `threads` threads, including the calling thread. Runs
+// each index once, in any order. Before each index it checks whether the current question
 // (domain/people/question.h) may continue. The first exception ends the work and is rethrown here.
 template <class Work>
 void parallel_for(int threads, int count, Work&& work) {

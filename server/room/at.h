@@ -5,7 +5,7 @@
 
 namespace strata::room {
 
-// The sequence of an edit: selects the state after it. Nothing: the present state.
+// The sequence of an edit. It selects the state after this edit. nullopt: the present state.
 using At = std::optional<std::int64_t>;
 
 }  // namespace strata::room

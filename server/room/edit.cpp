@@ -6,11 +6,11 @@
 namespace strata::room {
 namespace {
 
-// Returns the distinct values of a raster's valid texels.
+// Returns the distinct values of the valid texels.
 std::set<std::int64_t> keys_in(const TileMap& tiles) {
   std::set<std::int64_t> keys;
   for (const auto& [address, tile] : tiles) {
-    std::optional<std::uint32_t> last;  // neighbors mostly share a key
+    std::optional<std::uint32_t> last;  // neighbors mostly have the same key
     for (std::size_t word = 0; word < tile->valid.words.size(); ++word)
       for (auto rest = tile->valid.words[word]; rest != 0; rest &= rest - 1) {
         const std::uint32_t bits = tile->bits(static_cast<int>(word * 64) + std::countr_zero(rest));

@@ -24,25 +24,25 @@
 
 namespace strata::room {
 
-// Requests of a caller, in domain terms; net translates messages into them.
+// The requests of a caller in domain terms. `net` converts messages into them.
 struct StrokeEdit {
   StrokeBatch batch;
   Uuid stroke;
-  int n = 0;  // number of the batch in its stroke
+  int n = 0;  // number of the batch in the stroke
 };
 struct FillEdit {
   bool erase = false;
   std::uint32_t value_bits = 0;
   struct Everywhere {};
-  struct Where {  // of the model's layers as they are when the edit starts
+  struct Where {  // evaluated on the layers of the model as they are when the edit starts
     Expression condition;
   };
-  struct Island {  // the connected piece of the surface, across the seams of its atlas
+  struct Island {  // the connected piece of the surface, across the seams of the atlas
     Place at;
   };
   struct Connected {
-    // the texels that have the same value as the place, or like it no value, and are connected with
-    // it across the surface
+    // The connected piece of the surface at this position where all texels have the same value, or
+    // where all have no value.
     Place at;
   };
   std::variant<Everywhere, Where, Island, Connected> region = Everywhere{};
@@ -54,58 +54,59 @@ struct PolygonEdit {
 };
 struct ImportEdit {
   TileMap tiles;
-  // true: valid texels of the tiles are painted over the layer; false: the tiles replace its whole
-  // content
+  // If true, the valid texels of the tiles are painted over the layer. If false, the tiles replace
+  // the whole content of the layer.
   bool over = false;
-  bool computed = false;  // first content of a layer that is computed from the shape
+  bool computed = false;  // first content of a layer that is computed from the shape of the model
 };
 struct ComputeEdit {
-  // a computed layer's content, from the layers and records as they are when the edit starts
+  // The content of a computed layer, from the layers and records as they are when the edit starts.
   Expression expression;
-  // shape values that the expression reads (kShapeNames), as layers `surface.…`
+  // The shape values that the expression reads (kShapeNames), as layers `surface.…`.
   std::vector<query::LayerView> shapes;
-  bool overwrites = false;  // also later edits by hand
+  bool overwrites = false;  // also replaces later edits by hand
 };
-struct UndoEdit {};  // the author's newest stroke in force on the layer
+struct UndoEdit {};  // undoes the author's newest stroke in force on the layer
 struct RedoEdit {};
-struct ReviewEdit {  // of edits that wait for review, or were reviewed before
+struct ReviewEdit {  // reviews edits that wait for review, or that were reviewed before
   Decision decision = Decision::accept;
   store::Reviewees which;
-  std::string reason;  // for the authors
+  std::string reason;  // for the authors of the edits
 };
-struct RestoreEdit {  // the layer as it was after a sequence
+struct RestoreEdit {  // restores the layer as it was after a sequence
   std::int64_t sequence = 0;
-  std::optional<Outline> outline{};  // only the texels inside it
+  std::optional<Outline> outline{};  // if set, restores only the texels inside it
 };
 
 struct EditRequest {
-  Uuid id;  // of the message: a repeat gets the first answer and paints nothing
+  Uuid id;  // id of the message; a repeated request gets the first result and paints nothing
   Author author;
   LayerId layer_id = 0;
   std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit,
                RestoreEdit, ReviewEdit>
       edit{};
-  nlohmann::json record{};  // the edit as requested, for the journal
-  // the question that this edit answers, with its limits; null: the limits of the author
+  nlohmann::json record{};  // the requested edit, for the journal
+  // The question that contains this edit, with its limits. Null: the limits of the author apply.
   std::shared_ptr<Question> question{};
 };
 
-// Returns the keys that an edit of the layer paints: empty if it erases, undoes or restores.
+// Returns the keys that an edit paints on the layer. Empty if the edit erases, undoes or restores.
 std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit);
 
-// Returns whether the edit paints: undo, redo and reviews only change the state of other edits.
+// Returns whether the edit paints. Undo, redo and reviews only change the state of other edits.
 bool paints(const EditRequest& edit);
 // Returns whether the edit is provisional until a curator accepts or rejects it.
 bool waits_for_review(const Layer& layer, const EditRequest& edit);
 
-// Returns whether the edit writes a layer's computed values, and is not a change by hand.
+// Returns whether the edit writes the computed values of a layer, and is not a change by hand.
 bool computes(const EditRequest& edit);
-// Refused (forbidden, `layer`): a locked layer, unless the role is curator or higher; a layer with
-// its computed content, unless `computing`. The pipeline checks this before it begins an edit;
-// other callers check it only if they change something else before.
+// Returns an error (forbidden, at `layer`) for a locked layer if the role is below curator. Returns
+// the same error for a layer with its computed content, except while `computing`. The pipeline
+// checks this before an edit begins. Other callers need this check only if they change something
+// before the edit.
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);
 
-// Returns the answer to a repeat of an edit in the journal.
+// Returns the result for a repeated edit that is already in the journal.
 EditAnswer idempotent_response(const store::JournalRow& row);
 
 }  // namespace strata::room

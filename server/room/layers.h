@@ -22,41 +22,43 @@ struct TrashRestored;
 
 namespace strata::room {
 
-// The layers of an open model. Thread-safe. Changes block (database), and listeners are notified of
-// them.
+// The layers of an open model. Changes block on the database and notify the listeners. Thread-safe.
 class Layers {
  public:
   virtual ~Layers() = default;
   virtual std::vector<Layer> all() const = 0;                    // by order
   virtual Result<Layer> find(const std::string& ref) const = 0;  // id or slug
-  // A database layer without a table gets a new table of its own name with `columns`.
+  // Creates a layer. A database layer without a table gets a new table of the same name with
+  // `columns`.
   virtual Result<Layer> create(Layer layer, const store::IdempotentResponse<Layer>& answer = {},
                                std::vector<Column> columns = {}) = 0;
-  // If it locks the layer, every edit that had begun is durable, or refused, when it returns.
+  // If the update locks the layer, every edit that had begun is durable or refused when the call
+  // returns.
   virtual Result<Layer> update(Layer layer,
                                const store::IdempotentResponse<Layer>& answer = {}) = 0;
-  // Makes room for larger keys or values, also in the history; `layer` as it was read. Refused
-  // (invalid, `type`): a type that it does not widen to, and a computed layer.
+  // Converts the layer to a wider type, so it can hold larger keys or values. Includes the history.
+  // `layer` is the layer as the caller read it. Returns an error (invalid, at `type`) for a type
+  // that the layer does not widen to, and for a computed layer.
   virtual Result<Layer> widen(const Layer& layer, ValueType type,
                               const store::IdempotentResponse<Layer>& answer = {}) = 0;
-  // permanent
+  // Permanent.
   virtual Result<void> erase(LayerId id, const store::IdempotentResponse<>& answer = {}) = 0;
-  // Move a layer into the Trash and restore it. Listeners are notified of a restored layer as of a
-  // new one.
+  // Move a layer into the Trash and restore it. Listeners are notified of a restored layer as if it
+  // were new.
   virtual Result<void> put_in_trash(LayerId id, const store::IdempotentResponse<>& answer) = 0;
   virtual Result<store::TrashRestored> restore(
       const store::TrashEntry& entry,
       const store::IdempotentResponse<store::TrashRestored>& answer) = 0;
-  // Records that a ComputeEdit of the layer is durable with this sequence, and that `tables` are
-  // the sequences of the tables that its expression read.
+  // Records that a ComputeEdit of the layer is durable with this sequence. `tables` are the
+  // sequences of the tables that its expression read.
   virtual Result<Layer> mark_computed(LayerId id, const std::string& expression,
                                       std::int64_t sequence,
                                       const std::map<TableId, std::int64_t>& tables) = 0;
-  // Called after records of a table have changed: layers that are computed from them are stale, and
-  // layers that take their colors from its terms change.
+  // Call after records of a table have changed. Layers that are computed from them become stale,
+  // and layers that take their colors from the terms of the table change.
   virtual void records_changed(TableId table_id) = 0;
-  // Checks whether a formula for a computed layer can be evaluated here. Refused (invalid at
-  // `field`) as by bind_for_layer.
+  // Checks whether a formula for a computed layer can be evaluated in this room. Returns an error
+  // (invalid, at `field`) in the same cases as bind_for_layer.
   virtual Result<void> check_expression(const Expression& expression, const std::string& field,
                                         Visibility layer) const = 0;
 };

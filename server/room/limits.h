@@ -2,6 +2,6 @@
 
 namespace strata::room {
 
-constexpr int kMaxViews = 4;  // of one participant
+constexpr int kMaxViews = 4;  // per participant
 
 }  // namespace strata::room

@@ -16,8 +16,8 @@
 
 namespace strata::room {
 
-// Receives the events of a room. Called on the room's strand, in the same order for all listeners;
-// must return quickly (post to a socket).
+// Receives the events of a room. Called on the strand of the room, in the same order for all
+// listeners. Must return quickly (post to a socket).
 class Listener {
  public:
   virtual ~Listener() = default;
@@ -37,9 +37,9 @@ class Listener {
     };
     std::optional<Review> review{};
   };
-  // visible, not yet durable
+  // The edit is visible, but not yet durable.
   virtual void edit_applied(const Edit& edit) = 0;
-  // rolled back
+  // The edits were rolled back.
   virtual void edits_unsaved(const std::vector<Edit>& edits, const Error& why) = 0;
   enum class LayerChange { created, changed, deleted };
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
@@ -47,8 +47,8 @@ class Listener {
   virtual void model_changed(const Model& model) = 0;
   virtual void model_deleted() = 0;  // the last event
   virtual void presence_changed() = 0;
-  // An event of this participant's view only, on the GPU thread: the view cannot be drawn as
-  // requested, until something changes.
+  // An event for one view of this participant only, on the GPU thread. The view cannot be drawn as
+  // requested until something changes.
   virtual void view_refused(std::uint32_t view_id, const Error& why) = 0;
 };
 

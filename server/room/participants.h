@@ -20,30 +20,30 @@ class Listener;
 
 // The position of a pointer on the surface.
 struct Pointing {
-  glm::dvec3 position{0};        // world
-  std::optional<double> radius;  // world, of the current brush
+  glm::dvec3 position{0};        // in world coordinates
+  std::optional<double> radius;  // of the current brush, in world units
 };
 
-// The appearance of a participant to others.
+// How other participants see a participant.
 struct Portrait {
-  std::string full_name{};  // empty: none was given
+  std::string full_name{};  // empty if the user has no full name
   std::string color{kNobodysColor};
 };
 
-// The data of one connection that others receive; never stored.
+// The data of one connection that the other participants receive. Never stored.
 struct Presence {
   Uuid session;
   std::string user;
-  std::string full_name;  // empty: none was given
+  std::string full_name;  // empty if the user has no full name
   std::string color;      // #rrggbb
   std::optional<Pointing> pointer{};
-  bool leading = false;             // asks the others to follow
+  bool leading = false;             // the participant asks the others to follow
   std::optional<Uuid> following{};  // session of the leader
-  std::optional<Camera> camera{};   // newest of view 0 without its section, for followers
+  std::optional<Camera> camera{};   // newest camera of view 0 without its section, for followers
 };
 
-// One connection in a room. Methods are thread-safe and return at once. Destroying it leaves the
-// room.
+// One connection in a room. The methods are thread-safe and return immediately. The destructor
+// leaves the room.
 class Participant {
  public:
   virtual ~Participant() = default;
@@ -53,11 +53,12 @@ class Participant {
   // Replaces all former settings of this view.
   virtual Result<void> show(std::uint32_t view_id, ViewSettings settings) = 0;
   virtual void ack(std::uint32_t view_id, std::uint64_t frame) = 0;
-  virtual void edits() = 0;  // its user edits: slow frames of other participants do not delay
-                             // theirs
+  // Call when the user edits, so slow frames of other participants do not delay the frames of this
+  // one.
+  virtual void edits() = 0;
   virtual void pointer(std::optional<Pointing> at) = 0;
-  // Replaces the former settings. Refused as a whole, in `follow`: a session that is not in the
-  // room (not_found), one that follows this one (conflict).
+  // Replaces the former settings. Returns an error at `follow`, and changes nothing, if the session
+  // is not in the room (not_found) or follows this one (conflict).
   virtual Result<void> look_together(bool leading, const std::optional<Uuid>& follow) = 0;
 };
 
@@ -65,11 +66,12 @@ class Participant {
 class Participants {
  public:
   virtual ~Participants() = default;
-  // Frames and events contain only layers and columns that the participant sees at that moment.
+  // Frames and events contain only the layers and columns that the participant can see at that
+  // time.
   virtual std::unique_ptr<Participant> join(Author who, Portrait portrait, Listener* listener,
                                             stream::SendFrames send) = 0;
-  // Returns all participants, as one of the sessions receives them: of all cameras, only that of
-  // its leader.
+  // Returns all participants as one of the sessions receives them. The only camera in the result is
+  // that of its leader.
   virtual std::vector<Presence> presence(const Uuid& receiver) const = 0;
 };
 

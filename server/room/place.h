@@ -12,17 +12,18 @@ struct PixelPlace {  // the surface at a pixel of the camera's window
   Camera camera;
   double x = 0, y = 0;
 };
-// or the surface point nearest to a point of the world
+// Either a pixel, or the surface point nearest to a point in world coordinates.
 using Place = std::variant<PixelPlace, glm::dvec3>;
-// How an outline changes the selection of the outlines before it.
+// How an outline changes the selection that the previous outlines made.
 enum class Combination { add, subtract, intersect };
 struct Outline {
-  // the visible surface inside it in the camera's window (even-odd rule)
+  // Selects the visible surface inside the path in the camera's window (even-odd rule).
   Camera camera;
   std::vector<glm::dvec2> path;  // window pixels, origin top left; 3…4096 points
-  bool through = false;          // hidden surface, too
+  bool through = false;          // also selects hidden surface
 
-  // Further outlines, each in the window of its own camera, combined in their order.
+  // Further outlines. Each one is in the window of its own camera, and they are combined in this
+  // order.
   struct Step {
     Combination combination = Combination::add;
     Camera camera;

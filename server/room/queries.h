@@ -28,7 +28,7 @@ struct SurfaceTexels;
 
 namespace strata::room {
 
-// A state of a layer with its measurements.
+// A state of a layer, with its measurements.
 struct LayerAreas {
   query::LayerView view;
   std::shared_ptr<const mesh::SurfaceMap> map;  // of the layer's resolution
@@ -36,33 +36,33 @@ struct LayerAreas {
   query::Perimeters perimeters;
 };
 
-// A picture of the selection: the cells of a grid over the camera's window.
+// An image of the selection: the cells of a grid over the camera's window.
 struct SeenGrid {
   Camera camera;
   int columns = 0, rows = 0;
 };
-struct StatisticsOptions {  // options that take longer
+struct StatisticsOptions {  // options that take more time
   bool quantiles = false, pieces = false, perimeter = false;
-  std::optional<SeenGrid> seen{};  // of `select`
+  std::optional<SeenGrid> seen{};  // for `select`
 };
 struct SelectedArea {
-  int resolution = 0;  // of the counted texels
+  int resolution = 0;  // resolution of the counted texels
   std::uint64_t texels = 0;
-  double area_m2 = 0, share = 0;                    // of the whole surface
-  glm::dvec3 bounds_min{0}, bounds_max{0};          // world, if there is a texel
-  std::map<std::string, query::Statistics> layers;  // by slug: their values in the area
-  // for StatisticsOptions::seen, row by row from the top left: 1 where the camera sees the area
+  double area_m2 = 0, share = 0;            // fraction of the whole surface
+  glm::dvec3 bounds_min{0}, bounds_max{0};  // in world coordinates; only set if there is a texel
+  std::map<std::string, query::Statistics> layers;  // by slug: the values of each layer in the area
+  // For StatisticsOptions::seen, row by row from the top left. 1 where the camera sees the area.
   std::vector<std::uint8_t> seen{};
 };
 
-struct LayerDifference {  // of two states of a layer
+struct LayerDifference {  // between two states of a layer
   std::uint64_t texels = 0;
-  double area_m2 = 0, share = 0;  // of the whole surface
+  double area_m2 = 0, share = 0;  // fraction of the whole surface
 };
 
-struct PlacesInSteps {             // for each place, the nearest surface point is used
-  std::vector<glm::dvec3> places;  // world; at least 2
-  double step = 0;                 // model units, above 0
+struct PlacesInSteps {             // uses the nearest surface point for each position
+  std::vector<glm::dvec3> places;  // in world coordinates; at least 2
+  double step = 0;                 // in model units, above 0
 };
 struct SeenLine {
   Camera camera;
@@ -70,9 +70,9 @@ struct SeenLine {
 };
 using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
 
-// Questions to an open model. The first ones may take a while (search tree, surface map), so call
-// from a worker thread. Answers contain only values of the given layers. Refused (invalid, `at`): a
-// sequence that is not durable yet. Thread-safe.
+// Questions to an open model. The first ones may take more time (search tree, surface map), so call
+// from a worker thread. Answers contain only values of the given layers. Returns an error (invalid,
+// at `at`) for a sequence that is not durable yet. Thread-safe.
 class Queries {
  public:
   virtual ~Queries() = default;
@@ -87,30 +87,31 @@ class Queries {
   virtual Result<query::Statistics> statistics(const std::string& layer,
                                                const Selection& selection = {},
                                                StatisticsOptions options = {}) = 0;
-  // Counts texels of the finest layer in `layers` or in the condition; without a layer, at the
-  // model's default resolution.
+  // Counts the texels of the finest layer in `layers` or in the condition. Without a layer, uses
+  // the default resolution of the model.
   virtual Result<SelectedArea> select(const Selection& selection,
                                       const std::vector<std::string>& layers,
                                       StatisticsOptions options = {}) = 0;
-  // Returns the surface along a line; `layers` as for `position`.
+  // Returns the surface along a line, with the values of `layers`.
   virtual Result<query::Profile> profile(const ProfileLine& line,
                                          const std::vector<std::string>& layers, At at = {}) = 0;
-  // Returns how the values of two layers of whole numbers coincide, at the finer one's texels.
+  // Returns how the values of two layers of whole numbers coincide, at the texels of the finer
+  // layer.
   virtual Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                                 const Selection& selection = {}) = 0;
   // Returns the amount of each class of the layer's legend (query::classes_of).
   virtual Result<query::Quantities> quantities(const std::string& layer, At at = {}) = 0;
-  // The same with the borders of these classes (query::measure_perimeters; model units) and the
-  // texels, all of one state.
+  // The same, with the borders of these classes (query::measure_perimeters, in model units) and the
+  // texels. All data is from the same state.
   virtual Result<LayerAreas> layer_areas(const std::string& layer, At at = {}) = 0;
-  // Returns a layer with the positions of its texels in the selection; the result stays valid after
+  // Returns a layer with the positions of its texels in the selection. The result stays valid after
   // later edits.
   virtual Result<query::SurfaceTexels> surface_texels(const std::string& layer,
                                                       const Selection& selection = {}) = 0;
-  virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(
-      const std::string& layer) = 0;  // of a database layer
-  // Returns how much differs between two states of a layer: what a restore of the one would change
-  // in the other. `outline`: only inside it.
+  // Only for a database layer.
+  virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) = 0;
+  // Counts the changes that a restore of one state of a layer would make to another state. With
+  // `outline`, counts only the changes inside it.
   virtual Result<LayerDifference> difference(const std::string& layer, At one, At other,
                                              const std::optional<Outline>& outline) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) = 0;

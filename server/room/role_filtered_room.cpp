@@ -20,9 +20,9 @@
 namespace strata::room {
 namespace {
 
-// Every call that names layers is checked here first. Edits are checked when they start
-// (EditPipeline), frames and events when they are made (OpenParticipant,
-// OpenRoom::ParticipantsPart), because visibilities may change in between.
+// Checks every call that names layers. EditPipeline also checks edits when they start.
+// OpenParticipant and OpenRoom::ParticipantsPart check frames and events when they are made. This
+// is necessary because a visibility may change after the call.
 class FilteredLayers final : public Layers {
  public:
   FilteredLayers(Layers& layers, Role role) : layers_(layers), role_(role) {}
@@ -42,7 +42,7 @@ class FilteredLayers final : public Layers {
     return {};
   }
 
-  // The caller has found these layers through this class.
+  // These calls need no check, because the caller has found the layers through this class.
   Result<Layer> create(Layer layer, const store::IdempotentResponse<Layer>& answer,
                        std::vector<Column> columns) override {
     return layers_.create(std::move(layer), answer, std::move(columns));
@@ -205,7 +205,7 @@ class FilteredEdits final : public Edits {
  public:
   FilteredEdits(Edits& edits, const FilteredLayers& layers) : edits_(edits), layers_(layers) {}
 
-  // The caller has found this layer through this class.
+  // Needs no check, because the caller has found the layer through FilteredLayers.
   void submit(EditRequest request, Applied applied, Saved saved) override {
     edits_.submit(std::move(request), std::move(applied), std::move(saved));
   }
@@ -243,7 +243,7 @@ class FilteredParticipants final : public Participants {
   const Role role_;
 };
 
-// The surface and the surface images contain no layer data: those of the room are used.
+// The surface and the surface images contain no layer data, so those of the room are used.
 class RoleFilteredRoom final : public Room {
  public:
   RoleFilteredRoom(std::shared_ptr<Room> room, Role role)

@@ -14,9 +14,10 @@ class Pictures;
 class SurfaceImages;
 class Participants;
 
-// One open model, as a user sees it: without the layers that they do not see. This is the only
-// component that joins store, renderer, streams and queries: it keeps the order of edits, the tile
-// mirrors, undo, the journal and the participants. Code that uses a part includes its header.
+// One open model as a user sees it, without the layers that are hidden from the user. This is the
+// only component that connects the store, renderer, streams and queries. It keeps the order of
+// edits, the tile mirrors, undo, the journal and the participants. Code that uses a part includes
+// the header of the part.
 class Room {
  public:
   virtual ~Room() = default;
@@ -48,7 +49,7 @@ class Room {
     SurfaceImages* images = nullptr;
     Participants* participants = nullptr;
   };
-  Parts parts_;  // set by the implementation, before the room is shared
+  Parts parts_;  // set by the implementation before the room is shared
 };
 
 }  // namespace strata::room

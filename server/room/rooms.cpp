@@ -27,12 +27,12 @@ constexpr int kWorkerThreads = 2;
 constexpr int kReaderThreads = 2;
 constexpr auto kSweepEvery = std::chrono::seconds(5);
 
-// A share of the memory of the machine or of its container.
+// Returns 60 % of the memory of the machine or of its container.
 std::uint64_t default_budget() {
   std::uint64_t bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
                         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   std::uint64_t limit = 0;
-  // "max" is not a number
+  // If the file contains "max", it is not a number and there is no limit.
   if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit) bytes = std::min(bytes, limit);
   return bytes / 10 * 6;
 }
@@ -81,7 +81,7 @@ struct Rooms::Impl {
     writer.drain();
     workers.join();
     readers.join();
-    renderer.finish();  // no callback is posted to strands that are destroyed
+    renderer.finish();  // so no callback is posted to a destroyed strand
     strands.join();
     rooms.clear();
   }
@@ -98,11 +98,11 @@ struct Rooms::Impl {
 
   Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
 
-  // Closes rooms that were empty for a while, and returns the memory of participants who left to
-  // the system: each view has some 15 MB, in small pieces if the processor draws.
+  // Closes rooms that were empty for a while. Returns the memory of participants who left to the
+  // system: each view has about 15 MB, in small pieces if the CPU draws.
   void sweep() {
-    std::size_t departed = 0;  // since memory was returned
-    bool due = false;          // one round later, when the renderer has released their views
+    std::size_t departed = 0;  // since memory was last returned
+    bool due = false;  // return memory in the next round, when the renderer has released the views
     for (;;) {
       {
         std::unique_lock lock(mutex);
@@ -124,7 +124,7 @@ struct Rooms::Impl {
     }
   }
 
-  // Drops the surface map that was unused for the longest time, of a room without painting in
+  // Drops the surface map that was unused for the longest time. Skips rooms where painting is in
   // progress. Blocks, so it must not run on a strand.
   bool drop_a_map() {
     std::vector<std::pair<SurfaceMaps::Clock::time_point, std::shared_ptr<OpenRoom>>> by_use;
@@ -139,14 +139,14 @@ struct Rooms::Impl {
                        [](const auto& entry) { return entry.second->drop_map(); });
   }
 
-  // Closes empty rooms before their time; false if no room is empty.
+  // Closes empty rooms early. Returns false if no room is empty.
   bool close_empty_rooms() {
     return close_rooms([](const OpenRoom& room) { return room.participant_count() == 0; },
                        "because another model needs its memory");
   }
 
-  // Closes rooms that no request uses and where no edit waits for an answer: the map has the only
-  // reference.
+  // Closes rooms that are not used by a request and have no edit in progress. Then `rooms` has the
+  // only reference.
   bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {
@@ -202,14 +202,14 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role see
 }
 
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
-  // Finds an open room without the database, so that viewing continues when the database is
+  // Finds an open room without the database, so viewing continues while the database is
   // unreachable.
   if (auto room = find(model_ref)) return room;
   auto model = STRATA_TRY(services.store.models().find(model_ref));
   const int losses_before = context_losses;
   {
     std::unique_lock lock(mutex);
-    // One caller at a time loads a model; the others wait for it.
+    // One caller at a time loads a model. The others wait for it.
     changed.wait(lock, [&] { return stopping || draining || !opening.contains(model.id); });
     if (stopping || draining) return tl::unexpected(kStopping);
     if (auto found = rooms.find(model.id); found != rooms.end()) {
@@ -233,7 +233,8 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
     return fail(ErrorCode::not_found, "Not found", "The model was deleted.");
   }
   rooms[model.id] = *room;
-  if (context_losses != losses_before) (*room)->gpu_lost();  // it was filled for a lost context
+  // The GPU data of the room belongs to a lost context.
+  if (context_losses != losses_before) (*room)->gpu_lost();
   return room;
 }
 
@@ -253,7 +254,7 @@ Result<void> Rooms::retire_key(TableId table_id, std::int64_t key) {
 }
 
 Result<void> Rooms::settle() {
-  // gone: the model was deleted
+  // The error `gone` means that the model was deleted.
   for (const auto& room : impl_->open_ones())
     if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::gone)
       return settled;
@@ -288,7 +289,7 @@ std::size_t Rooms::open_rooms() const {
 void Rooms::drain() {
   {
     std::lock_guard lock(impl_->mutex);
-    impl_->draining = true;  // a room that is being opened is not kept
+    impl_->draining = true;  // rooms that are being opened are closed again
     impl_->changed.notify_all();
   }
   const auto rooms = impl_->open_ones();

@@ -13,24 +13,24 @@
 
 namespace strata::room {
 
-// A part of the surface, by the values of layers and by its place.
+// A part of the surface, selected by the values of layers and by its position.
 struct Selection {
   std::optional<Expression> where{};  // a condition
   struct Around {
-    // the surface connected with a place within a distance from it (query::select_near)
+    // The connected surface within a distance from a position (query::select_near).
     Place at;
-    double radius = 0;  // model units
+    double radius = 0;  // in model units
   };
   std::optional<std::variant<Around, Outline>> within{};
-  // Where any of these layers differs between two states.
+  // The texels where any of these layers differs between two states.
   struct Changed {
     std::vector<std::string> layers;  // slugs
     std::int64_t from = 0;
     std::int64_t to = 0;
   };
   std::optional<Changed> changed{};
-  At at{};                     // of the layers
-  Role seen_by = Role::owner;  // `where` cannot name layers that this role does not see
+  At at{};                     // the state of the layers
+  Role seen_by = Role::owner;  // `where` can only contain layers that this role sees
   bool whole() const { return !where && !within && !changed; }
 };
 

@@ -25,8 +25,8 @@ struct PlacedValue {
 };
 using ValueAt = std::function<std::optional<std::uint32_t>(const glm::dvec3& world)>;
 
-// The shape of an open model, without the content of its layers. Thread-safe. The tree and the maps
-// are built on first use, so call from a worker thread.
+// The shape of an open model, without the content of its layers. The tree and the maps are built on
+// first use, so call from a worker thread. Thread-safe.
 class Surface {
  public:
   virtual ~Surface() = default;
@@ -34,12 +34,12 @@ class Surface {
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) = 0;
   // Paint maps and measurements (query/maps), for an ImportEdit `over` the layer.
-  // Paints around the surface point nearest to each place, which may be at most `tolerance` away
-  // (model units): refused otherwise (invalid).
+  // Paints around the surface point nearest to each position. Returns an error (invalid) if a
+  // surface point is farther away than `tolerance` (model units).
   virtual Result<TileMap> point_splats(const Layer& layer, const std::vector<PlacedValue>& values,
                                        double radius, double tolerance) = 0;
-  // Paints the surface that is first visible along a direction, without perspective, by a function
-  // of the position in the world.
+  // Paints the surface that is first visible along a direction, without perspective. `value_at`
+  // returns the value for a position in the world.
   virtual Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,
                                   const ValueAt& value_at) = 0;
 };

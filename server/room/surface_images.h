@@ -12,8 +12,8 @@
 
 namespace strata::room {
 
-// Pictures of the surface. Thread-safe. Changes block (database), and listeners are notified of
-// them.
+// The surface images of an open model. Changes block on the database and notify the listeners.
+// Thread-safe.
 class SurfaceImages {
  public:
   virtual ~SurfaceImages() = default;

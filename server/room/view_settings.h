@@ -16,22 +16,22 @@
 
 namespace strata::room {
 
-// Highlighted records of a database layer.
+// The highlighted records of a database layer.
 struct Highlight {
-  // keys, ascending; or a condition over columns
+  // Either keys, ascending, or a condition over columns.
   std::variant<std::vector<std::uint32_t>, Expression> records;
-  bool isolate = false;  // the others are not drawn at all
+  bool isolate = false;  // other records are not drawn
   bool operator==(const Highlight&) const = default;
 };
 
-// A user's settings of a layer; empty members follow the layer's default.
+// A user's settings for a layer. For an empty member, the default of the layer applies.
 struct LayerView {
   LayerId layer_id = 0;
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<Palette> palette;
-  std::optional<Highlight> highlight;  // database layers
-  std::optional<int> order{};          // drawn ascending, as Layer::order
+  std::optional<Highlight> highlight;  // for database layers
+  std::optional<int> order{};          // layers are drawn in ascending order, like Layer::order
 };
 
 struct SurfaceImageView {
@@ -39,16 +39,16 @@ struct SurfaceImageView {
   double opacity = 1;
 };
 
-// The settings of one user's view.
+// The settings of one view of a user.
 struct ViewSettings {
   std::vector<LayerView> layers;
-  std::optional<std::vector<SurfaceImageView>>
-      images;  // bottom to top; nothing: those visible by default
+  // From bottom to top. nullopt: the images that are visible by default.
+  std::optional<std::vector<SurfaceImageView>> images;
   Light light;
   Background background{};
-  At at{};  // of the layers, a durable edit; nothing: always the newest state
+  At at{};  // a durable edit, for the state of the layers; nullopt: always the newest state
 
-  // Returns the settings of a layer, or empty ones.
+  // Returns the settings for a layer, or empty settings.
   const LayerView& of(LayerId layer_id) const {
     static const LayerView kNothing;
     const auto last = std::find_if(layers.rbegin(), layers.rend(),
@@ -63,8 +63,8 @@ const Layer& layer_in(const State& state) {
   return state.layer;
 }
 
-// Sorts layers, or objects with a `layer`, from bottom to top as a user sees them; `of` returns the
-// user's settings of a layer, by id.
+// Sorts layers, or objects with a `layer`, from bottom to top as a user sees them. `of` returns the
+// user's settings for a layer, by id.
 template <class Layers, class Of>
 void sort_as_shown(Layers& layers, const Of& of) {
   const auto place = [&](const auto& each) {

@@ -12,7 +12,8 @@
 namespace strata {
 namespace {
 
-// libraptor2 sets the handlers of libxml2, which are global in the process.
+// Only one call may run at a time, because libraptor2 sets the handlers of libxml2, which are
+// global in the process.
 std::mutex& one_at_a_time() {
   static std::mutex mutex;
   return mutex;
@@ -31,7 +32,7 @@ using Parser = std::unique_ptr<raptor_parser, Freed<raptor_free_parser>>;
 using Serializer = std::unique_ptr<raptor_serializer, Freed<raptor_free_serializer>>;
 using Statement = std::unique_ptr<raptor_statement, Freed<raptor_free_statement>>;
 
-// The first error, with its line.
+// The first error in the text, and its line.
 struct Complaint {
   std::string text;
   int line = 0;
@@ -47,7 +48,7 @@ void note(void* user, raptor_log_message* message) {
 World new_world(Complaint& complaint) {
   World world(raptor_new_world());
   if (!world) return world;
-  // Does not even initialize the network library.
+  // Prevents the initialization of the network library.
   raptor_world_set_flag(world.get(), RAPTOR_WORLD_FLAG_WWW_SKIP_INIT_FINISH, 1);
   raptor_world_set_log_handler(world.get(), &complaint, note);
   if (raptor_world_open(world.get()) != 0) world.reset();

@@ -17,15 +17,16 @@ struct Triple {
   std::string subject, predicate;
   std::string object;
   bool is_literal = false;
-  std::string language;  // of a literal, in lower case; may be empty
+  std::string language;  // of a literal, in lowercase; may be empty
 };
 
-// The base of relative IRIs in a text without a base: the parsed IRIs begin with it.
+// The base IRI for texts without a base. Relative IRIs in such a text are read as IRIs that begin
+// with it.
 inline constexpr std::string_view kRelativeBase = "http://relative.invalid/";
 
-// Reads a graph with libraptor2, triple by triple, until the sink returns false. Never fetches or
-// includes addresses, files or external entities. An Error (invalid) names the place of the first
-// mistake. One call at a time in the process.
+// Reads a graph with libraptor2, triple by triple, until `sink` returns false. Never fetches or
+// includes addresses, files or external entities. The Error (invalid) contains the position of the
+// first mistake. Only one call runs at a time in the process.
 Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
                       const std::function<bool(const Triple&)>& sink);
 

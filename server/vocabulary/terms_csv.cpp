@@ -15,7 +15,7 @@ constexpr std::pair<const char*, std::string Term::*> kParts[] = {
     {"uri", &Term::uri},        {"color", &Term::color},
     {"pattern", &Term::pattern}};
 
-// The meaning of a column: a part of a term, or labels in a language.
+// The meaning of a column: a part of a term, or the labels in one language.
 struct Head {
   std::string slug;
   std::string Term::*part = nullptr;

@@ -11,17 +11,18 @@ namespace {
 
 const std::string kSkos = "http://www.w3.org/2004/02/skos/core#";
 const std::string kType = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type";
-constexpr std::size_t kMaxConceptBytes = 256u << 20;  // of all data kept from a text
+constexpr std::size_t kMaxConceptBytes = 256u << 20;  // of all data that is kept from a text
 
 using ByLanguage = std::map<std::string, std::set<std::string>>;
 struct Concept {
-  bool is_described = false;  // has a description in the text, not only its name
+  bool is_described = false;  // the text has a description of it, not only its name
   bool is_other = false;      // a scheme or a collection of concepts
   std::set<std::string> notations, broader;
   ByLanguage labels, definitions, notes;
 };
 
-// Returns the text without a language, otherwise the English one, otherwise the first.
+// Returns the text without a language. If there is no such text, returns the English one, or else
+// the first one.
 std::string plainest(const ByLanguage& by_language) {
   for (const char* tag : {"", "en", "en-gb", "en-us"})
     if (const auto found = by_language.find(tag); found != by_language.end())
@@ -29,10 +30,10 @@ std::string plainest(const ByLanguage& by_language) {
   return by_language.empty() ? std::string() : *by_language.begin()->second.begin();
 }
 
-// Concepts by IRI.
+// The concepts of a text, by IRI.
 class Concepts {
  public:
-  // False: too many concepts.
+  // Returns false if there are too many concepts.
   bool take(const Triple& triple) {
     const std::string& predicate = triple.predicate;
     if (predicate == kType) {
@@ -100,7 +101,7 @@ std::string code_of(const std::string& iri, const Concept& about) {
   }
   if (code.empty()) code = plainest(about.labels);
   if (code.empty()) code = "term";
-  return std::string(first_bytes(code, kMaxCodeLength - 10));  // room for a number
+  return std::string(first_bytes(code, kMaxCodeLength - 10));  // leaves space for a number
 }
 
 std::string iri_text(std::string_view text) {
@@ -139,7 +140,7 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
   list.rows = concepts.size();
   list.columns = {"code", "parent", "label", "definition", "uri"};
   std::map<std::string, std::string> codes;  // by IRI
-  std::map<std::string, int> met;            // number of concepts with a code
+  std::map<std::string, int> met;            // number of concepts with the same code
   std::set<std::string> used;
   for (const auto& [iri, about] : concepts) {
     const std::string requested = code_of(iri, about);
@@ -166,7 +167,7 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
     term.definition = plainest(about.definitions.empty() ? about.notes : about.definitions);
     if (!iri.starts_with("_:") && !iri.starts_with(kRelativeBase)) term.uri = iri;
     if (!about.broader.empty()) {
-      // Prefers a parent that the text describes to one that it only names.
+      // Prefers a parent with a description in the text to a parent that only has a name there.
       auto parent =
           std::find_if(about.broader.begin(), about.broader.end(),
                        [&](const std::string& broader) { return codes.contains(broader); });

@@ -46,7 +46,8 @@ class Scanner {
     return true;
   }
 
-  // Moves after the next `>` outside of quotes; returns whether a slash precedes it.
+  // Moves to the position after the next `>` outside of quotes. Returns whether a slash precedes
+  // the `>`.
   bool tag() {
     for (++at_; at_ < text_.size() && text_[at_] != '>'; ++at_)
       if (text_[at_] == '"' || text_[at_] == '\'')

@@ -1,5 +1,5 @@
-// Measures the atlas of each mesh: texels used, stretch, texel footprints; seconds and memory of
-// each step.
+// Measures the atlas of each mesh: used texels, stretch and texel footprints, and the seconds and
+// memory of each step.
 #include <fstream>
 #include <iostream>
 #include <map>

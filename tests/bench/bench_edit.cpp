@@ -1,5 +1,5 @@
-// Measures edits by tiles and by the methods of the paper, its own algorithms and its octree rival,
-// on one context in one run.
+// Measures edits with Strata's tiles, the paper's algorithms and the paper's octree rival. All
+// methods use the same context in the same run.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -24,11 +24,11 @@ struct Options {
 };
 
 constexpr int kWidth = 1280, kHeight = 720;
-// Dabs on the model as `camera()` shows it; the same for every method.
+// Centers of dabs on the model as `camera()` shows it. All methods use the same centers.
 const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290},
                                {580, 340}, {690, 420}, {620, 380}};
-constexpr std::size_t kCompared = 3;  // the first of them
-// The least memory traffic of a texel: position 8, depth 4, value and flag read and written 4, and
+constexpr std::size_t kCompared = 3;  // the number of leading centers that are compared
+// The least memory traffic of a texel: position 8, depth 4, value and flag read and written 4, plus
 // the rest of each cache line.
 constexpr double kBytesPerTexel = 20;
 
@@ -37,7 +37,7 @@ struct Measured {
   EditCost last;
 };
 
-// One model, texture and radius.
+// The measurements of one model, texture size and radius.
 struct Case {
   std::map<std::string, Measured> of;
   EditAgreement agreement;
@@ -45,11 +45,11 @@ struct Case {
   double median(const std::string& method) const { return of.at(method).ms.median(); }
 };
 
-// Runs the methods in turn and back again (A B C C B A), so that a drift of the machine affects all
-// alike.
+// Runs the methods in order and then in reverse (A B C C B A), so a drift of the machine's speed
+// affects all of them equally.
 Case measure(EditMethods& methods, int radius, int repeats) {
   Case result;
-  for (const auto& method : methods.all()) method->edit(kCenters[0], radius);  // warm
+  for (const auto& method : methods.all()) method->edit(kCenters[0], radius);  // warm-up
   for (int round = 0; round < repeats; ++round) {
     const glm::dvec2 center = kCenters[static_cast<std::size_t>(round) % std::size(kCenters)];
     std::vector<EditMethod*> order;
@@ -136,7 +136,7 @@ class Report {
                 static_cast<unsigned long long>(agreement.paper_off),
                 static_cast<unsigned long long>(agreement.beyond_rounding));
     std::fflush(stdout);
-    // After each case, so that a long run that is stopped keeps its results.
+    // Write after each case, so a long run that is stopped keeps its results.
     write_result(options_.json, machine_, results_,
                  {{"creation", creation_},
                   {"not_run", not_run_},
@@ -185,7 +185,7 @@ class Report {
   const Options& options_;
   nlohmann::json machine_;
   const double bandwidth_;
-  EditAgreement agreement_;  // over all cases
+  EditAgreement agreement_;  // sum over all cases
   const EditScene* scene_ = nullptr;
   int texture_ = 0;
   nlohmann::json results_ = nlohmann::json::array(), creation_ = nlohmann::json::array(),

@@ -1,6 +1,6 @@
-// Measures the processor time of frames of a moving camera with two or more folders of shaders, one
-// frame of each after the other: other programs on the machine change all of them alike. Also
-// measures whether the refinement of one view delays the pixels of a change in another.
+// Measures the processor time of frames of a moving camera with two or more folders of shaders. The
+// folders take turns frame by frame, so other programs on the machine affect all of them equally.
+// Also measures whether the refinement of one view delays the pixels of a change in another.
 #include <cmath>
 #include <ctime>
 #include <iostream>
@@ -21,7 +21,7 @@ struct Options {
   int frames = 200, layers = 0, changes = 0;
 };
 
-// Of all threads, also those of a driver that draws on the CPU.
+// Returns the processor time of all threads, including those of a driver that draws on the CPU.
 double processor_ms() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -52,8 +52,8 @@ class Drawer {
   }
   auto info() const { return renderer_->info(); }
 
-  // From the change of a tile until its pixels are there, while the picture of another view is
-  // refined or not.
+  // Returns the time from the change of a tile to the frame that shows it. With `while_refining`,
+  // the renderer refines the frame of another view in the meantime.
   double change_ms(const Camera& camera, std::uint32_t value, bool while_refining) {
     render::FrameRequest other = request_for(other_view_, camera);
     std::promise<void> over;
@@ -61,7 +61,7 @@ class Drawer {
       other.samples = render::kMaxSamples;
       other.refinement = true;
       renderer_->draw(other, [&](const auto&) { over.set_value(); });
-      std::this_thread::sleep_for(std::chrono::milliseconds(30));  // it has begun
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));  // time to start the refinement
     }
     const double start = now_ms();
     auto tile = std::make_shared<TileData>(ValueType::u8);
@@ -111,7 +111,7 @@ class Drawer {
   std::unique_ptr<render::Renderer> renderer_;
   render::ModelHandle model_ = 0;
   render::ViewHandle view_ = 0, other_view_ = 0;
-  render::LayerHandle layer_ = 0;  // the topmost
+  render::LayerHandle layer_ = 0;  // the topmost layer
   render::ViewStyle style_;
 };
 
@@ -155,7 +155,8 @@ nlohmann::json measure(const std::string& name, const Options& options, nlohmann
     const double angle = 0.3 + i * 0.031;
     const auto camera = look_at(*geometry.full, {std::cos(angle), std::sin(angle), 0.4}, 1280, 720);
     std::vector<double> here(count);
-    // A B, then B A; the first of a pair finds the model's data in no cache.
+    // The order is A B, then B A, because the first of a pair finds no data of the model in the
+    // caches.
     for (std::size_t turn = 0; turn < count; ++turn) {
       const std::size_t at = i % 2 == 0 ? turn : count - 1 - turn;
       here[at] = drawers[at]->frame_ms(camera, true);

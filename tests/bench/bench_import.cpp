@@ -1,5 +1,5 @@
-// Measures the time from a file to the first frame, and from a stopped server with a painted site
-// to the first frame.
+// Measures two times: from a file to the first frame, and from the start of a stopped server with a
+// painted site to the first frame.
 #include <cmath>
 #include <iostream>
 
@@ -21,7 +21,7 @@ struct Options {
   int layers = 3, resolution = 4096;
 };
 
-// Returns the picture of a camera at rest: full detail, from the given direction.
+// Returns the full-detail frame of a resting camera in the given direction.
 Picture frame(Site& site, const std::string& model, glm::dvec3 from) {
   auto room = must(site.rooms->open(model, Role::owner));
   const Model info = room->model();
@@ -35,7 +35,7 @@ Picture first_frame(Site& site, const std::string& model) {
   return frame(site, model, {0.4, -1, 0.6});
 }
 
-// Every camera is new, so each frame draws the mesh.
+// Measures frames with a new camera each time, so each frame draws the mesh.
 Samples full_frames(Site& site, const std::string& model) {
   Samples samples;
   auto room = must(site.rooms->open(model, Role::owner));  // keeps the room open
@@ -63,7 +63,7 @@ int run(const Options& options) {
   watch.run("first frame", progress, [&] { return first_frame(site, model.slug); });
   const double import_to_frame_ms = now_ms() - start;
 
-  // Paint every layer, so that a restart has something to load.
+  // Paint every layer, so a restart has data to load.
   auto room = must(site.rooms->open(model.slug, Role::owner));
   for (int i = 0; i < options.layers; ++i) {
     Layer layer;

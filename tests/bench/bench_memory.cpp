@@ -1,4 +1,5 @@
-// Measures the memory of a layer that is painted nowhere, in part and everywhere.
+// Measures the memory of a layer without values, of a partly painted layer and of a fully painted
+// layer.
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -19,8 +20,8 @@ struct Options {
   std::vector<double> percents{0, 1, 10, 100};
 };
 
-// Returns a connected patch of the surface around one place, as people paint it. `radius` in model
-// units.
+// Returns a connected patch of the surface around one point, similar to a painted area. `radius` is
+// in model units.
 std::map<TileAddress, TileData> patch(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                                       float radius, ValueType type) {
   auto slot = static_cast<std::uint32_t>(map.block_of_slot.size() / 2);
@@ -52,7 +53,8 @@ std::map<TileAddress, TileData> all_of(const mesh::SurfaceMap& map, ValueType ty
   return tiles;
 }
 
-// Finds the radius by bisection; the percentage is of all texels that can have a value.
+// Paints a patch whose radius it finds by bisection. The percentage is of all texels that can have
+// a value.
 std::map<TileAddress, TileData> painted(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                                         const mesh::Geometry& geometry, ValueType type,
                                         double percent) {
@@ -71,7 +73,7 @@ std::map<TileAddress, TileData> painted(const mesh::SurfaceMap& map, const mesh:
   return best;
 }
 
-// Returns the same texels with values that cannot be compressed.
+// Returns the stored size of the same texels with incompressible values.
 std::size_t stored_as_noise(TileData tile) {
   std::mt19937 random(1);
   for (int i = 0; i < kTexelsPerTile; ++i)

@@ -28,7 +28,7 @@ mesh::TriangleMesh pot_of(const std::string& name) {
   return mesh::make_demo_pot(target / at_one);
 }
 
-// Runs a command that writes `file`; removes an incomplete file after a failure.
+// Runs a command that writes `file`. Removes an incomplete file after a failure.
 Result<fs::path> made_by(const std::string& command, const fs::path& file,
                          const std::string& advice) {
   fs::create_directories(file.parent_path());
@@ -101,7 +101,7 @@ Result<std::vector<std::string>> all_meshes() {
   if (error)
     return fail(ErrorCode::not_found, "No data folder",
                 "There is no data folder at " + data.string() + ".");
-  // The scans first, then the presets, then the broken files.
+  // Sort into this order: the scans, the presets, the broken files.
   std::sort(names.begin(), names.end());
   const auto nasty = std::stable_partition(names.begin(), names.end(), [](const std::string& name) {
     return name.find("/nasty/") == std::string::npos;

@@ -12,44 +12,44 @@
 
 namespace strata::bench {
 
-// The name of a mesh is `pot` or `pot:TRIANGLES` (generated here), a file in any format of an
-// import, or a preset of the data folder's make_big_mesh.py (vessel, excavation, amazon, thai,
-// textured10m), made once into `cache`.
+// A named mesh. The name is one of: `pot` or `pot:TRIANGLES`, which this process generates; a file
+// in any format of an import; or a preset of the data folder's make_big_mesh.py (vessel,
+// excavation, amazon, thai, textured10m), made once into `cache`.
 struct BenchMesh {
   std::string name;
   std::shared_ptr<const mesh::Geometry> geometry;  // with an atlas
-  double area = 0;                                 // unit²
+  double area = 0;                                 // in unit²
   AtlasReport atlas;
   Standing standing;
-  std::string unit;  // empty if the file has none
+  std::string unit;  // empty if the file has no unit
 };
 
 struct BenchMeshOptions {
   std::filesystem::path cache = "build/bench";
-  bool make_always = false;  // never keep the file's own texture coordinates
-  std::string up = {};       // if neither the file nor the list of known scans has it; empty: z
+  bool make_always = false;  // discards the file's own texture coordinates
+  std::string up = {};       // used if the file and the list of known scans have none; empty: z
 };
 
-// Whether the mesh is generated in this process instead of read from a file.
+// Returns whether this process generates the mesh instead of reading it from a file.
 bool is_generated(const std::string& name);
 
 // Returns the name for tables and captions: the path within the data folder, or the file's name.
 std::string mesh_title(const std::string& name);
 
 // Returns the mesh file and the files that it refers to. Unpacks files that end in .xz or .gz into
-// `cache`. Refuses a missing file, and a preset that cannot be made.
+// `cache`. Returns an Error for a missing file, and for a preset that cannot be made.
 Result<std::vector<mesh::InputFile>> mesh_files(const std::string& name,
                                                 const std::filesystem::path& cache);
 
-// Returns every mesh of the data folder, and the presets. Reading refuses some files of the folder
-// `nasty`, as it should.
+// Returns every mesh of the data folder, and the presets. Some files of the folder `nasty` are
+// invalid on purpose, and reading them fails.
 Result<std::vector<std::string>> all_meshes();
 
-// Reads and repairs the mesh as the importer does; also makes `pot`.
+// Reads and repairs the mesh as the importer does. Also generates `pot`.
 Result<mesh::LoadedMesh> load_named_mesh(const std::string& name,
                                          const std::filesystem::path& cache, Progress& progress);
 
-// Keeps the file's own texture coordinates if they can have layers, unless `make_always`.
+// Keeps the file's own texture coordinates if they can have layers and `make_always` is false.
 Result<BenchMesh> load_bench_mesh(const std::string& name, const BenchMeshOptions& options = {});
 
 }  // namespace strata::bench

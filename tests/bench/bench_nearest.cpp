@@ -1,4 +1,5 @@
-// Compares the nearest point of the surface in our search tree with the point query of Embree.
+// Compares two searches for the nearest point of the surface: Strata's search tree and Embree's
+// point query.
 #include <embree3/rtcore.h>
 #include <malloc.h>
 
@@ -36,12 +37,12 @@ double cpu_seconds() {
 
 struct Measured {
   double build_ms = 0, build_cpu_ms = 0, mib = 0;
-  std::vector<double> query_us;    // processor time, for each set of points
-  std::vector<float> distances{};  // for all sets
+  std::vector<double> query_us;    // processor time, one value for each set of points
+  std::vector<float> distances{};  // distances of all sets
 };
 
-// Makes point sets like those of real queries: a record's place on the surface, a measurement near
-// it, a camera far from it.
+// Makes sets of points like those of real queries: points of records on the surface, points of
+// measurements near it, and cameras far from it.
 std::vector<std::vector<glm::vec3>> point_sets(const mesh::Geometry& geometry, int count) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> any(0, 1);
@@ -62,7 +63,8 @@ std::vector<std::vector<glm::vec3>> point_sets(const mesh::Geometry& geometry, i
 }
 constexpr const char* kSets[] = {"on the surface", "within 1 % of the size", "around the model"};
 
-// Ericson, Real-Time Collision Detection, 5.1.5, in double like our tree.
+// Source: Ericson, Real-Time Collision Detection, 5.1.5. Uses double precision, as Strata's tree
+// does.
 glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                                const glm::dvec3& c) {
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -96,13 +98,13 @@ bool visit_triangle(RTCPointQueryFunctionArguments* arguments) {
   const double squared = glm::dot(way, way);
   if (squared >= query.squared) return false;
   query.squared = squared;
-  // Rounded up, so that no nearer point is left out.
+  // Round the radius up, so the search omits no nearer point.
   arguments->query->radius =
       std::nextafter(static_cast<float>(std::sqrt(squared)), std::numeric_limits<float>::max());
   return true;
 }
 
-// `build` returns the memory of its result in MiB.
+// Builds a search and measures its queries. `build` returns the memory of its result in MiB.
 template <class Build, class Nearest>
 Measured measure(const std::vector<std::vector<glm::vec3>>& sets, Build build, Nearest nearest) {
   Measured measured;
@@ -196,7 +198,7 @@ int run(const Options& options) {
        embree(static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT),
               RTC_BUILD_QUALITY_MEDIUM)},
       {"Embree, quick build", embree(RTC_SCENE_FLAG_ROBUST, RTC_BUILD_QUALITY_LOW)},
-      own};  // measured twice to show the effect of other work on the machine
+      own};  // twice, to show the effect of other work on the machine
   nlohmann::json results = nlohmann::json::array();
   std::vector<float> expected;
   for (const auto& [name, make] : methods) {

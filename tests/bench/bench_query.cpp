@@ -1,5 +1,5 @@
-// Measures queries of a painted model over HTTP, from this process to itself: while idle, while
-// somebody paints, many points, statistics.
+// Measures queries of a painted model over HTTP, from this process to itself: on an idle server,
+// during painting, for many points, and for statistics.
 #include <atomic>
 #include <iostream>
 #include <random>
@@ -78,7 +78,7 @@ class Queries {
 
     for (const std::string layer : {"units", "moisture"}) {
       const std::string path = model + "/layers/" + layer + "/statistics";
-      get_ms(path + "?where=valid(" + layer + ")");  // the surface map exists
+      get_ms(path + "?where=valid(" + layer + ")");  // creates the surface map
       add("statistics of " + layer + ", counted anew", 50, repeated(3, [&] {
             refill(layer);
             return get_ms(path);
@@ -111,8 +111,8 @@ class Queries {
                  const char* accept = "application/json") {
     return client_->post(path, body, accept).elapsed_ms;
   }
-  // Measures from the filter of a person's view to the picture in which the found records are lit:
-  // at the socket, 720p.
+  // Measures the time from a filter in a view to the frame that highlights the matching records, at
+  // the socket, at 720p.
   void light_up() {
     make_parts();
     FrameClient viewer;
@@ -145,9 +145,9 @@ class Queries {
     }
     add("a filter over 10 000 records, to lit pixels", 50, samples);
   }
-  // The number of records of a large excavation, each in one patch of the surface.
+  // Makes as many records as a large excavation has, each with one patch of the surface.
   void make_parts() {
-    constexpr int kParts = 10'000, kSide = 100;  // patches along a side of the atlas
+    constexpr int kParts = 10'000, kSide = 100;  // patches along one side of the atlas
     Layer layer;
     layer.name = layer.slug = "parts";
     layer.kind = LayerKind::database;

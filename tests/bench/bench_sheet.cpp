@@ -1,6 +1,6 @@
-// Draws a contact sheet: each model as the renderer draws it under a checker layer, so that a
-// person can judge seams, distortion and density. An SVG with JPEG pictures, which any browser
-// shows.
+// Draws a contact sheet, an SVG file with JPEG images that any browser can show. It shows each
+// model under a checker layer, as the renderer draws it, for a visual check of seams, distortion
+// and texel density.
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -14,14 +14,14 @@
 namespace strata::bench {
 namespace {
 
-constexpr int kPicture = 480;  // pixels, square
-constexpr int kFiner = 2;      // drawn larger by this factor, against flicker of distant squares
+constexpr int kPicture = 480;  // in pixels, square
+constexpr int kFiner = 2;      // drawn larger by this factor against flicker of distant squares
 constexpr int kCaption = 62;   // pixels below a row
 constexpr int kHeader = 54;
-constexpr int kTexture = 2048;  // texels along a side of the checker layer
-constexpr int kSquare = 16;     // texels along a side of a square of the checker
-// Views from the right of the front, from the left of the back, and from above. Axes: right, front,
-// up.
+constexpr int kTexture = 2048;  // texels along one side of the checker layer
+constexpr int kSquare = 16;     // texels along one side of a checker square
+// Directions of the views: from the front right, from the back left, and from above. The axes are
+// right, front and up.
 const glm::dvec3 kDirections[] = {{0.5, 1, 0.45}, {-0.5, -1, 0.45}, {0.15, 0.45, 1}};
 constexpr int kDirectionCount = 3;
 constexpr double kAboveFlat = 1.1;  // a lower camera shows little of a terrain
@@ -33,8 +33,8 @@ struct Options {
   bool all = false;
 };
 
-// Squares of kSquare texels, alternately dark and light; every eighth row and column is tinted, to
-// show the directions of u and v and the size of 128 texels.
+// Returns squares of kSquare texels, alternately dark and light. Every eighth row and column is
+// tinted, to show the directions of u and v and a length of 128 texels.
 std::vector<render::TileUpload> checker_tiles() {
   std::vector<render::TileUpload> tiles;
   for (std::uint16_t ty = 0; ty < kTexture / kTileSize; ++ty)
@@ -94,7 +94,7 @@ std::string formatted(const char* format, Values... values) {
   return text;
 }
 
-// Returns the size of the model and of a square of the checker.
+// Returns a caption with the size of the model and of a checker square.
 std::string size_caption(const BenchMesh& mesh) {
   const glm::dvec3 extent = mesh.geometry->box_max - mesh.geometry->box_min;
   const double texels = mesh.atlas.coverage * kTexture * kTexture;
@@ -130,7 +130,7 @@ bool lies_flat(const BenchMesh& mesh) {
   return extent[up] < 0.3 * std::max(extent[(up + 1) % 3], extent[(up + 2) % 3]);
 }
 
-// Draws one row: the pictures of a model and its caption.
+// Draws one row: the images of a model and their caption.
 std::string row(render::Renderer& renderer, const BenchMesh& mesh, int top) {
   using namespace render;
   const auto model = await<ModelHandle>([&](auto done) {

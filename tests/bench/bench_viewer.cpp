@@ -1,5 +1,5 @@
-// Measures one client at 720p, in this process and up to the socket: from a stroke to its pixels,
-// frames of a moving camera, bytes stored of steady painting.
+// Measures one client at 720p, in this process and up to the socket: the time from a stroke to its
+// pixels, the frames of a moving camera, and the stored bytes of steady painting.
 #include <cmath>
 #include <future>
 #include <iostream>
@@ -37,8 +37,8 @@ struct Options {
 class OneViewer {
  public:
   explicit OneViewer(const Options& options) : options_(options) {
-    // Imports through the store as for any model, from a PLY that the bench writes for the
-    // generated pot.
+    // Imports the generated pot from a PLY file that the bench writes, through the store as for any
+    // model.
     store::NewModel made;
     made.model.name = made.model.slug = "bench";
     made.model.project_id = must(site_.store->projects().find("default")).id;
@@ -61,7 +61,7 @@ class OneViewer {
     });
   }
 
-  // Measures until changed pixels, with a camera at rest.
+  // Measures the time until a stroke's pixels have changed, with a camera at rest.
   nlohmann::json strokes() {
     Samples to_pixels, to_durable;
     std::uint64_t changed_bytes = 0;
@@ -86,7 +86,7 @@ class OneViewer {
       const auto arrival = client_.wait_for(
           *member_, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= target; });
       saved.get_future().get();
-      if (i < 20) continue;  // warm
+      if (i < 20) continue;  // warm-up
       to_pixels.add(arrival.at_ms - start);
       to_durable.add(durable);
       changed_bytes += arrival.bytes;
@@ -100,7 +100,8 @@ class OneViewer {
             {"stroke_to_durable", to_durable.json()}};
   }
 
-  // Sends a new camera every 16 ms, as a browser's animation frames do, without waiting for frames.
+  // Sends a new camera every 16 ms without waiting for frames, as the animation frames of a browser
+  // do.
   nlohmann::json moving_camera() {
     Samples frame_ms, latency_ms;
     std::uint64_t bytes = 0;
@@ -143,8 +144,8 @@ class OneViewer {
             {"camera_to_last_byte", latency_ms.json()}};
   }
 
-  // Sends each new camera after the frame of the previous one: measures a frame without its wait
-  // for a turn.
+  // Sends each new camera after the frame of the previous one, so the times do not include the wait
+  // for earlier frames.
   nlohmann::json cameras_in_turn() {
     Samples latency_ms, render_ms, encode_ms;
     for (int i = 0; i < options_.frames; ++i) {
@@ -166,7 +167,8 @@ class OneViewer {
             {"in_turn_encode", encode_ms.json()}};
   }
 
-  // A client sends a batch every 30 ms; the stored bytes do not depend on the speed of this replay.
+  // A real client sends a batch every 30 ms. The stored bytes do not depend on the speed of this
+  // replay.
   nlohmann::json steady_painting() {
     const auto bytes_before = must(site_.store->journal().revision_bytes(model_.id));
     constexpr int kBatches = 400;

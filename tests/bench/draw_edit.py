@@ -12,7 +12,7 @@ import sys
 from html import escape
 from pathlib import Path
 
-# Colors that color-blind people can distinguish (Okabe and Ito), and dashes for prints in gray.
+# Colors that color-blind readers can distinguish (Okabe and Ito), and dashes for grayscale prints.
 METHODS = {
     "tiles": ("Tiles (Strata)", "#0072b2", "", 3),
     "paper": ("Paper: TEA + TPA", "#d55e00", "", 1.6),
@@ -237,7 +237,7 @@ def tables(data):
         )
         for c in data["creation"]:
             if c["method"] in ("paper-compute", "octree-fair"):
-                continue  # the same structures
+                continue  # same structures as the base methods
             megabytes = " | ".join(
                 f"{c[k] / 1e6:.1f}" for k in ("model_bytes", "structure_bytes", "layer_bytes")
             )

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from draw_edit import Log, line, save, short, text
 
-# Measured values: title, color (Okabe and Ito), dash, path in a run, and the actions of the
+# Measured values: title, color (Okabe and Ito), dash, path within a run, and actions of the
 # viewers.
 BOTH = "turn and paint"
 TIMES = (
@@ -200,7 +200,7 @@ def time_point(row, kind):
 def rate_point(row, kind):
     found = values(row, *kind[3])
     if not found or statistics.median(found) <= 0:
-        return None  # cannot be on a logarithmic axis; the table has it
+        return None  # not possible on a logarithmic axis; the table contains it
     return statistics.median(found), min(value for value in found if value > 0), max(found)
 
 

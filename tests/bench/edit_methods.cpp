@@ -30,14 +30,14 @@ StrokeBatch dab(const EditScene& scene, glm::dvec2 center, double radius_px) {
   stroke.camera = scene.camera;
   stroke.path = {center};
   stroke.radius_px = radius_px;
-  stroke.fixed_depth_bias = kPaperDepthBias;  // so that both methods paint the same texels
+  stroke.fixed_depth_bias = kPaperDepthBias;  // both methods paint the same texels
   stroke.value_bits = kValue;
   return stroke;
 }
 
-// Decides in double whether a dab paints a position. Near a threshold the rounding of floats
-// decides: at the tool's edge, at a pixel's border (which selects the depth) and in the depth test
-// itself.
+// The result of `decide`, which computes in double precision whether a dab paints a position. At
+// three thresholds the rounding of floats decides: at the tool's edge, at a pixel's border (which
+// selects the depth) and in the depth test.
 struct Decision {
   bool painted = false, near_threshold = false;
 };
@@ -62,7 +62,7 @@ Decision decide(const EditScene& scene, const render::DepthCopy& depth, glm::dve
                                          std::abs(before) < 1e-6};
 }
 
-// The depth of the scene on the GPU, which every system already has from drawing it.
+// The depth of the scene on the GPU. Every system already has it, because it draws the scene.
 class SceneDepth {
  public:
   SceneDepth(render::Renderer& renderer, const EditScene& scene) : renderer_(renderer) {
@@ -173,7 +173,7 @@ class EditMethods::Paper {
       glFinish();
       cost.ms = now_ms() - start;
     });
-    cost.bytes_up = sizeof(glm::mat4);  // of the tool
+    cost.bytes_up = sizeof(glm::mat4);  // the matrix of the tool
     return cost;
   }
   std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> mask_and_coverage(
@@ -197,7 +197,7 @@ class EditMethods::Paper {
   EditCreation creation_;
 };
 
-// One tree and one layer of it, painted by either method.
+// One tree with one layer. Either method can paint it.
 class EditMethods::Tree {
  public:
   static Result<std::shared_ptr<Tree>> create(render::Renderer& renderer, const EditScene& scene,
@@ -285,7 +285,8 @@ class EditMethods::Tree {
 
 namespace {
 
-// `Edit` receives center and radius; the two methods of a peer share `peer`.
+// One method of a peer. The two methods of a peer share the object `peer`; `way` selects the
+// method.
 template <class Peer, class Way>
 class PeerMethod : public EditMethod {
  public:
@@ -375,8 +376,8 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
       const auto per_side = static_cast<std::size_t>(map.blocks_per_side);
       const std::size_t x = map.block_of_slot[slot] % per_side * 8 + i % 8;
       const std::size_t y = map.block_of_slot[slot] / per_side * 8 + i / 8;
-      // The paper treats texels that its raster does not cover as padding, though in tiles a thin
-      // triangle may own them.
+      // Skip texels that the paper's raster does not cover: the paper treats them as padding,
+      // although a thin triangle may own them in tiles.
       if (!coverage[y * side + x]) continue;
       const bool a = theirs[y * side + x] != 0, b = written[y * side + x] != 0;
       agreement.compared += a || b;
@@ -392,7 +393,7 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
 }
 
 double copy_bandwidth(render::Renderer& renderer) {
-  // the most that every driver accepts in one storage buffer
+  // The largest size that every driver accepts for one storage buffer.
   constexpr std::size_t kBytes = std::size_t{128} << 20;
   constexpr int kRuns = 7;
   Samples samples;
@@ -410,7 +411,8 @@ double copy_bandwidth(render::Renderer& renderer) {
     }
   } else {
     renderer.run_on_gpu_thread_for_test([&] {
-      // Copies with a shader: the copy of some drivers does not reach the bandwidth of the memory.
+      // A shader copies, because the copy function of some drivers does not reach the memory
+      // bandwidth.
       constexpr std::size_t kBytesPerGroup = std::size_t{256} * 16;
       const auto program = must(gl::Program::load(test::peer_shader_dir(), {"copy.comp"}));
       auto from = must(gl::Buffer::create(kBytes, gl::Buffer::Use::fixed, "copied"));

@@ -10,7 +10,7 @@
 
 namespace strata::bench {
 
-// The scene that all methods paint, as one camera sees it.
+// The scene that all methods paint, seen by one camera.
 struct EditScene {
   BenchMesh mesh;
   Camera camera;
@@ -20,21 +20,22 @@ struct EditScene {
 struct EditCost {
   double ms = 0;                               // until a frame may show the edit
   double ms_to_memory = 0;                     // until main memory also has it; 0: not measured
-  double gpu_ms = 0;                           // by the GPU's own clock; 0: unknown
-  std::uint64_t cells = 0;                     // texels or leaves painted
+  double gpu_ms = 0;                           // measured by the GPU; 0: unknown
+  std::uint64_t cells = 0;                     // painted texels or leaves
   std::uint64_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
 };
 
-// The data that must exist before the first edit.
+// The size and time of the data that must exist before the first edit.
 struct EditCreation {
   double structure_s = 0;
-  std::uint64_t model_bytes = 0;      // mesh or tree
-  std::uint64_t structure_bytes = 0;  // in addition, for this resolution
-  std::uint64_t layer_bytes = 0;      // one layer of 8 bits, painted all over
+  std::uint64_t model_bytes = 0;      // of the mesh or tree
+  std::uint64_t structure_bytes = 0;  // additional bytes for this resolution
+  std::uint64_t layer_bytes = 0;      // one fully painted layer of 8 bits
 };
 
-// One method of painting a dab. The constructor makes all data; `creation` counts that, `edit` does
-// not. The depth of the scene is not counted either; every method except rays uses it as given.
+// One method of painting a dab. The constructor makes all data. `creation` reports the cost of that
+// data, and `edit` does not include it. Neither includes the depth of the scene, which every method
+// except rays takes as given.
 class EditMethod {
  public:
   virtual ~EditMethod() = default;
@@ -43,13 +44,13 @@ class EditMethod {
   virtual EditCreation creation() const = 0;
 };
 
-// Surface texels that tiles and paper paint. Where they differ, arithmetic in double shows which
-// one is wrong.
+// The agreement of tiles and the paper about painted surface texels. Where they differ,
+// double-precision arithmetic shows which one is wrong.
 struct EditAgreement {
-  std::uint64_t compared = 0;  // painted by at least one of them
+  std::uint64_t compared = 0;  // texels that tiles or the paper painted
   std::uint64_t differ = 0;
   std::uint64_t tiles_off = 0, paper_off = 0;
-  std::uint64_t beyond_rounding = 0;  // differ, though no threshold is near
+  std::uint64_t beyond_rounding = 0;  // differing texels that are not near a threshold
 
   EditAgreement& operator+=(const EditAgreement& other) {
     compared += other.compared;
@@ -61,8 +62,8 @@ struct EditAgreement {
   }
 };
 
-// The methods of one scene and texture size, made from `names`: tiles, paper, paper-compute,
-// octree, octree-fair. `not_made` lists the methods that cannot be made.
+// The methods of one scene and texture size, made from `names`: tiles, paper, paper-compute, octree
+// and octree-fair. `not_made` lists the methods that cannot be made.
 class EditMethods {
  public:
   EditMethods(render::Renderer& renderer, const EditScene& scene, int texture,
@@ -73,7 +74,7 @@ class EditMethods {
   const std::vector<std::string>& not_made() const { return not_made_; }
   const mesh::SurfaceMap* map() const { return map_.get(); }
 
-  EditAgreement compare_tiles_and_paper(glm::dvec2 center, double radius_px);  // needs both
+  EditAgreement compare_tiles_and_paper(glm::dvec2 center, double radius_px);  // needs both methods
 
  private:
   class Paper;
@@ -86,8 +87,8 @@ class EditMethods {
   std::vector<std::string> not_made_;
 };
 
-// Returns the bytes per second that a large copy reads and writes, on the device that edits: all
-// cores, or the GPU.
+// Returns the rate at which a large copy reads and writes, in bytes per second. The copy runs on
+// the device that edits: on all cores, or on the GPU.
 double copy_bandwidth(render::Renderer& renderer);
 
 }  // namespace strata::bench

@@ -19,7 +19,7 @@
 
 namespace strata::bench {
 
-// Times of one kind of work, in milliseconds.
+// The times of one kind of work, in milliseconds.
 class Samples {
  public:
   void add(double ms) { values_.push_back(ms); }
@@ -34,9 +34,9 @@ class Samples {
 
 double now_ms();
 
-// {cpu, cores, gl_renderer, driver, commit}
+// Returns {cpu, cores, gl_renderer, driver, commit}.
 nlohmann::json machine(const render::GpuInfo* gpu);
-// `more`: further members, in addition to `machine` and `results`.
+// Writes a JSON file. `more` has members in addition to `machine` and `results`.
 void write_result(const std::string& json_file, const nlohmann::json& machine,
                   const nlohmann::json& results,
                   const nlohmann::json& more = nlohmann::json::object());
@@ -64,22 +64,23 @@ T await(Start start) {
     return must(future.get());
 }
 
-// Returns a camera that sees the model from a direction and fills the window with it.
+// Returns a camera that shows the model from a direction, as large as the window allows.
 Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height);
-// The same for a box in world coordinates.
+// Does the same for a box in world coordinates.
 Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height);
 
-// PostgreSQL does not run as root: lets others enter the parent folders of a future data folder.
+// Lets other users enter the parent folders of a future data folder. PostgreSQL does not run as
+// root, so it needs this.
 void let_others_through(const std::filesystem::path& folder);
-// In the system's temporary folder; others may enter it.
+// Makes a folder in the system's temporary folder that other users may enter.
 std::filesystem::path make_temporary_folder();
 
-// A whole server without sockets, on a separate database in a temporary folder.
+// A complete server without sockets, on a separate database in a temporary folder.
 class Site {
  public:
   Site();
   ~Site();
-  void restart();  // restarts everything above the database
+  void restart();  // restarts everything except the database
   std::filesystem::path folder;
   std::unique_ptr<store::Cluster> cluster;
   std::unique_ptr<store::Store> store;
@@ -88,7 +89,7 @@ class Site {
   std::unique_ptr<room::Rooms> rooms;
 };
 
-// Waits until an edit is durable.
+// Sends an edit and waits until it is durable.
 room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request);
 room::EditRequest stroke_request(const Layer& layer, const Camera& camera,
                                  std::vector<glm::dvec2> path, double radius_px, double value);

@@ -9,17 +9,17 @@
 
 namespace strata::bench {
 
-// One connection to a server on this machine that stays open, as in scripts. Any answer except a
-// success ends the bench.
+// One connection to a server on this machine. It stays open, like those of scripts. Any response
+// except a success ends the bench.
 class HttpClient {
  public:
   struct Answer {
     std::string body;
-    double elapsed_ms;  // blocks until the answer is complete
+    double elapsed_ms;  // until the response is complete
   };
   HttpClient(std::uint16_t port, std::string token);
 
-  // Paths follow /api/v1.
+  // Paths are relative to /api/v1.
   Answer get(const std::string& path);
   Answer post(const std::string& path, const std::string& body,
               const std::string& accept = "application/json",

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the fields of /proc/PID/stat after the name, from the state on: proc(5).
+// Returns the fields of /proc/PID/stat that follow the name, beginning with the state: proc(5).
 std::vector<std::string> stat_fields(const fs::path& process) {
   std::ifstream file(process / "stat");
   std::string line;
@@ -32,8 +32,8 @@ std::vector<std::string> stat_fields(const fs::path& process) {
   return fields.size() < 15 ? std::vector<std::string>() : fields;
 }
 
-// Returns the sum of `count` fields from utime on: user, system, then both of the waited-for
-// children.
+// Returns the sum of `count` fields beginning with utime: user and system time, then both times of
+// the children that the process waited for.
 double seconds_of(const std::vector<std::string>& fields, int count) {
   if (fields.empty()) return 0;
   const auto first = fields.begin() + 11;
@@ -67,7 +67,7 @@ double family_seconds(pid_t pid) {
     const std::string name = entry.path().filename();
     if (!is_number(name)) continue;
     const auto fields = stat_fields(entry.path());
-    if (fields.empty()) continue;  // ended since the folder was listed
+    if (fields.empty()) continue;  // the process has ended since the listing
     parents[std::stoi(name)] = std::stoi(fields[1]);
     seconds[std::stoi(name)] = seconds_of(fields, 4);
   }
@@ -111,7 +111,7 @@ std::optional<std::string> ChildProcess::said(const std::string& start,
   while (true) {
     const bool is_last_surface_image = has_ended() || now_ms() > limit_ms;
     std::ifstream log(log_);
-    // A line without an end is still being written.
+    // A line without an end of line is still incomplete.
     for (std::string line; std::getline(log, line) && !log.eof();)
       if (line.starts_with(start)) return line.substr(start.size());
     if (is_last_surface_image) return std::nullopt;

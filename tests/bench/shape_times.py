@@ -156,7 +156,7 @@ def main():
                     flush=True,
                 )
             for layer in job.get("layers", []):
-                # so that each is measured with only the first layer
+                # Delete the layers, so each measurement starts with only the first layer.
                 server.ok("DELETE", f"{path}/layers/{layer}")
             rows.append(figures)
         if asked.other:

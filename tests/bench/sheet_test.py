@@ -10,7 +10,7 @@ import tempfile
 import zipfile
 
 BENCH = sys.argv[1]
-# A box without its lid, 2 high along y.
+# A box without a lid, 2 high along y.
 CORNERS = [(x, y, z) for y in (0, 2) for z in (0, 1) for x in (0, 1)]
 TRIANGLES = [
     (0, 1, 3),

@@ -10,10 +10,10 @@ namespace strata::bench {
 namespace {
 
 struct Known {
-  const char* beginning;  // in the title
+  const char* beginning;  // beginning of the title
   Standing standing;
 };
-// Determined by eye on the sheet itself.
+// Chosen by eye on the contact sheet.
 const std::array kKnown{
     Known{"amazon", {"y", 0}},
     Known{"bust_manwreath", {"y", -50}},
@@ -24,14 +24,15 @@ const std::array kKnown{
     Known{"statue_nefertiti", {"y", 0}},
     Known{"textured10m", {"y", 0}},
     Known{"thai", {"y", 0}},
-    Known{"vessel_jug", {"z", 0}},  // of the text before the preset
+    Known{"vessel_jug", {"z", 0}},  // before the preset `vessel`, because the first match counts
     Known{"vessel", {"y", 0}},
 };
 
 constexpr double kFieldOfViewDegrees = 30;
-constexpr double kMargin = 0.06;  // of the picture, on each side
+constexpr double kMargin = 0.06;  // share of the image, on each side
 
-// To the right of an observer in front of the model, towards the observer, and up.
+// The directions as an observer in front of the model sees them: right, towards the observer, and
+// up.
 struct Axes {
   glm::dvec3 right, front, up;
 };
@@ -68,9 +69,9 @@ Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, g
   const glm::dvec3 right = glm::normalize(glm::cross(axes.up, back)), up = glm::cross(back, right);
   const double field = glm::radians(kFieldOfViewDegrees),
                slope = std::tan(field / 2) * (1 - 2 * kMargin);
-  // A camera at (cx, cy, d) shows a vertex (x, y, z) of the view's axes if |x − cx| ≤ slope (d −
-  // z), and the same for y: four planes in cx, cy and d. Only the farthest planes of all vertices
-  // count.
+  // In the axes of the view, a camera at (cx, cy, d) shows a vertex (x, y, z) if |x − cx| ≤ slope
+  // (d − z), and the same for y. These are four planes in cx, cy and d. Only the farthest planes of
+  // all vertices count.
   constexpr double kMin = std::numeric_limits<double>::lowest();
   double to_right = kMin, to_left = kMin, to_top = kMin, to_bottom = kMin, nearest = kMin,
          farthest = -kMin;

@@ -8,21 +8,21 @@
 
 namespace strata::bench {
 
-// Orientation of a model for an observer in front of it. Without a turn its front is the one that
-// an importer of its format assumes: south of a map if z is up, +z if y is up.
+// The orientation of a model for an observer in front of it. Without a rotation, the front is the
+// side that importers of the format assume: south of a map if z is up, +z if y is up.
 struct Standing {
   std::string up = "z";       // "x", "y" or "z"
-  double turned_degrees = 0;  // of its front to the right, seen from above
+  double turned_degrees = 0;  // rotation of the front to the right, seen from above
 };
 
-// `up` is from the file or a person. If it is empty: the axis of known scans of the data folder,
-// which PLY, OBJ and STL do not contain; otherwise z. The front is always that of the known scan.
-// `title`: see mesh_title.
+// Returns the orientation of a model. `up` is from the file or from a person. If it is empty, a
+// known scan of the data folder has a known up axis, because PLY, OBJ and STL do not store one;
+// other models have z. The front is always that of the known scan. For `title` see mesh_title.
 Standing standing_of(const std::string& title, const std::string& up);
 
-// Returns a camera that sees the oriented model from a direction in the model's own axes (to its
-// right, in front of it, above it), at the distance where any shape fills the square picture up to
-// a margin. The direction is not straight up or down.
+// Returns a camera that shows the oriented model from a direction in the model's own axes (right,
+// front, up). At its distance, a model of any shape fills the square image up to a margin. The
+// direction must not be straight up or down.
 Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, glm::dvec3 from,
                      int side);
 

@@ -8,7 +8,7 @@
 namespace strata::bench {
 namespace {
 
-// A cloud in a box, far from the origin, as in a scan with national coordinates.
+// Returns points in a box far from the origin, as in a scan with national coordinates.
 mesh::Geometry cloud(const glm::vec3& extent) {
   mesh::Geometry geometry;
   geometry.origin = {433210, 4581234, 612};
@@ -22,7 +22,7 @@ mesh::Geometry cloud(const glm::vec3& extent) {
   return geometry;
 }
 
-// Coordinates in −1…1 of the picture and of the depth.
+// Returns coordinates within −1…1 of the image and of the depth.
 glm::dvec3 projected(const Camera& camera, const glm::dvec3& world) {
   const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(world, 1);
   return glm::dvec3(clip) / clip.w;
@@ -59,7 +59,8 @@ TEST(Standing, what_is_up_in_the_model_is_up_in_the_picture_and_its_front_is_see
     EXPECT_NEAR(above.x, middle.x, 0.01);
     EXPECT_LT(projected(camera, geometry.origin + 0.1 * fronts[k]).z, middle.z)
         << "the front is nearer";
-    // Right-handed: an observer in front of it who sees its right side has its front on the left.
+    // The axes are right-handed. An observer who sees the right side of the model has its front on
+    // the left.
     EXPECT_LT(projected(camera, geometry.origin + 0.1 * fronts[k]).x, middle.x);
     EXPECT_GT(projected(camera, geometry.origin + 0.1 * glm::cross(ups[k], fronts[k])).x, middle.x);
     const Camera turned = fitted_camera(geometry, {names[k], 90}, {0, 1, 0.45}, 480);

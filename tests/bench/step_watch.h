@@ -11,17 +11,17 @@
 namespace strata::bench {
 
 // Measures seconds, processor seconds and peak memory of the steps of long work. Its progress
-// messages separate the steps; a thread samples them once a millisecond.
+// messages separate the steps. A thread reads the messages once a millisecond.
 class StepWatch {
  public:
-  // Runs `work`, and records each message that `progress` shows as a step; `name` is the step
-  // before the first message.
+  // Runs `work` and records each message that `progress` shows as a step. `name` is the step before
+  // the first message.
   template <class Work>
   auto run(const std::string& name, Progress& progress, Work work) {
     Sampling sampling(*this, name, progress);
     return work();
   }
-  // [{step, seconds, cpu_seconds, peak_mib}] in the order they began.
+  // Returns [{step, seconds, cpu_seconds, peak_mib}] in the order of the steps.
   nlohmann::json json() const;
   void print() const;
   double seconds() const;
@@ -45,8 +45,8 @@ class StepWatch {
   std::vector<Step> steps_;
 };
 
-// Resident memory of this process now, and the maximum since `forget_peak_memory`, in MiB; from
-// /proc.
+// Returns the resident memory of this process in MiB, from /proc: the current size, and the maximum
+// since `forget_peak_memory`.
 double memory_mib();
 double peak_memory_mib();
 void forget_peak_memory();

@@ -1,6 +1,6 @@
 #!/bin/sh
 # dump_schema.sh DSN: prints the schema of a database in a form that is the same on every machine.
-# db/schema.sql is its result for a newly migrated database. To update it after adding a migration:
+# db/schema.sql is the result for a newly migrated database. To update it after adding a migration:
 #   STRATA_UPDATE_GOLDEN=1 build/dev/bin/db_migrations_test --gtest_filter='*schema_file*'
 set -eu
 dump=$(find /usr/lib/postgresql -path '*/bin/pg_dump' 2>/dev/null | sort -V | tail -n 1)

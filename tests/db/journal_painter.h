@@ -55,7 +55,7 @@ class Painter {
     return entry;
   }
 
-  // Paints some random tiles: writes, erases and rewrites of equal values.
+  // Paints some random tiles: writes values, erases values, and writes values that do not change.
   store::JournalEntry paint(std::int64_t sequence, int tiles, int tile_range) {
     store::JournalEntry entry = this->entry(sequence);
     std::map<TileAddress, TileMask> touched;
@@ -115,7 +115,7 @@ inline Painter::Content content_of(const TileMirror::Snapshot& snapshot) {
   return content;
 }
 
-// Submits and waits for the answer.
+// Submits the entry and waits for the result.
 inline Result<void> save(store::JournalWriter& writer, store::JournalEntry entry) {
   auto answer = std::make_shared<std::promise<Result<void>>>();
   auto future = answer->get_future();

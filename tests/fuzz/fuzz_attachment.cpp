@@ -1,4 +1,5 @@
-// Files of records: their type from the first bytes, independent of the name, and their thumbnails.
+// Fuzzes files of records: their type from the first bytes, independent of the name, and
+// thumbnails.
 #include <cstdint>
 #include <cstdlib>
 #include <span>

@@ -1,5 +1,6 @@
-// Feeds arbitrary bytes to all readers of the wire format: text messages, HTTP bodies and frame
-// headers. In addition to crashes it finds values that are read but not written back unchanged.
+// Fuzzes all readers of the wire format with arbitrary bytes: text messages, HTTP bodies and frame
+// headers. In addition to crashes, it detects values that change when they are read and written
+// back.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -52,8 +53,8 @@ void read_frame(std::span<const std::uint8_t> bytes) {
   demand(std::equal(written.begin(), written.end(), bytes.begin()));
 }
 
-// The fixtures of protocol/ are seeds without changes: {"schema": …, "json": the message} or {…,
-// "text": the message}.
+// Returns the message of a fixture, so the fixtures of protocol/ are seeds without changes. A
+// fixture is {"schema": …, "json": the message} or {…, "text": the message}.
 std::string unwrap_fixture(std::string_view text) {
   const auto json = parse_json(text);
   if (!json || !json->is_object() || !json->contains("schema")) return std::string(text);

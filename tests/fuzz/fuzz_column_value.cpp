@@ -1,6 +1,6 @@
-// The value of a table's cell, first as text and then as JSON: an accepted value is accepted again,
-// unchanged, from JSON and from its own text; a value that is converted to another kind is valid
-// there.
+// Fuzzes the value of a table's cell, first as text and then as JSON. An accepted value must be
+// accepted again, unchanged, from JSON and from its own text. A value that is converted to another
+// kind must be valid for that kind.
 #include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 2) return 0;
   const Column column = column_of(data[0] % kKinds, data[1] & 1);
   const std::string_view text(reinterpret_cast<const char*>(data + 2), size - 2);
-  // The texts are those of the CSV reader: UTF-8 without U+0000.
+  // The CSV reader passes only UTF-8 without U+0000.
   if (is_utf8(text) && text.find('\0') == std::string_view::npos)
     check(column, parse_value(column, text, data[1] & 2, "field"));
   const auto json = nlohmann::json::parse(text, nullptr, false);

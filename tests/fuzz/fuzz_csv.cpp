@@ -1,4 +1,5 @@
-// A table as CSV: writing and reading it returns the same table, with ascending lines.
+// Fuzzes a table as CSV. Writing and reading the table must return the same cells, and its line
+// numbers must ascend.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -1,4 +1,5 @@
-// A period as EDTF: its days are in order, and a trailing qualifier does not change them.
+// Fuzzes a period as EDTF. Its days must be in order, and a trailing qualifier must not change
+// them.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

@@ -1,5 +1,5 @@
-// A formula over layers: the text made from an expression parses to the same expression, and a
-// condition selects only surface.
+// Fuzzes a formula over layers. The text made from an expression must parse to the same expression.
+// A condition must select only texels of the surface.
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -124,14 +124,15 @@ std::string text_of(const Expression& expression) {
   std::abort();
 }
 
-// The generated text has more brackets than the original text.
+// Returns whether the generated text exceeds a limit. That is not a fault, because the text has
+// more brackets than the original text.
 bool is_beyond_limits(const strata::Error& problem) {
   return problem.title == "Expression too long" ||
          problem.detail.find("nested too deeply") != std::string::npos ||
          problem.detail.find("too many parts") != std::string::npos;
 }
 
-// One block of surface.
+// Returns a surface map with one block of surface.
 strata::mesh::SurfaceMap one_block() {
   strata::mesh::SurfaceMap map;
   map.resolution = strata::kTileSize;
@@ -144,7 +145,7 @@ strata::mesh::SurfaceMap one_block() {
   return map;
 }
 
-// Values from below zero upward, with gaps.
+// Returns a layer of negative and positive values with gaps.
 strata::query::LayerView layer(const std::string& slug) {
   strata::query::LayerView view;
   view.layer.slug = slug;

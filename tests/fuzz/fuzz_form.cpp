@@ -1,4 +1,4 @@
-// A multipart form: the first line is the Content-Type, the rest is the body.
+// Fuzzes a multipart form. The first line is the Content-Type, the rest is the body.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -27,7 +27,7 @@ void check_filename(std::string_view name) {
   }
 }
 
-// A new form with the same files is read unchanged.
+// Checks that a new form with the same files is read unchanged.
 void check_again(const std::vector<FormFile>& files) {
   static constexpr std::string_view kBoundary = "--a boundary that no content holds";
   std::string body;

@@ -6,8 +6,9 @@
 
 #include "mesh/surface/search_tree.h"
 
-// Stored geometry comes from a database that others can write to. The input is tried unchanged, and
-// as the content of a frame with a correct checksum: a fuzzer does not find checksums.
+// Fuzzes stored geometry, which comes from a database that other programs can write to. The input
+// is tried in two ways: unchanged, and as the content of a frame with a correct checksum, because a
+// fuzzer cannot guess checksums.
 namespace {
 
 void decode_and_use(std::span<const std::uint8_t> bytes) {

@@ -1,6 +1,6 @@
 #include "fuzz/mesh_invariants.h"
 
-// A GLB or glTF, which finds its own bytes as its external buffer, too.
+// Fuzzes a GLB or glTF file. Its external buffer has the same bytes.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   strata::Progress progress;
   std::vector<strata::mesh::InputFiles::Entry> entries;

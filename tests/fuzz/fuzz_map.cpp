@@ -1,5 +1,5 @@
-// Flat maps: a TIFF; a .shp directly followed by its .dbf (its header has its length); or a GeoJSON
-// text.
+// Fuzzes flat maps. The input is a TIFF, a GeoJSON text, or a .shp with the length in its header,
+// directly followed by its .dbf.
 #include <cmath>
 #include <cstdlib>
 
@@ -11,7 +11,7 @@ namespace {
 
 using strata::query::FeatureMap;
 
-constexpr int kMaxSide = 512;  // of pictures: larger ones only take longer
+constexpr int kMaxSide = 512;  // of images; larger ones only take longer
 
 void check(bool good) {
   if (!good) std::abort();

@@ -1,5 +1,5 @@
-// Pictures of surface images, orthophotos and brush shapes: a decoded picture has the size of its
-// header, and a shape does not change if it is sent again as the picture that the page shows.
+// Fuzzes images of surface images, orthophotos and brush shapes. A decoded image must have the size
+// in its header. A shape must not change if it is sent again as the image that the page shows.
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -27,7 +27,7 @@ void check_shape(const strata::Picture& picture) {
              texture.is_set(i % strata::kShapeSide, i / strata::kShapeSide));
     const auto again = strata::shape_of(strata::picture_of(*bits), strata::ShapePart::opaque);
     demand(again.has_value() && *again == *bits);
-    return;  // one is enough: its preparation takes longer than everything else
+    return;  // one is enough, because its preparation takes longer than all other steps
   }
 }
 

@@ -1,5 +1,6 @@
-// Texels of a layer of 128², as TIFF, PNG or NumPy; the first byte is the layer's type. A decoded
-// raster is written and read again unchanged in every format that can store it.
+// Fuzzes the texels of a layer of 128², as TIFF, PNG or NumPy. The first byte selects the layer's
+// type. A decoded raster must stay the same when it is written and read in any format that can
+// store it.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -16,7 +17,7 @@ void demand(bool holds) {
   if (!holds) std::abort();
 }
 
-// A NumPy file of version 1, padded with zero texels: few inputs are as long as a layer.
+// Pads a NumPy file of version 1 with zero texels, because few inputs are as long as a layer.
 std::vector<std::uint8_t> with_all_texels(std::span<const std::uint8_t> bytes, const Layer& layer) {
   std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
   const std::size_t header = bytes.size() < 10 ? 0 : std::size_t{10} + bytes[8] + 256u * bytes[9];

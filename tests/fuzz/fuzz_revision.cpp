@@ -1,6 +1,6 @@
-// Stored tiles and revisions: they come from a database that others can write to. The first byte is
-// the layer's type. The rest is tried unchanged, and as the content of a complete frame: a fuzzer
-// rarely makes one of the right size.
+// Fuzzes stored tiles and revisions, which come from a database that other programs can write to.
+// The first byte selects the layer's type. The rest is tried in two ways: unchanged, and as the
+// content of a complete frame, because a fuzzer rarely makes a frame of the right size.
 #include <zstd.h>
 
 #include <cstdint>

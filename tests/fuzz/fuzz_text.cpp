@@ -1,5 +1,5 @@
-// The short texts of requests, each for every parser: targets and their queries, cookies, origins,
-// points, ids, world files, tables of readings, keys of colors.
+// Fuzzes all parsers of the short texts in requests: targets and their queries, cookies, origins,
+// points, ids, world files, tables of readings, and keys of colors.
 #include <charconv>
 #include <cmath>
 #include <cstdint>

@@ -9,7 +9,7 @@
 
 namespace strata::test {
 
-// Properties of every mesh that was read; a fuzzer counts the trap as a finding.
+// Checks the properties of every mesh that was read. The fuzzer counts a trap as a finding.
 inline void check_loaded(const mesh::LoadedMesh& loaded) {
   const mesh::TriangleMesh& mesh = loaded.mesh;
   const auto demand = [](bool condition) {

@@ -8,7 +8,7 @@ namespace strata::test {
 
 using Lab = std::array<double, 3>;
 
-// CIE L*a*b* (D65) of an sRGB color with channels 0…255.
+// Returns CIE L*a*b* (D65) of an sRGB color with channels 0…255.
 inline Lab lab_of(const std::array<double, 3>& rgb) {
   std::array<double, 3> linear{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -25,7 +25,7 @@ inline Lab lab_of(const std::array<double, 3>& rgb) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// Sharma, Wu and Dalal: The CIEDE2000 color-difference formula, 2005.
+// Source: Sharma, Wu and Dalal: The CIEDE2000 color-difference formula, 2005.
 inline double ciede2000(const Lab& one, const Lab& other) {
   const auto [l1, a1, b1] = one;
   const auto [l2, a2, b2] = other;

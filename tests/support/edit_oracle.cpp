@@ -19,11 +19,11 @@ namespace {
 constexpr double kRounding_px = 2e-3;
 constexpr double kRoundingDepth = 1e-6;
 constexpr double kRoundingAngle_rad = 5e-4;
-constexpr double kRoundingOfSize = 1e-6;  // relative to the model's diagonal, at a section plane
+constexpr double kRoundingOfSize = 1e-6;  // at a section plane, relative to the model's diagonal
 
-// Whether the line between two points of a shape's raster passes through one of the tool's cells:
-// tests each row cell by cell, without the shader's distance jumps. With `slack` (cells) the shape
-// is larger on all sides; below 0, smaller.
+// Whether the line between two points of a shape's raster passes through a cell of the tool. Tests
+// each row cell by cell, without the distance jumps of the shader. A positive `slack` (in cells)
+// enlarges the shape on all sides; a negative one shrinks it.
 bool line_meets_shape(const ShapeTexture& shape, const glm::dvec2& a, const glm::dvec2& b,
                       double slack) {
   for (int y = 0; y < kShapeSide; ++y) {
@@ -49,8 +49,9 @@ bool line_meets_shape(const ShapeTexture& shape, const glm::dvec2& a, const glm:
   return false;
 }
 
-// Like `inside`, for a shape: at least kRounding_px if the point is certainly under it, the
-// negative of it if it certainly is not.
+// The equivalent of `inside` for a shape. Returns at least kRounding_px if the shape certainly
+// covers the point, at most −kRounding_px if it certainly does not, and a value between them if
+// rounding decides.
 double inside_shape(const StrokeBatch& stroke, const std::vector<double>& radii,
                     const glm::dvec2& p) {
   const auto in_raster = [&](std::size_t i) {
@@ -73,8 +74,9 @@ double inside_shape(const StrokeBatch& stroke, const std::vector<double>& radii,
   return best;
 }
 
-// Returns how far a point is inside the tool, in pixels; negative outside. Steps along each segment
-// finely enough for kRounding_px: independent of the closed form in the shader.
+// Returns the distance from a point inside the tool to the tool's outline, in pixels; negative
+// outside. Searches each segment finely enough for kRounding_px, without the closed form of the
+// shader.
 double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const glm::dvec2& p) {
   const auto point = [&](std::size_t i) {
     return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y);
@@ -94,7 +96,7 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
     const auto at = [&](double t) {
       return margin(a + (b - a) * t, radii[i - 1] + (radii[i] - radii[i - 1]) * t);
     };
-    // The margin is concave along the segment: ternary search finds its maximum.
+    // The margin is concave along the segment, so a ternary search finds its maximum.
     double low = 0, high = 1;
     for (int step = 0; step < 60; ++step) {
       const double third = (high - low) / 3;
@@ -108,9 +110,10 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
   return best;
 }
 
-// Returns how much the surface in a pixel exceeds the allowed angle: between the direction to the
-// eye and the normal of the plane through the pixel's center and two neighbors, from points in the
-// world; and the same if rounding selects other neighbors.
+// Returns by how much the surface in a pixel stays below the largest allowed angle, as the least
+// and the greatest value. The angle is between the ray from the eye and the normal of the plane
+// through the points of the pixel and of two neighbors, in world coordinates. The two values differ
+// if rounding decides which neighbors are used.
 std::pair<double, double> angle_margins(const StrokeBatch& stroke,
                                         const std::function<double(int, int)>& at, int x, int y) {
   const Camera& camera = stroke.camera;
@@ -121,7 +124,7 @@ std::pair<double, double> angle_margins(const StrokeBatch& stroke,
                                      (py + 0.5) * 2 / camera.height - 1, at(px, py) * 2 - 1, 1);
     return glm::dvec3(p) / p.w;
   };
-  // The neighbor on the side with the nearer depth; both if they are equally near within rounding.
+  // Returns the side of the neighbor with the nearer depth, or both sides if rounding decides.
   const auto neighbours = [&](int dx, int dy, int where, int last) {
     const double before = std::abs(at(x, y) - at(x - dx, y - dy)),
                  after = std::abs(at(x + dx, y + dy) - at(x, y));
@@ -146,7 +149,8 @@ std::pair<double, double> angle_margins(const StrokeBatch& stroke,
   return {low, high};
 }
 
-// Margins of one texel: it is written if all are positive, and undecided if the smallest is near 0.
+// Returns whether the stroke writes one texel: it does if all margins are positive. Sets
+// `undecided` if the smallest margin is near 0.
 bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<double>& radii,
             const std::vector<float>& depth, const glm::dmat4& clip_from_model,
             const render::DepthBias& bias, const glm::vec3& position, bool& undecided) {
@@ -187,7 +191,7 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   const double allowed = stroke.fixed_depth_bias.value_or(
       base + std::min(bias.slope_factor * slope, bias.slope_limit * base));
   const double depth_margin = here - (ndc.z * 0.5 + 0.5 - allowed);
-  // Near a pixel's border the test may have read the other pixel.
+  // Near the border of a pixel, the depth test may have read the neighboring pixel.
   const double border = std::min({window.x - x, window.y - y, x + 1 - window.x, y + 1 - window.y});
   undecided = undecided || std::abs(depth_margin) < kRoundingDepth || border < kRounding_px;
   bool faces = true;
@@ -199,7 +203,7 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   return is_uncut && !inside && margin_px > 0 && depth_margin >= 0 && faces;
 }
 
-// In window pixels, one for each path point.
+// Returns one radius for each path point, in window pixels.
 std::vector<double> radii_of(const StrokeBatch& stroke, const std::vector<float>& depth) {
   const auto narrowed = [&](std::vector<double> radii) {
     for (std::size_t i = 0; i < stroke.widths.size(); ++i) radii[i] *= stroke.widths[i];

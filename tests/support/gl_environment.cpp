@@ -1,6 +1,6 @@
-// Linked into every test that needs GL. LeakSanitizer checks at the end of the process: driver
-// libraries that are unloaded by then look like leaks without a name, so this file loads them and
-// never unloads them.
+// This file is linked into every test that needs GL. It loads the driver libraries and never
+// unloads them. LeakSanitizer checks at the end of the process, and a library that is unloaded by
+// then looks like a leak without a name.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 

@@ -22,8 +22,8 @@ void expect(Result<void> result) {
   if (!result) throw std::runtime_error(result.error().title + ": " + result.error().detail);
 }
 
-// A grid of quads as one chart: `place` returns positions for u, v in [0, 1], `uv` the texture
-// coordinates.
+// Adds a grid of quads as one chart. For u and v in [0, 1], `place` returns the position and `uv`
+// the texture coordinates.
 template <class Place, class Uv>
 void add_chart(mesh::TriangleMesh& mesh, int quads, Place place, Uv uv) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -57,7 +57,7 @@ mesh::TriangleMesh bumpy_sphere(int quads_per_edge) {
                           0.004 * std::sin(61 * d.x) * std::sin(53 * d.y) * std::sin(67 * d.z);
       return d * (1 + bump);
     };
-    // Charts are rotated in their cells, so that texel rows and triangle edges do not align.
+    // Each chart is rotated in its cell, so texel rows and triangle edges do not align.
     const glm::vec2 center((0.5f + static_cast<float>(face % 3)) / 3,
                            (0.5f + static_cast<float>(face / 3)) / 2);
     const float turn = 0.1f + 0.2f * static_cast<float>(face), size = 0.21f;
@@ -135,7 +135,7 @@ TestRenderer::TestRenderer(render::RendererOptions options) {
 }
 
 TestRenderer::~TestRenderer() {
-  // Jobs of other threads run before errors are counted.
+  // Wait until the jobs of other threads have run, then count the errors.
   renderer_->run_on_gpu_thread_for_test([] {});
   EXPECT_EQ(renderer_->debug_errors(), 0) << "the driver reported GL errors; see the log above";
 }

@@ -12,12 +12,12 @@
 
 namespace strata::test {
 
-// Meshes with their own charts for GL tests.
-mesh::TriangleMesh bumpy_sphere(int quads_per_edge);  // radius ≈ 1; 6 charts; 12 · n² triangles
-// two unit squares at z = 0 and z = -gap; 2 charts
+// Meshes with their own charts, for GL tests.
+mesh::TriangleMesh bumpy_sphere(int quads_per_edge);  // radius ≈ 1, 6 charts, 12 · n² triangles
+// Two unit squares at z = 0 and z = -gap, with 2 charts.
 mesh::TriangleMesh folded_sheets(double gap);
 mesh::TriangleMesh flat_square(int quads_per_edge = 1);  // unit square at z = 0, uv 0.05 … 0.95
-// The same with heights from x and y, -0.5 … 0.5.
+// The same square with heights that `height` computes from x and y in -0.5 … 0.5.
 mesh::TriangleMesh relief_square(int quads_per_edge,
                                  const std::function<double(double, double)>& height);
 
@@ -33,7 +33,7 @@ struct Scene {
 };
 Scene make_scene(const mesh::TriangleMesh& mesh, int resolution);  // uses the mesh's corner_uvs
 
-// Calls a function that ends in a `Done<T>` callback and waits for the answer.
+// Calls a function whose last argument is a `Done<T>` callback and waits for the result.
 template <class T, class Call>
 Result<T> await(Call call) {
   auto promise = std::make_shared<std::promise<Result<T>>>();
@@ -42,9 +42,9 @@ Result<T> await(Call call) {
   return future.get();
 }
 
-// A renderer in a debug context with blocking calls, in which any Error fails the test. Its
-// destructor checks that no GL error was reported. STRATA_TEST_EDIT_PATH (`compute` or `kernel`)
-// selects the path that paints, unless the options do.
+// A renderer in a debug context with blocking calls. Any Error fails the test. The destructor
+// checks that no GL error was reported. STRATA_TEST_EDIT_PATH (`compute` or `kernel`) selects the
+// path that paints, unless the options select one.
 class TestRenderer {
  public:
   explicit TestRenderer(render::RendererOptions options = {});
@@ -53,25 +53,25 @@ class TestRenderer {
   render::Renderer* operator->() { return renderer_.get(); }
   render::Renderer& get() { return *renderer_; }
 
-  render::ModelHandle add(const Scene& scene);  // model and surface map
+  render::ModelHandle add(const Scene& scene);  // adds the model and its surface map
   render::LayerHandle add_layer(render::ModelHandle model, ValueType type, int resolution);
   render::ViewHandle add_view(render::ModelHandle model);
   render::StrokeOutcome paint(render::LayerHandle layer, const StrokeBatch& stroke);
   render::Frame draw(const render::FrameRequest& request);
   void write(render::LayerHandle layer, std::vector<render::TileUpload> tiles);
-  // Depth of the full mesh, bottom row first.
+  // Returns the depth of the full mesh, bottom row first.
   std::vector<float> depth(const Scene& scene, const Camera& camera);
 
  private:
   std::unique_ptr<render::Renderer> renderer_;
 };
 
-// The depth of the whole mesh; with a current context.
+// Draws the depth of the whole mesh. The caller must have a current context.
 std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths,
                                                 const render::MeshBuffers& mesh,
                                                 const Camera& camera);
 
-// A dab with a disc and a u8 value.
+// Returns a dab with a disc and a u8 value.
 StrokeBatch dab(const Camera& camera, double x, double y, double radius_px,
                 std::uint32_t value_bits = 7);
 

@@ -9,8 +9,8 @@
 
 namespace strata::test {
 
-// Builds glTF files step by step: each `add` makes a buffer view and an accessor, and returns the
-// accessor's number.
+// Builds glTF files step by step. Each `add` makes a buffer view and an accessor, and returns the
+// number of the accessor.
 class GltfBuilder {
  public:
   nlohmann::json json = {
@@ -51,7 +51,7 @@ class GltfBuilder {
     word(file, static_cast<std::uint32_t>(data.size()));
     return file + std::string("BIN\0", 4) + data;
   }
-  // With the data in a file or a URI of this name.
+  // Returns the JSON of a file whose binary data is at `uri`: the name of a file or a data URI.
   std::string gltf(const std::string& uri) const { return with_buffer(uri).dump(); }
   const std::string& binary() const { return binary_; }
 

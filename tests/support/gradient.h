@@ -5,7 +5,7 @@
 
 namespace strata::test {
 
-// An RGBA8 picture, top row first: red grows to the right, green downward; opaque.
+// Returns an opaque RGBA8 image, top row first: red increases to the right, green downwards.
 inline std::vector<std::uint8_t> gradient(int width, int height) {
   std::vector<std::uint8_t> rgba(std::size_t(width) * height * 4);
   for (int y = 0; y < height; ++y)

@@ -10,9 +10,9 @@
 
 namespace strata::test {
 
-// Faults of a surface, counted by brute force.
+// The faults of a surface, counted by brute force.
 struct ManifoldFaults {
-  std::size_t crowded_edges = 0;     // more than two triangles
+  std::size_t crowded_edges = 0;     // edges of more than two triangles
   std::size_t disagreements = 0;     // two triangles that use an edge in the same direction
   std::size_t vertices_of_fans = 0;  // vertices whose triangles are not one fan
   std::size_t boundary_edges = 0;    // not a fault
@@ -20,7 +20,7 @@ struct ManifoldFaults {
 
 inline ManifoldFaults manifold_faults(const mesh::TriangleMesh& mesh) {
   ManifoldFaults faults;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, int>> edges;  // both directions
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, int>> edges;  // per direction
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> links(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
     for (int k = 0; k < 3; ++k) {

@@ -60,7 +60,7 @@ inline Result<mesh::LoadedMesh> load_text(const std::string& bytes, const std::s
                                filename, progress);
 }
 
-// Files by name, in memory; `texts` must outlive the result.
+// Makes files by name, in memory. `texts` must outlive the result.
 inline Result<mesh::InputFiles> files_of(
     const std::vector<std::pair<std::string, std::string>>& texts) {
   std::vector<mesh::InputFiles::Entry> entries;

@@ -14,8 +14,8 @@ void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uin
   mesh.triangles.insert(mesh.triangles.end(), {a, b, c});
 }
 
-// Adds two triangles for each cell of a grid of vertices that is closed along x, and optionally
-// along y.
+// Adds two triangles for each cell of a grid of vertices. The grid is closed along x, and
+// optionally along y.
 void add_cells(TriangleMesh& mesh, int columns, int rows, bool closed_rows) {
   const auto at = [&](int x, int y) {
     return static_cast<std::uint32_t>((y % rows) * columns + x % columns);
@@ -176,8 +176,8 @@ TriangleMesh cubes(int count) {
 TriangleMesh gear(int teeth) {
   TriangleMesh mesh;
   const auto columns = static_cast<std::uint32_t>(4 * teeth);
-  // Four rings: outer and inner rim at the bottom, then at the top. Caps connect outer and inner,
-  // walls bottom and top.
+  // There are four rings: the outer and inner rims of the bottom, then those of the top. Caps
+  // connect outer and inner rims. Walls connect bottom and top.
   for (int ring = 0; ring < 4; ++ring)
     for (std::uint32_t i = 0; i < columns; ++i) {
       const double angle = 2 * std::numbers::pi * i / columns;

@@ -8,25 +8,25 @@
 
 namespace strata::test {
 
-// Small meshes of each class of scans. Deterministic.
+// Small deterministic meshes, one or more for each class of scans.
 mesh::TriangleMesh sphere(int segments, double noise = 0);  // closed
 mesh::TriangleMesh torus(int segments);                     // closed, with a hole through it
-// boundary; corner_uvs fill [0.05, 0.95]²
+// Has a boundary; corner_uvs fill [0.05, 0.95]².
 mesh::TriangleMesh open_grid(int cells, double height = 0.2);
-// edges with three and four triangles
+// Has edges with three and with four triangles.
 mesh::TriangleMesh grid_with_fins(int cells);
-// a fan of triangles 1000 times longer than wide
+// A fan of triangles whose length is 1000 times their width.
 mesh::TriangleMesh slivers(int count);
-// 12 triangles; corner_uvs in 6 separate squares
+// Has 12 triangles; corner_uvs are 6 separate squares.
 mesh::TriangleMesh cube_with_face_charts();
-// every 7th triangle reversed, some doubled
+// Every 7th triangle is reversed, and some triangles occur twice.
 mesh::TriangleMesh flipped_and_duplicate(int cells);
 mesh::TriangleMesh separate_triangles(int count);  // not connected
-// not connected, with 12 triangles and 8 vertices each
+// Cubes that are not connected, with 12 triangles and 8 vertices each.
 mesh::TriangleMesh cubes(int count);
-// two flat caps with a hole, straight and slanted flanks
+// Two flat caps with a hole, and straight and slanted flanks.
 mesh::TriangleMesh gear(int teeth);
-mesh::TriangleMesh flat_ring(int sides);              // one plane, thin and hollow
+mesh::TriangleMesh flat_ring(int sides);              // in one plane, thin and hollow
 mesh::TriangleMesh strips(int count, double length);  // not connected, two triangles each, 1 wide
 
 mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, double scale, const glm::dvec3& offset);
@@ -37,7 +37,7 @@ struct NamedMesh {
 };
 // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for it
 inline void PrintTo(const NamedMesh& named, std::ostream* out) { *out << named.name; }
-// all of the above, at sizes that tests can check by brute force
+// Returns all of the above, at sizes that tests can check by brute force.
 std::vector<NamedMesh> mesh_classes();
 
 }  // namespace strata::test

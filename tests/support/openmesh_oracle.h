@@ -10,18 +10,18 @@
 
 namespace strata::test {
 
-// Builds the mesh with OpenMesh, face by face. `add_face` accepts a face only if the surface stays
-// a manifold: it refuses a third triangle at an edge, two triangles that use an edge in the same
-// direction, and a vertex whose triangles would be more than one closed fan. So independent code
-// checks the results of mesh/repair/manifold. Debian builds it with assertions: some faults end the
-// program instead, which also fails a test.
+// Builds the mesh with OpenMesh, face by face, so independent code checks the results of
+// mesh/repair/manifold. `add_face` accepts a face only if the surface stays a manifold. It refuses
+// a third triangle at an edge, two triangles that use an edge in the same direction, and a vertex
+// whose triangles would be more than one closed fan. Debian builds OpenMesh with assertions, so
+// some faults abort the program, which also fails the test.
 struct OpenMeshOracle {
   OpenMesh::TriConnectivity mesh;
-  std::vector<std::uint32_t> refused;  // triangles
+  std::vector<std::uint32_t> refused;  // indices of the refused triangles
 
   explicit OpenMeshOracle(const mesh::TriangleMesh& triangles) {
     for (std::size_t i = 0; i < triangles.positions.size(); ++i) mesh.new_vertex();
-    // It prints the reason of each refusal on its error stream.
+    // OpenMesh prints the reason of each refusal to its error stream.
     omerr().disable();
     for (std::uint32_t t = 0; t < triangles.triangle_count(); ++t) {
       std::array<OpenMesh::VertexHandle, 3> corners;

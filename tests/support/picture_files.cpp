@@ -1,6 +1,6 @@
 #include "support/picture_files.h"
 
-#include <stdio.h>  // jpeglib.h needs it first
+#include <stdio.h>  // jpeglib.h requires this include before it
 
 #include <jpeglib.h>
 #include <webp/encode.h>
@@ -37,7 +37,7 @@ void write_samples(TIFF* tiff, int width, int height, const TiffSettings& s,
     if (bits > 0) put(bytes, collected << (8 - bits), 1);
     return bytes;
   };
-  // libtiff refuses uncompressed tiles of less than 1024 bytes that are not mapped from a file
+  // libtiff refuses uncompressed tiles of less than 1024 bytes that are not mapped from a file.
   constexpr int kTile = 32;
   const int planes = s.separate ? s.samples : 1;
   for (int plane = 0; plane < planes; ++plane) {
@@ -122,7 +122,7 @@ Bytes bmp_of(const Bytes& rgba, int width, int height, int bits, bool top_down) 
   put(out, 1, 2);
   put(out, static_cast<std::uint32_t>(bits), 2);
   put(out, 0, 24);
-  // blue in the low byte: (255 − i, i, i)
+  // Each entry is (255 − i, i, i), with blue in the low byte.
   for (std::uint32_t i = 0; i < colors; ++i) put(out, (255 - i) << 16 | i << 8 | i, 4);
   for (int i = 0; i < height; ++i) {
     const int y = top_down ? i : height - 1 - i;
@@ -193,7 +193,7 @@ Bytes cmyk_jpeg_of(const Bytes& rgba, int width, int height, Inks inks) {
     Bytes row;
     for (int x = 0; x < width; ++x) {
       const std::uint8_t* p = &rgba[4 * (std::size_t(y) * width + x)];
-      // Without black: the stored inverted value is the color itself.
+      // These inks have no black, so the stored inverted value is the color itself.
       for (int c = 0; c < 3; ++c)
         row.push_back(inks == Inks::plain_cmyk ? static_cast<std::uint8_t>(255 - p[c]) : p[c]);
       row.push_back(inks == Inks::plain_cmyk ? 0 : 255);

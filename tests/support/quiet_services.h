@@ -6,7 +6,7 @@
 
 namespace strata::test {
 
-// What use cases need in addition to the store and the rooms, when nobody listens to changes.
+// The services that use cases need in addition to the store and the rooms, without any listener.
 class QuietServices {
  public:
   app::Services of(store::Store& store, room::Rooms& rooms) {

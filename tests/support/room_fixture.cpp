@@ -27,7 +27,7 @@ struct Pot {
   mesh::Geometry geometry;
 };
 
-// Unwrapped once for all tests of the process.
+// Unwraps the pot once for all tests of the process.
 const Result<Pot>& pot() {
   static const Result<Pot> made = []() -> Result<Pot> {
     Progress progress;
@@ -177,7 +177,7 @@ void RoomTest::expect_room_equals_journal(const Layer& layer) {
 }
 
 void RoomTest::expect_picture_of_journal() {
-  // A second renderer that has never painted: its picture comes only from the journal.
+  // A second renderer that has never painted. Its frame comes only from the journal.
   render::RendererOptions options;
   options.shader_dir = shader_dir().string();
   auto renderer = render::Renderer::start(options);

@@ -17,8 +17,8 @@
 
 namespace strata::test {
 
-// Rooms with a real database and a real renderer, and one small model: a folded surface in
-// millimeters.
+// A fixture with rooms on a real database and a real renderer, and one small model: a folded
+// surface in millimeters.
 class RoomTest : public ::testing::Test {
  protected:
   void SetUp() override;
@@ -29,22 +29,21 @@ class RoomTest : public ::testing::Test {
   std::shared_ptr<room::Room> room();
   Layer make_layer(ValueType type, int resolution = 2048, const std::string& name = "Layer");
 
-  // Returns a camera that sees the model from +z (or `from`), 640 × 480, orthographic or
-  // perspective.
+  // Returns a camera that sees the model from `from`, at 640 × 480 pixels.
   Camera camera(glm::dvec3 from = {0, 0, 1}, bool orthographic = false) const;
-  // By an annotator.
+  // Returns a stroke of an annotator.
   room::EditRequest stroke(const Layer& layer, double value, std::vector<glm::dvec2> path,
                            double radius_px, const std::string& user = "anna") const;
   room::EditRequest request(const Layer& layer, decltype(room::EditRequest::edit) edit,
                             const std::string& user = "anna") const;
   // Sends the edit and waits until it is durable or refused.
   Result<room::EditAnswer> send(room::EditRequest request);
-  // Repeats an edit that was refused temporarily (503), as a client does.
+  // Repeats an edit while the server refuses it temporarily (503), as a client does.
   Result<room::EditAnswer> send_until_taken(const room::EditRequest& request);
   std::future<Result<room::EditAnswer>> start(room::EditRequest request);
-  // Expects the layer of the room to equal that of the journal.
+  // Expects the room's layer to equal the layer in the journal.
   void expect_room_equals_journal(const Layer& layer);
-  // Waits until the room's picture shows the journal's content; fails after a time limit.
+  // Waits until the room's frame shows the content of the journal. Fails after a time limit.
   void expect_picture_of_journal();
 
   std::string dsn_;

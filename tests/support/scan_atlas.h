@@ -10,11 +10,11 @@ namespace strata::test {
 
 struct ScanAtlas {
   mesh::TriangleMesh mesh;
-  mesh::Atlas atlas;  // always made, never the file's own
+  mesh::Atlas atlas;  // always made here, never the file's own
 };
 
-// A real scan of STRATA_TEST_DATA with an atlas made at 2048², which takes seconds: all tests of a
-// process share it.
+// Returns a real scan of STRATA_TEST_DATA with an atlas made at 2048². The atlas takes seconds, so
+// all tests of a process share it.
 const Result<ScanAtlas>& scan_with_made_atlas(const std::string& name);
 
 }  // namespace strata::test

@@ -7,8 +7,9 @@
 
 namespace strata::test {
 
-// The shaders for tests and benchmarks: those of the source tree, or of a bundle (STRATA_SHADERS,
-// STRATA_PEER_SHADERS), so that the same programs run on a machine that has only a driver.
+// Returns the folder of the shaders for tests and benchmarks: in the source tree, or in a bundle
+// (STRATA_SHADERS, STRATA_PEER_SHADERS). With a bundle, the same programs run on a machine that has
+// only a driver.
 inline std::filesystem::path shader_dir() {
   const char* bundled = std::getenv("STRATA_SHADERS");
   return bundled ? bundled : STRATA_SHADER_DIR;

@@ -9,8 +9,8 @@
 
 namespace strata::test {
 
-// Writes shapefiles byte by byte by ESRI's description, so that the reader is not tested with its
-// own writer.
+// Writes shapefiles byte by byte as ESRI's specification describes them, so the tests of the reader
+// do not depend on Strata's writer.
 
 inline std::string big_endian(std::uint32_t value) {
   std::string bytes;
@@ -28,7 +28,8 @@ inline std::string number(double value) {
 
 using ShapeRings = std::vector<std::vector<std::pair<double, double>>>;
 
-// The content of a polygon's record; a null shape without rings. Type 15 has a Z of 0 everywhere.
+// Returns the content of a polygon's record; without rings, a null shape. Type 15 has a Z of 0
+// everywhere.
 inline std::string polygon_record(const ShapeRings& rings, std::uint32_t type = 5) {
   if (rings.empty()) return little_endian(0);
   std::string starts, points;
@@ -60,7 +61,7 @@ inline std::string shp_of(const std::vector<std::string>& records, std::uint32_t
          little_endian(type) + std::string(64, '\0') + body;
 }
 
-// A field of a .dbf: 'N' or 'C', with the values as stored in the file.
+// A field of a .dbf: type 'N' or 'C', with the values as the file stores them.
 struct DbfField {
   std::string name;
   char type = 'N';

@@ -8,7 +8,8 @@
 
 namespace strata::test {
 
-// The shape of the inside of a function of x and y, both -1…1, y up.
+// Returns the shape of the points where `inside` is true. Its arguments x and y are −1…1, with y
+// up.
 inline ShapeBits shape_bits(const std::function<bool(double, double)>& inside) {
   ShapeBits bits{};
   for (int y = 0; y < kShapeSide; ++y)
@@ -22,7 +23,7 @@ inline std::shared_ptr<const ShapeTexture> shape(
   return std::make_shared<const ShapeTexture>(shape_bits(inside));
 }
 
-// None of these equals its mirror image.
+// Shapes that differ from their mirror images.
 inline bool in_flag(double x, double y) {
   return (x < -0.6 && x > -0.8) || (x > -0.8 && y > x * 0.5 + 0.1 && y < 0.9);
 }

@@ -8,7 +8,7 @@
 
 namespace strata::test {
 
-// Without an atlas: all that needs no texture coordinates.
+// Builds a geometry without an atlas, for code that needs no texture coordinates.
 inline mesh::Geometry geometry_of(const mesh::TriangleMesh& mesh) {
   return mesh::build_geometry(mesh, {});
 }
@@ -22,7 +22,7 @@ inline void add(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& other, doubl
       mesh.triangles.push_back(first + other.triangles[i + (inside_out ? 2 - corner : corner)]);
 }
 
-// A ball of radius 1.
+// Returns a ball of radius 1.
 inline mesh::TriangleMesh ball(int rows = 64) {
   mesh::TriangleMesh mesh;
   const int columns = 2 * rows;

@@ -12,7 +12,7 @@
 #include "mesh/surface/geometry.h"
 #include "mesh/texels/texel_graph.h"
 
-// A mesh with all data for queries of its surface, and layers on it.
+// A mesh with all data for queries of its surface, and layers on that surface.
 namespace strata::test {
 
 struct Surface {
@@ -39,7 +39,8 @@ void for_each_surface_texel(const mesh::SurfaceMap& map, Visit visit) {
       visit(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
 }
 
-// Returns a layer with `value_at` of each texel's position; gutter texels follow.
+// Returns a layer with the result of `value_at` for the position of each texel. Gutter texels get
+// values too.
 inline TileMap layer_of(const mesh::SurfaceMap& map,
                         const std::function<int(glm::vec3)>& value_at) {
   TileMap tiles;

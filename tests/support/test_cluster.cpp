@@ -36,8 +36,8 @@ const auto* const kStopAtEnd = ::testing::AddGlobalTestEnvironment(new StopAtEnd
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  // In memory if there is room: the tests kill processes, not machines, and a disk makes every
-  // initdb slow.
+  // In memory if it has enough space: a disk makes every initdb slow, and the tests kill processes,
+  // not machines, so the data need not survive a power failure.
   std::error_code error;
   const char* parent = std::getenv("STRATA_TEST_TMP");
   const auto space = std::filesystem::space("/dev/shm", error);
@@ -59,7 +59,7 @@ TemporaryFolder::~TemporaryFolder() {
 
 namespace {
 
-// With owners and modes, which std::filesystem::copy does not keep: PostgreSQL requires both.
+// Keeps owners and modes, which PostgreSQL requires and std::filesystem::copy does not keep.
 void copy_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::string program = "cp", archive = "-a", source = from / ".", target = to;
   std::array<char*, 5> words{program.data(), archive.data(), source.data(), target.data(), nullptr};
@@ -117,7 +117,7 @@ std::vector<int> children_of(int parent) {
 }  // namespace
 
 Hang::Hang(const store::Cluster& cluster) : cluster_(cluster), stopped_{cluster.postmaster_pid()} {
-  ::kill(stopped_.front(), SIGSTOP);  // first, so that it starts no new children
+  ::kill(stopped_.front(), SIGSTOP);  // first, so it starts no new children
   for (const int child : children_of(stopped_.front())) {
     ::kill(child, SIGSTOP);
     stopped_.push_back(child);
@@ -154,7 +154,7 @@ std::string create_database(const std::string& of_template) {
 std::string empty_database() { return create_database("template1"); }
 
 std::string fresh_database() {
-  // No test uses the cluster's own database, so after its migration it is the template.
+  // No test uses the cluster's own database, so it serves as the template once it is migrated.
   const store::Cluster& cluster = shared_cluster();
   if (!shared->migrated) open_store(cluster.dsn(), 1);
   shared->migrated = true;

@@ -9,22 +9,23 @@
 
 namespace strata::test {
 
-// One private PostgreSQL for the test program, started at first use in a temporary folder and
-// removed at the end: a copy of the result of tests/support/prepare if STRATA_TEST_PREPARED names
-// it, otherwise a new one. Link strata_cluster_support.
+// Returns the private PostgreSQL of the test program. It starts at first use in a temporary folder
+// and is removed at the end. It is a copy of the result of tests/support/prepare if
+// STRATA_TEST_PREPARED names that, otherwise a new one. Link strata_cluster_support.
 store::Cluster& shared_cluster();
 
-// Sends kill -9 to the postmaster; returns when it has ended, so that `ensure_running` notices.
+// Sends kill -9 to the postmaster and waits until it has ended, so `ensure_running` can notice.
 void kill_postmaster(const store::Cluster& cluster);
 
-// Sends kill -STOP to the postmaster and all its sessions until destruction: a hanging database.
+// Simulates a hanging database: stops the postmaster and all its sessions (kill -STOP) until
+// destruction.
 class Hang {
  public:
   explicit Hang(const store::Cluster& cluster);
   ~Hang();
   Hang(const Hang&) = delete;
   Hang& operator=(const Hang&) = delete;
-  void kill();  // sends kill -9 to all: none can do any more work
+  void kill();  // sends kill -9 to all, so none can do any more work
 
  private:
   const store::Cluster& cluster_;
@@ -32,17 +33,17 @@ class Hang {
 };
 
 // Creates a database of the shared cluster with all migrations, and returns its connection string.
-// It is a copy of a migrated one, because the migrations take longer than most tests.
+// The database is a copy of a migrated one, because the migrations take longer than most tests.
 std::string fresh_database();
-// Without any table, for tests of the migrations themselves.
+// Creates a database without tables, for tests of the migrations themselves.
 std::string empty_database();
 
 // Opens a store on a new database.
 std::unique_ptr<store::Store> fresh_store(int connections = 4);
 std::unique_ptr<store::Store> open_store(const std::string& dsn, int connections = 4);
 
-// A temporary folder that the database user can reach; the destructor removes it. STRATA_TEST_TMP
-// names a folder other than /dev/shm (or /tmp) for it.
+// A temporary folder that the database user can reach. The destructor removes it. STRATA_TEST_TMP
+// replaces the default parent folder /dev/shm (or /tmp).
 class TemporaryFolder {
  public:
   TemporaryFolder();

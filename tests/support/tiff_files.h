@@ -12,14 +12,14 @@ namespace strata::test {
 // A little-endian TIFF with one uncompressed strip, written byte by byte.
 struct TiffFile {
   struct Tag {
-    std::uint16_t id, type;  // 2 text, 3 u16, 4 u32, 12 f64
+    std::uint16_t id, type;  // types: 2 text, 3 u16, 4 u32, 12 f64
     std::uint32_t count;
     std::string bytes;
   };
   std::uint32_t width = 0, height = 0;
   std::uint16_t bits = 8, samples = 1, format = 1, photometric = 1;
   std::string pixels;
-  std::vector<Tag> more{};  // ids above 339, ascending
+  std::vector<Tag> more{};  // with ids above 339, ascending
   std::uint16_t orientation = 1;
 
   static Tag texts(std::uint16_t id, const std::string& text) {

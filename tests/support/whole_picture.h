@@ -5,7 +5,7 @@
 
 namespace strata::test {
 
-// Returns a picture of a room as one piece.
+// Returns one frame of a room as a single image.
 inline Result<Picture> whole_picture(room::Pictures& pictures, const room::PictureRequest& request,
                                      const Camera& camera) {
   Picture whole;

@@ -9,7 +9,7 @@
 
 namespace strata::test {
 
-// A zip with these entries, deflated.
+// Returns a zip file with these entries, deflated.
 inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>& entries) {
   zip_error_t error;
   zip_error_init(&error);

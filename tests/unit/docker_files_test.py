@@ -62,7 +62,7 @@ def check_compose():
     for name, file in files.items():
         check_services(name, file["services"], base["services"], known)
 
-    # Every setting is explained, and every explained setting is used.
+    # Every setting must be explained, and every explained setting must be used.
     explained = read("docker", "env.example")
     settings = set(re.findall(r"^#?([A-Z_]+)=", explained, re.M))
     used = set(re.findall(r"\$\{(\w+)", "".join(texts.values())))
@@ -73,7 +73,8 @@ def check_compose():
     for name in re.search(r"COMPOSE_FILE=(.*)", explained).group(1).split(":"):
         assert name in files, name
 
-    # The image's own programs make backups.
+    # The programs of Strata's image make the backups, so the database must have their major
+    # version.
     major = re.search(r"postgresql-(\d+)", read("scripts", "setup.sh")).group(1)
     assert base["services"]["database"]["image"].startswith(f"postgres:{major}-"), major
 

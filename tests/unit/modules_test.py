@@ -83,7 +83,8 @@ def headers() -> Graph:
 
 
 def main() -> int:
-    # Tests the functions above: a cycle is found, and a link that follows from others is left out.
+    # Test the functions above: `circle` finds a cycle, and `reduced` omits a link that follows from
+    # others.
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == ["a", "b", "c", "a"]
     assert reduced({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == {("a", "b"), ("b", "c")}
 

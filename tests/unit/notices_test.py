@@ -6,7 +6,7 @@ import sys
 import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# Header-only, static and shared libraries.
+# Examples of header-only, static and shared libraries.
 EXPECTED = (
     "nlohmann-json3-dev",
     "libcli11-dev",

@@ -1,5 +1,5 @@
-// The comments of a source file: the file's text with everything else blanked, so that lines and
-// columns stay.
+// Returns the comments of a source file: the text of the file with everything else replaced by
+// blanks, so lines and columns stay the same.
 
 const cLike = [".cpp", ".h", ".ts", ".mjs", ".js", ".comp", ".vert", ".frag", ".glsl", ".css"];
 const hashLike = [".py", ".sh", ".cmake", ".yaml", ".yml", "CMakeLists.txt", "run", "test"];
@@ -7,7 +7,7 @@ const hashLike = [".py", ".sh", ".cmake", ".yaml", ".yml", "CMakeLists.txt", "ru
 export const kCommented = (kind) =>
   kind === ".sql" || cLike.includes(kind) || hashLike.includes(kind);
 
-// Strings come first, so that a `//` or `#` inside of one begins no comment.
+// Strings come first, because a `//` or `#` inside a string begins no comment.
 const kStrings = /"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'/.source;
 const kPatterns = {
   c: new RegExp(`${kStrings}|(//.*|/\\*[\\s\\S]*?\\*/)`, "g"),
@@ -25,7 +25,7 @@ export function commentsOf(source, kind) {
   for (const found of source.matchAll(pattern)) {
     out += blank(source.slice(end, found.index));
     end = found.index + found[0].length;
-    // Code in a comment stands between grave accents; signs that begin a line are no words.
+    // Omit code in grave accents, and the characters that begin the lines of a comment.
     out += found[1]
       ? found[1]
           .replace(/^(\s*)(\/\/+|\/?\*+\/?|#+|--+)/gm, (signs) => blank(signs))

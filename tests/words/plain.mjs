@@ -1,5 +1,5 @@
-// Refuses the phrases of avoid.json in the documents and in the comments of the source: textlint
-// reads the Markdown, and of a source file only its comments.
+// Reports the phrases of avoid.json in the documents and in the comments of the source. textlint
+// reads Markdown completely, but only the comments of a source file.
 //
 //   node plain.mjs [FILE…]    without files: all that git tracks
 
@@ -43,8 +43,8 @@ const options = (file, ext) => ({
   rules: [{ ruleId: "plain-english", rule: plainEnglish }],
 });
 
-// The changelog keeps the words of its releases. A migration never changes once it was applied.
-// Generated files follow their source.
+// Three kinds of files are skipped. The changelog keeps the words of its releases. A migration must
+// not change after it was applied. Generated files follow their source.
 const skipped =
   /(^|\/)(node_modules|generated|fixtures|corpus|migrations)\/|\.gen\.ts$|^CHANGELOG\.md$/;
 const files =

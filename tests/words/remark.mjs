@@ -1,4 +1,4 @@
-// Links of the documents to each other, to their headings and to files of the source.
+// Checks the links of the documents to each other, to headings and to source files.
 import validateLinks from "remark-validate-links";
 
 export default { plugins: [[validateLinks, { repository: false }]] };

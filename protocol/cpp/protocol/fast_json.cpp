@@ -14,8 +14,8 @@ using simdjson::dom::element_type;
 
 bool has_nul(std::string_view text) { return text.find('\0') != std::string_view::npos; }
 
-// Returns false if the strict reader has to find the reason. `depth`: how many objects and lists
-// may still be opened.
+// Returns false if the strict parser must find the reason. `depth` is the number of objects and
+// lists that may still be nested.
 bool convert(const element& from, int depth, json& to) {
   switch (from.type()) {
     case element_type::ARRAY: {
@@ -49,8 +49,7 @@ bool convert(const element& from, int depth, json& to) {
       if (number < 0)
         to = number;
       else
-        to = static_cast<std::uint64_t>(number);  // nlohmann-json stores numbers without a sign in
-                                                  // this form
+        to = static_cast<std::uint64_t>(number);  // nlohmann-json stores unsigned numbers this way
       return true;
     }
     case element_type::UINT64: to = static_cast<std::uint64_t>(from); return true;
@@ -65,12 +64,12 @@ bool says_something(const ListLimits& limits) {
   return limits.most || limits.items || !limits.members.empty();
 }
 
-// Returns false if a list was found, or if this is not JSON.
+// Returns false if a list was found, or if the text is not JSON.
 bool scan(simdjson::ondemand::value value, const ListLimits& limits,
           std::optional<ListTooLong>& found) {
   simdjson::ondemand::json_type type;
   if (value.type().get(type)) return false;
-  // Prefixes the path of a list that was found inside this step.
+  // Adds `step` before the path of a list that was found in this member or item.
   const auto put_before = [&](const std::string& step) {
     if (!found) return;
     const bool joins = found->path.empty() || found->path.front() == '[';

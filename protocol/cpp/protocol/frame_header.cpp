@@ -27,7 +27,7 @@ tl::unexpected<Error> broken(const char* field, std::string detail) {
   return fail(ErrorCode::malformed, "Frame not usable", std::move(detail), field);
 }
 
-// Rules 5 to 10 of frame.md: conditions between the members.
+// Checks rules 5 to 10 of frame.md, which are conditions on several members.
 Result<void> check(const FrameHeader& h) {
   if (h.view_id > 15) return broken("view_id", "A view is 0 to 15.");
   if (h.camera_seq > kMaxSafeInteger) return broken("camera_seq", "It is at most 2^53 - 1.");

@@ -16,8 +16,8 @@
 #include "domain/scene/light.h"
 #include "domain/scene/model.h"
 
-// Functions for the generated reading and writing. JSON must have passed `validate`, so that its
-// types are known; for other JSON, nlohmann-json throws.
+// Functions for the generated code that reads and writes JSON. The JSON must have passed
+// `validate`, which guarantees its types. For other JSON, nlohmann-json throws.
 namespace strata::protocol {
 
 template <class T>
@@ -35,7 +35,7 @@ struct IsOptional<std::optional<T>> : std::true_type {};
 
 using IdOrSlug = std::variant<std::int64_t, std::string>;
 
-// Types of the core that represent a definition (`x-cpp-type` in the schemas).
+// Read types of the module core that represent a definition (`x-cpp-type` in the schemas).
 void read_core(const nlohmann::json& json, Uuid& value);
 void read_core(const nlohmann::json& json, glm::dvec2& value);
 void read_core(const nlohmann::json& json, glm::dvec3& value);
@@ -144,10 +144,11 @@ inline std::string join_field(const std::string& parent, const std::string& memb
   return parent.empty() ? member : parent + "." + member;
 }
 
-// Puts the path of the surrounding object before the field that a check named (".view" or "view").
+// Adds the path of the surrounding object before the field in the error of a check (".view" or
+// "view").
 Result<void> named_in_message(Result<void> checked, const std::string& parent);
 
-// Calls `check` of the variant's value, if it has one.
+// Calls `check` for the value of the variant, if its type has one.
 template <class Variant>
 Result<void> check_alternative(const Variant& variant, const std::string& field) {
   return std::visit(

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kMaxRef = 64;
 
-// Replaces invalid UTF-8 (of a file name, for example), which a JSON text cannot contain.
+// Replaces invalid UTF-8, for example in a file name, because JSON cannot contain it.
 std::string dump(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -8,12 +8,11 @@
 #include "protocol/strict_json.h"
 #include "protocol/validate.h"
 
-// The boundary: converts external text to a value, or to an Error that names the field.
-// Thread-safe.
+// Converts external text to a value, or to an error that names the field. Thread-safe.
 namespace strata::protocol {
 
-// Converts JSON that is parsed already (for example a part of a larger object); `field` is its
-// place.
+// Converts JSON that is already parsed, for example a part of a larger object. `field` is the path
+// of this part.
 template <class T>
 Result<T> from_json(const nlohmann::json& json, const std::string& field = {}) {
   STRATA_TRY(validate(kSchemaOf<T>, json, field));
@@ -32,18 +31,18 @@ Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
   return from_json<T>(json);
 }
 
-// Parses a text message of the WebSocket. `ref`, if given, becomes the message's `id` if it can be
-// read, also for a refused message, so that the `problem` can name it.
+// Parses a text message of the WebSocket. Sets `ref`, if it is not null, to the `id` of the message
+// if the `id` is readable. This also applies to a refused message, so the `problem` can name it.
 Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref = nullptr,
                                            const JsonLimits& limits = {});
 Result<ServerMessage> parse_server_message(std::string_view text,
                                            const JsonLimits& limits = {16 * 1024 * 1024, 32});
 
-// Returns one line of JSON, ready to send.
+// Return the message as one line of JSON.
 std::string to_text(const ClientMessage& message);
 std::string to_text(const ServerMessage& message);
 
-// Returns "12" or "cracks", as the store and the routes accept it.
+// Returns a reference such as "12" or "cracks", which the store and the routes accept.
 std::string to_ref(const LayerRef& layer);
 
 }  // namespace strata::protocol

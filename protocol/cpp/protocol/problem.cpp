@@ -82,7 +82,7 @@ std::string bounded(const std::string& text, std::size_t most) {
   return std::string(first_bytes(text, most - kMore.size())).append(kMore);
 }
 
-// A suggestion that is too long is left out: its beginning would correct nothing.
+// Leaves out a suggestion that is too long, because only a part of it would be useless.
 std::vector<std::string> suggestions_of(const Error& error) {
   std::vector<std::string> suggestions;
   if (!error.offset || error.length == 0) return suggestions;
@@ -92,7 +92,7 @@ std::vector<std::string> suggestions_of(const Error& error) {
   return suggestions;
 }
 
-// Returns the detail with the suggestions: "… Did you mean wet or dry?"
+// Returns the detail followed by the suggestions: "… Did you mean wet or dry?"
 std::string detail_of(const Error& error) {
   const auto suggestions = suggestions_of(error);
   std::string question;

@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-// Builds the value event by event, so that depth and duplicates are checked before memory is used
-// for them.
+// Builds the value event by event. Checks the depth and duplicates before it allocates memory for
+// them.
 class StrictBuilder : public nlohmann::json_sax<json> {
  public:
   StrictBuilder(int max_depth, const ListLimits* lists)
@@ -36,7 +36,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     if (has_nul(text)) return false;
     return put(std::move(text));
   }
-  bool binary(binary_t&) override { return false; }  // cannot come from text
+  bool binary(binary_t&) override { return false; }  // impossible in a text
 
   bool start_object(std::size_t) override { return has_room() && open(json::object()); }
   bool key(string_t& name) override {
@@ -51,7 +51,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool start_array(std::size_t) override {
     if (!has_room()) return false;
     json list = json::array();
-    list.get_ref<json::array_t&>().reserve(4);  // points, colors: most lists are short
+    list.get_ref<json::array_t&>().reserve(4);  // most lists are short: points, colors
     return open(std::move(list));
   }
   bool end_array() override { return close(); }
@@ -80,7 +80,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     add(std::move(value));
     return true;
   }
-  // Returns whether the open list, if any, may have another item.
+  // Returns whether the open list, if there is one, may get another item.
   bool has_room() {
     if (open_.empty() || !open_.back()->is_array()) return true;
     const ListLimits* limits = lists_.back();
@@ -91,7 +91,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
           (steps_[i].starts_with('[') || problem_.field.empty() ? "" : ".") + steps_[i];
     return false;
   }
-  // Returns the limits of the next object or list.
+  // Returns the limits of the object or list that is opened next.
   const ListLimits* next_lists() const {
     if (open_.empty()) return root_lists_;
     const ListLimits* limits = lists_.back();
@@ -100,7 +100,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     const auto member = limits->members.find(key_);
     return member == limits->members.end() ? nullptr : member->second.get();
   }
-  // A pointer to an open value stays valid: while it is open, only its own children grow.
+  // A pointer to an open value stays valid because only the children of this value grow while it is
+  // open.
   bool open(json&& container) {
     if (static_cast<int>(open_.size()) >= max_depth_)
       return refuse(
@@ -136,8 +137,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   json root_;
   const ListLimits* root_lists_;
   std::vector<json*> open_;
-  std::vector<const ListLimits*> lists_;  // of each open one; null: no limits
-  std::vector<std::string> steps_;        // the step into each open one
+  std::vector<const ListLimits*> lists_;  // of each open value; null: no limits
+  std::vector<std::string> steps_;        // path element of each open value
   std::string key_;
   Error problem_;
 };
@@ -149,7 +150,7 @@ Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
     return fail(ErrorCode::too_large, "Too much at once",
                 "At most " + std::to_string(limits.max_bytes) +
                     " bytes of JSON are taken; these are " + std::to_string(text.size()) + ".");
-  // Building and validating a shorter text is faster than scanning it first.
+  // For a shorter text, it is faster to build and validate the value than to scan the text first.
   constexpr std::size_t kLong = 64 * 1024;
   if (limits.lists && text.size() >= kLong)
     if (const auto too_long = find_long_list(text, *limits.lists))

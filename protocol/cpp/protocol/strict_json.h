@@ -11,14 +11,14 @@ namespace strata::protocol {
 
 struct JsonLimits {
   std::size_t max_bytes = 256 * 1024;
-  int max_depth = 32;                 // nested objects and arrays
-  const ListLimits* lists = nullptr;  // null: lists have any length
+  int max_depth = 32;                 // of nested objects and arrays
+  const ListLimits* lists = nullptr;  // null: the length of lists is not limited
 };
 
-// Parses external JSON text strictly: valid UTF-8, no duplicate member, no NUL in a text, no number
-// beyond double, nothing after the value. Problems: 413 if it is too long, 400 if it is not JSON,
-// 422 for the rest. A list beyond its limit is refused before its items are built, without reading
-// the rest.
+// Parses JSON text from outside the server. Accepts only valid UTF-8 without duplicate members,
+// without NUL in texts, with numbers in the range of double, and with nothing after the value.
+// Returns 413 if the text is too long, 400 if it is not JSON, and 422 otherwise. Refuses a list
+// that exceeds its limit before its items are built, and does not read the rest.
 Result<nlohmann::json> parse_json(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace strata::protocol

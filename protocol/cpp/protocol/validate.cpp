@@ -50,8 +50,8 @@ const json& resolve(const json& schema) {
   return *node;
 }
 
-// Returns the part of a schema for a member of `value`; null if none is found. A choice by `op`
-// follows the op.
+// Returns the part of a schema for a member of `value`, or null. For a choice by `op`, uses the
+// branch of the op in `value`.
 const json* child_schema(const json& schema, const json& value, const std::string& step) {
   const json& node = resolve(schema);
   if (value.is_array()) return node.contains("items") ? &node["items"] : nullptr;
@@ -75,14 +75,14 @@ std::string listed(const json& values) {
 
 std::string number(const json& value) { return value.dump(); }
 
-// The rule of a schema for numbers, or for lists of numbers only.
+// The rule of a schema that allows only numbers or lists of numbers.
 struct NumberRule {
   bool is_list = false;
-  double least = 0, most = 0;         // numbers; of a list, number of items
+  double least = 0, most = 0;         // of a number, or of a list's length
   std::shared_ptr<NumberRule> items;  // of a list
 };
 
-// Returns null if the schema has other rules, or is for other types.
+// Returns null if the schema has other rules or allows other types.
 std::shared_ptr<NumberRule> number_rule(const json& schema) {
   const json& node = resolve(schema);
   const std::string type = node.value("type", std::string());
@@ -113,9 +113,9 @@ bool holds(const NumberRule& rule, const json& value) {
          std::ranges::all_of(value, [&](const json& item) { return holds(*rule.items, item); });
 }
 
-// valijson needs more time for a hundred thousand points than all other processing. Returns a copy
-// of a message in which long, valid lists of numbers are cut to their first items; nothing if there
-// is no such list.
+// Returns a copy of a message in which long, valid lists of numbers contain only their first items.
+// Returns nothing if there is no such list. Without this copy, valijson needs more time for a
+// hundred thousand points than all other processing.
 std::optional<json> without_long_lists(Schema schema, const json& value) {
   constexpr std::size_t kLong = 256;
   if (!value.is_object()) return std::nullopt;
@@ -179,7 +179,7 @@ std::string expectation(const json& schema) {
   return type;
 }
 
-// Deeper lists are limited by their parents.
+// Does not limit lists that are nested more deeply, because the limits of their parents apply.
 constexpr int kLimitsDeep = 6;
 
 std::shared_ptr<const ListLimits> limits_of(const json& schema, int deep) {
@@ -199,8 +199,8 @@ std::shared_ptr<const ListLimits> limits_of(const json& schema, int deep) {
   return limits;
 }
 
-// Returns the member that valijson names at the end of a description: the text after `before`,
-// without the closing "'.".
+// Returns the member that valijson names at the end of a description. This is the text after
+// `before`, without the final "'.".
 std::string member_named(const std::string& description, std::string_view before) {
   const auto begin = description.find(before);
   if (begin == std::string::npos) return {};
@@ -209,8 +209,8 @@ std::string member_named(const std::string& description, std::string_view before
   return member;
 }
 
-// Returns the first missing member that a `oneOf` of an object requires together with a given one;
-// empty if no choice has begun.
+// Returns the first missing member that a `oneOf` of an object requires in addition to an existing
+// one. Returns an empty text if `value` has no such member.
 std::string missing_companion(const json& schema, const json& value) {
   for (const auto& choice : resolve(schema).value("oneOf", json::array())) {
     const auto names = choice.value("required", std::vector<std::string>());
@@ -222,7 +222,7 @@ std::string missing_companion(const json& schema, const json& value) {
   return {};
 }
 
-// Returns the names of the members of which a `oneOf` of an object requires exactly one.
+// Returns the names of the members from which a `oneOf` of an object requires exactly one.
 std::vector<std::string> exclusive_members(const json* schema) {
   std::vector<std::string> names;
   if (schema == nullptr) return names;
@@ -233,8 +233,8 @@ std::vector<std::string> exclusive_members(const json* schema) {
   return names;
 }
 
-// Returns the choice of a `oneOf` of an object that has begun, if it is the only one; null
-// otherwise.
+// Returns the choice of a `oneOf` of an object whose first member exists. Returns null if there is
+// no such choice or more than one.
 const json* begun_choice(const json* schema, const json* value) {
   if (schema == nullptr || value == nullptr || !value->is_object()) return nullptr;
   const json& node = resolve(*schema);
@@ -248,7 +248,7 @@ const json* begun_choice(const json* schema, const json* value) {
   return begun;
 }
 
-// Returns the first given member that a choice forbids; empty if no such member is given.
+// Returns the first existing member that a choice forbids, or an empty text.
 std::string ruled_out(const json& choice, const json& value) {
   for (const auto& other : choice.value("not", json::object()).value("anyOf", json::array()))
     if (value.contains(other["required"][0])) return other["required"][0].get<std::string>();
@@ -264,7 +264,7 @@ tl::unexpected<Error> explain(Schema schema, const json& whole, const std::strin
     path += (path.empty() ? "" : ".") + step.substr(0, 100);
   };
   for (std::size_t i = 1; i < error.context.size() && value != nullptr; ++i) {
-    // context[0] is "<root>"
+    // The first element of the context is "<root>".
     const std::string& bracketed = error.context[i];
     const std::string step = bracketed.substr(1, bracketed.size() - 2);
     if (rule != nullptr) rule = child_schema(*rule, *value, step);
@@ -276,7 +276,7 @@ tl::unexpected<Error> explain(Schema schema, const json& whole, const std::strin
       value = value->contains(step) ? &value->at(step) : nullptr;
     }
   }
-  // A choice by `op` is an object with the rules of the chosen branch.
+  // A choice by `op` is an object to which the rules of the chosen branch apply.
   if (rule != nullptr && value != nullptr && value->is_object() && value->contains("op"))
     if (const json& node = resolve(*rule); node.contains("allOf"))
       for (const auto& branch : node["allOf"])
@@ -341,7 +341,7 @@ const ListLimits& list_limits(Schema schema) {
 }
 
 Result<void> validate(Schema schema, const json& json, const std::string& field) {
-  thread_local valijson::Validator validator;  // keeps the compiled patterns
+  thread_local valijson::Validator validator;  // caches the compiled patterns
   const auto shorter = without_long_lists(schema, json);
   if (validator.validate(built(schema),
                          valijson::adapters::NlohmannJsonAdapter(shorter ? *shorter : json),

@@ -8,9 +8,9 @@
 
 namespace strata::protocol {
 
-// Checks `json` against the definition. The Error (invalid) names the first wrong member
-// ("camera.view[3]"), after `field` if that is not empty, and describes the expected value.
-// Thread-safe; each schema is built once, on first use.
+// Checks `json` against the definition. The error (invalid) describes the expected value and names
+// the first invalid member ("camera.view[3]"). If `field` is not empty, the name begins with it.
+// Thread-safe. Each schema is built once, at the first use.
 Result<void> validate(Schema schema, const nlohmann::json& json, const std::string& field = {});
 
 }  // namespace strata::protocol

@@ -22,7 +22,7 @@ tl::unexpected<Error> shows_through(const Layer& layer) {
       "visibility");
 }
 
-// Whether the expression reads this column of the records of one of these layers.
+// Returns whether the expression reads this column from the records of one of these layers.
 bool reads_column(const Expression& e, const std::set<std::string>& layers,
                   const std::string& column) {
   if (e.is_column() && layers.contains(e.name) && !e.path.empty() && e.path.front() == column)
@@ -68,7 +68,7 @@ Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
 Result<void> check_shows_nothing(store::Store& store, const Table& table, const Column& column,
                                  Visibility visibility) {
   const auto layers = STRATA_TRY(store.layers().of_table(table.id, Role::owner));
-  std::map<ModelId, std::set<std::string>> by_model;  // slugs
+  std::map<ModelId, std::set<std::string>> by_model;  // slugs of layers
   for (const Layer& layer : layers) {
     by_model[layer.model_id].insert(layer.slug);
     if (layer.visibility < visibility &&
@@ -93,7 +93,7 @@ Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,
   if (!expression) return false;
   const auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
   const std::vector<std::string> named = layers_of(*expression);
-  std::map<std::string, Table> seen, all;  // by the layer's slug
+  std::map<std::string, Table> seen, all;  // by slug of the layer
   for (const Layer& layer : layers) {
     if (std::ranges::find(named, layer.slug) == named.end()) continue;
     if (!sees(role, layer.visibility)) return false;

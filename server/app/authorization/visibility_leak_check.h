@@ -7,22 +7,23 @@
 #include "domain/tables/table.h"
 #include "store/store.h"
 
-// A layer or column is computed from and colored by other content. People who see it must also see
-// that content; otherwise it would reveal restricted content. All functions block.
+// A layer may be computed from other content, and layers and columns may be colored by other
+// content. Users who can see the result must also be allowed to see that content. Otherwise the
+// result would reveal restricted content. All functions block.
 namespace strata::app {
 
 // Checks the layer with its future settings against the other layers of its model. Refuses a
-// palette that colors by a column that fewer people see (422, `palette.column`), and a layer from
-// which layers visible to more people are computed (409, `visibility`).
+// palette that uses a column visible to fewer users (422, `palette.column`). Refuses a layer that
+// is the input of a layer visible to more users (409, `visibility`).
 Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
                                  const std::vector<Layer>& others);
 
-// Checks the column with its future visibility. Refuses (409, `visibility`) if a layer that more
-// people see is colored by it or computed from it.
+// Checks the column with its future visibility. Refuses the visibility (409, `visibility`) if a
+// layer that is visible to more users is colored by the column or computed from it.
 Result<void> check_shows_nothing(store::Store& store, const Table& table, const Column& column,
                                  Visibility visibility);
 
-// Whether the role can see everything on the model that the formula names.
+// Returns whether the role can see all content of the model that the formula names.
 Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,
                          const std::string& expression);
 

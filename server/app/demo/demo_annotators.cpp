@@ -33,7 +33,8 @@ using Place = StoryPlaces::Place;
 
 constexpr const char* kLayer = "condition";
 
-// Where nothing is painted in the story and the wall is not broken, so that each stroke is seen.
+// A stroke in an area that is not painted in the story and where the wall is intact, so each stroke
+// is visible.
 struct RecordedStroke {
   bool by_curator = false;
   const char* term = "";
@@ -51,7 +52,8 @@ const std::vector<RecordedStroke>& recorded_strokes() {
   return strokes;
 }
 
-// A camera in front of a place, and the path in its window.
+// Returns a stroke with a camera in front of `middle` and with the path in the window of the
+// camera.
 StrokeBatch seen_from_outside(const StoryPlaces& places, const std::vector<glm::dvec3>& path,
                               const Place& middle) {
   StrokeBatch batch;
@@ -72,7 +74,7 @@ StrokeBatch seen_from_outside(const StoryPlaces& places, const std::vector<glm::
 }  // namespace
 
 struct DemoAnnotators::Scene {
-  struct Annotator {  // in the room
+  struct Annotator {  // a demo user in the room
     Author author;
     std::unique_ptr<room::Participant> here;
     int strokes = 0;
@@ -100,7 +102,7 @@ struct DemoAnnotators::Scene {
     return {random_uuid(), who.author, layer.id, {}, {{"by", "the demo"}}, {}};
   }
 
-  // Takes back what both have painted. Others may have painted over it: that stays.
+  // Undoes all strokes of the two demo users. Strokes of other users on top of them remain.
   void undo_all() {
     for (Annotator* who : {&lena, &marco})
       for (; who->strokes > 0; --who->strokes) {

@@ -17,33 +17,33 @@ class Room;
 
 namespace strata::app {
 
-// The two people of the demo's story, who paint while somebody looks at its pot alone: so a first
-// visitor sees how several people work on one surface. Their names say that they are recorded. When
-// the scene is over, when a second person comes, or when the visitor leaves, they take back what
-// they painted and leave, too.
+// The two demo users. They paint on the demo's pot while a single visitor has it open. This shows
+// the visitor how several users work on one surface. Their names show that their strokes are
+// recorded. They undo their strokes and leave at the end of the scene, when a second visitor comes,
+// or when the visitor leaves.
 class DemoAnnotators {
  public:
   struct Pace {
-    std::chrono::milliseconds before_first{4000};  // after the visitor came
+    std::chrono::milliseconds before_first{4000};  // after the arrival of the visitor
     std::chrono::milliseconds per_batch{120};
     std::chrono::milliseconds between_strokes{1500};
     std::chrono::milliseconds before_undo{8000};
-    std::chrono::minutes rest{10};  // until they come to the same model again
+    std::chrono::minutes rest{10};  // until they paint on the same model again
   };
 
   explicit DemoAnnotators(const Services& services) : DemoAnnotators(services, Pace{}) {}
   DemoAnnotators(const Services& services, Pace pace);
   ~DemoAnnotators() { stop(); }
-  // Somebody has opened the model, which may be another one than the demo's. Returns at once.
+  // Call it when a user has opened a model. It need not be the demo's model. Does not wait.
   void visited(const Model& model);
-  void stop();  // waits until they have taken back their strokes
+  void stop();  // waits until all strokes are undone
 
  private:
   struct Scene;
 
   void run();
   void play(ModelId model_id);
-  // Returns false if the scene has to end.
+  // Waits. Returns false if the scene must end.
   bool pause(std::chrono::milliseconds time, const room::Room& room);
 
   const Services services_;

@@ -52,7 +52,7 @@ using Stroke = StoryBrush::Stroke;
 using namespace std::chrono_literals;
 
 constexpr const char* kTemplate = "stone-condition";
-// The template's tables and layers under other names, so that people can use the template itself in
+// New names for the template's tables and layers, so users can also apply the template itself to
 // the demo project.
 struct Renamed {
   const char *from, *slug, *name, *german, *spanish;
@@ -120,7 +120,7 @@ class Story {
  private:
   Time day(int before) const { return today_ - std::chrono::days(before); }
 
-  // What was made since the last call happened at this time of the story.
+  // Sets the time of all changes since the last call to this time of the story.
   Result<void> at(Time time) {
     begun_ = STRATA_TRY(store::JournalWriter::date_back(store_, project_, begun_, time));
     return {};
@@ -166,7 +166,7 @@ class Story {
       for (const ListedTerm& listed : list_terms(columns, page.records))
         keys_[listed.term.code] = listed.key;
     }
-    int order = 2;  // above those of the pot
+    int order = 2;  // above the layers of the pot
     for (const Renamed& renamed : kLayers) {
       Layer layer;
       layer.model_id = model_.id;
@@ -186,7 +186,7 @@ class Story {
       by_curator.user = kDemoCurator;
       layers_[layer.slug] = STRATA_TRY(store_.layers().create(layer, by_curator));
     }
-    // The sherds would hide what is mapped.
+    // Hides these layers because they would cover the mapped condition.
     for (const char* slug : {"pieces", "cracks"}) {
       auto layer = STRATA_TRY(store_.layers().find(model_.id, slug, Role::owner));
       layer.visible = false;
@@ -249,7 +249,7 @@ class Story {
     return to_json(std::vector<SurfaceFeature>{{model_.id, {places_->place(place)}}});
   }
 
-  // Writes a record by slugs of columns, and returns its key.
+  // Writes a record whose values are keyed by slug of the column. Returns the key of the record.
   Result<std::int64_t> write(const std::string& table_slug, const std::string& user,
                              const std::map<std::string, nlohmann::json>& values,
                              std::optional<std::int64_t> key = {}) {
@@ -342,7 +342,7 @@ class Story {
                        {{each.place}, each.radius_mm}));
       observations_.push_back(key);
     }
-    // The cracks that were drawn with the term itself.
+    // Draws cracks in the record of the term itself.
     STRATA_TRY(write("condition-terms", kDemoConservator,
                      {{"lines", line_of({{-128, .50}, {-123, .44}, {-125, .38}, {-119, .33}})}},
                      keys_.at("hair-crack")));
@@ -476,7 +476,7 @@ class Story {
     return "/kiosk/" + kiosk.secret;
   }
 
-  // Strokes of the annotator that wait for the curator.
+  // Adds strokes of the annotator that wait for review by the curator.
   Result<void> suggest() {
     const auto lena = [&](Time time, const char* code, const Stroke& stroke) {
       return paint(time, kDemoConservator, "condition", code, stroke, Review::pending);
@@ -491,7 +491,7 @@ class Story {
   const TemplateRegistry& templates_;
   Progress& progress_;
   const Time today_;
-  Time begun_;  // of what has no time of the story yet
+  Time begun_;  // start of the changes that have no time of the story yet
   Model model_;
   ProjectId project_ = 0;
   const StoryPlaces* places_ = nullptr;
@@ -499,8 +499,8 @@ class Story {
   store::JournalWriter* writer_ = nullptr;
   std::map<std::string, Table> tables_;                  // by slug
   std::map<std::string, Layer> layers_;                  // by slug
-  std::map<std::string, std::int64_t> keys_;             // of terms, by code
-  std::map<std::string, StoryBrush::Content> contents_;  // of layers, by slug
+  std::map<std::string, std::int64_t> keys_;             // keys of terms, by code
+  std::map<std::string, StoryBrush::Content> contents_;  // of layers, by slug of the layer
   std::vector<std::int64_t> observations_;
 };
 
@@ -529,7 +529,7 @@ Result<void> erase_demo_story(store::Store& store, const std::function<void(Mode
   while (STRATA_TRY(store.trash().erase_some())) {
   }
   const auto tables = STRATA_TRY(store.tables().of_project(project->id, Role::owner));
-  // Observations name terms, so they go first.
+  // Removes the observations first because they refer to terms.
   for (auto renamed = std::rbegin(kTables); renamed != std::rend(kTables); ++renamed)
     for (const Table& table : tables)
       if (table.slug == renamed->slug) STRATA_TRY(store.tables().remove(table.id));

@@ -13,20 +13,20 @@
 
 namespace strata::app {
 
-// Paints the demo's strokes on the outside of its pot, on the CPU. Deterministic.
+// Paints the strokes of the demo on the outside of the pot. Runs on the CPU and is deterministic.
 class StoryBrush {
  public:
   struct Stroke {
     std::vector<StoryPlaces::Place> path;
     double radius_mm = 5;
   };
-  using Content = std::map<TileAddress, TileData>;  // of a layer
+  using Content = std::map<TileAddress, TileData>;  // content of a layer
 
-  // both outlive it
+  // Both arguments must outlive the object.
   StoryBrush(const StoryPlaces& places, const mesh::SurfaceMap& map) : places_(places), map_(map) {}
 
-  // Writes a value (nothing: erases) into `content`, and returns the revisions and the answer of
-  // the edit. The border is ragged, as a hand paints.
+  // Writes a value to `content`, or erases the texels if there is no value. Returns the revisions
+  // and the result of the edit. The border of the stroke is ragged, as if painted by hand.
   store::JournalEntry paint(const Layer& layer, Content& content, const Stroke& stroke,
                             std::optional<std::uint32_t> value, double metres_per_unit) const;
 

@@ -27,8 +27,8 @@ std::vector<std::uint8_t> story_photo(int seed) {
         color = glm::mix(color, glm::dvec3(224, 196, 164) * (0.95 + slope),
                          std::clamp((flake - 0.12) * 14, 0.0, 0.85));
       else if (flake > 0.09)
-        color *= 0.55;  // the shadow below the flake's edge
-      // the scale: 10 mm in black and white
+        color *= 0.55;  // shadow at the edge of the flake
+      // The scale bar: 10 mm in black and white.
       const int from_left = x - 40, from_bottom = kHeight - 40 - y;
       if (from_left >= -6 && from_left < 10 * kPixelsPer_mm + 6 && from_bottom >= -6 &&
           from_bottom < 20)

@@ -8,7 +8,7 @@ namespace strata::app {
 namespace {
 
 constexpr int kDegrees = 360;
-constexpr double kWall_mm = 2.2;  // less than the thickness of the pot's wall
+constexpr double kWall_mm = 2.2;  // thinner than the wall of the pot
 
 int degree_of(double angle) {
   const int degree = static_cast<int>(std::floor(angle)) % kDegrees;
@@ -35,7 +35,7 @@ StoryPlaces::StoryPlaces(const mesh::Geometry& geometry) : origin_(geometry.orig
 double StoryPlaces::outer_radius(double angle, double z) const {
   const int rows = static_cast<int>(outer_.size() / kDegrees);
   const int row = std::clamp(static_cast<int>(z - bottom_), 0, rows - 1);
-  // Coarse meshes have cells without vertices.
+  // Searches neighboring cells because a coarse mesh has cells without vertices.
   for (int reach = 1; reach < 12; ++reach) {
     float outer = 0;
     for (int dz = -reach; dz <= reach; ++dz)

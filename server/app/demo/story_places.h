@@ -7,8 +7,8 @@
 
 namespace strata::app {
 
-// Places on the outside of the demo's pot. Angles are around the vertical axis in degrees (-90 is
-// the front), heights are shares of the pot's height.
+// Positions on the outside of the demo's pot. Angles are in degrees around the vertical axis, and
+// -90 is the front. Heights are fractions of the height of the pot.
 class StoryPlaces {
  public:
   struct Place {
@@ -17,15 +17,16 @@ class StoryPlaces {
 
   explicit StoryPlaces(const mesh::Geometry& geometry);
 
-  // The point of the outside there, in world coordinates, and the direction away from the axis.
+  // Return the position on the outside in world coordinates, and the direction away from the axis.
   glm::dvec3 place(const Place& at) const;
   glm::dvec3 outward(const Place& at) const;
-  // Points of a line on the surface, about a millimeter apart, as records keep them.
+  // Returns the vertices of a line on the surface, about a millimeter apart, as a record stores
+  // them.
   std::vector<glm::dvec3> line(const std::vector<Place>& path) const;
 
-  // In model space.
+  // The origin is in model space.
   glm::dvec3 origin() const { return origin_; }
-  bool is_outside(const glm::dvec3& point) const;  // on the outer side of the pot's wall
+  bool is_outside(const glm::dvec3& point) const;  // `point` is on the outer side of the wall
 
  private:
   double outer_radius(double angle, double z) const;
@@ -33,7 +34,7 @@ class StoryPlaces {
   glm::dvec3 origin_{0};
   glm::dvec2 axis_{0};
   double bottom_ = 0, height_ = 1;
-  std::vector<float> outer_;  // by degree and millimeter of height
+  std::vector<float> outer_;  // radius by degree and by millimeter of height
 };
 
 }  // namespace strata::app

@@ -47,7 +47,7 @@ std::string quantity_label(const query::Quantity& quantity, const Layer& layer,
     const auto name = names.find(static_cast<std::int64_t>(*quantity.value));
     return name == names.end() ? std::string() : name->second;
   }
-  // The color and the label of a step belong to the range that begins at its point.
+  // In a stepped palette, the color and the label of a point apply to the range that begins there.
   if (!quantity.value && (layer.palette.mode != PaletteMode::step || !quantity.from)) return {};
   const double at = quantity.value ? *quantity.value : *quantity.from;
   return palette_label(layer, at);

@@ -15,16 +15,17 @@
 namespace strata::app {
 namespace {
 
-// limit of the grid that is searched for layers: takes some tenths of a second
+// The maximum number of grid cells that are searched for layers. The search takes a few tenths of a
+// second.
 constexpr double kMaxCells = 250'000;
 constexpr std::size_t kMaxPlaces = 32;  // tested points per line
 constexpr double kOpaque = 0.99;
-// steeper surfaces count as this steep, so that they hide points behind them, too
+// Limits the slope, so steep surfaces also hide points behind them.
 constexpr double kMinCosine = 1.0 / 12;
-// the depth below the surface at which the picture still draws lines and points
+// The depth below the surface at which lines and points are still drawn in the image.
 constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
 
-// Returns the palette that the picture uses for the layer.
+// Returns the palette for the layer in the image.
 const Palette& palette_of(const FigureRequest& request, const Layer& layer) {
   const auto& own = request.shown.shown.of(layer.id).palette;
   return own ? *own : layer.palette;
@@ -37,13 +38,13 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
   query::LayerCover cover;
   cover.tells_values = lists_values(palette);
   if (!palette.column.empty()) {
-    // Colored by records: some colors may be transparent.
+    // For colors of records, some colors may be transparent.
     cover.of = [opacity](double) {
       return opacity > 0 ? query::Cover::some : query::Cover::nothing;
     };
     return cover;
   }
-  const bool hides = layer.blend == LayerBlend::normal;  // what is below
+  const bool hides = layer.blend == LayerBlend::normal;  // hides the layers below
   cover.of = [&palette, opacity, hides](double value) {
     const double alpha = color_of(palette, value)[3] / 255.0 * opacity;
     if (alpha <= 0) return query::Cover::nothing;
@@ -54,9 +55,9 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
   return cover;
 }
 
-// Whether a place of a feature is in the drawing and not hidden by a surface. As in the picture
-// (feature_sight_pass.comp), it may be anywhere in front of the surface, and behind it up to
-// `reach`, measured perpendicular to the surface.
+// Returns whether a point of a feature is in the drawing and not hidden by a surface. As in the
+// image (feature_sight_pass.comp), a point in front of the surface is visible. A point behind it is
+// visible up to `reach`, measured perpendicular to the surface.
 Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const glm::dvec3& place,
                      double reach) {
   const auto is_cut_off = [&](const glm::dvec4& plane) {
@@ -76,11 +77,12 @@ Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const g
                   kMinCosine * glm::length(apart)) <= reach;
 }
 
-// Returns the keys of records with lines or points in the drawing. These cover all layers.
+// Returns the keys of records with lines or points in the drawing. The image shows lines and points
+// above all layers.
 Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& request,
                                      const Layer& layer, const Camera& camera) {
   const Model model = request.room->model();
-  std::optional<std::int64_t> at;  // of the table; nothing: now, as in the picture
+  std::optional<std::int64_t> at;  // sequence of the table; empty: now, as in the image
   if (*request.shown.at < request.room->edits().durable_sequence()) {
     const auto then =
         STRATA_TRY(store.tables().sequence_when(*layer.table, model.id, *request.shown.at));
@@ -122,7 +124,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
       refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
       std::max(1, static_cast<int>(camera.height / coarser)), request.shown.at);
   if (!seen) return tl::unexpected(seen.error());
-  for (std::size_t i = request.layers.size(); i-- > 0;) {  // topmost first
+  for (std::size_t i = request.layers.size(); i-- > 0;) {  // the topmost layer first
     const Layer& layer = request.layers[i];
     const Palette& palette = palette_of(request, layer);
     std::set<double> there = (*seen)[i].values;
@@ -132,7 +134,8 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
       is_shown |= !marked.empty();
       there.insert(marked.begin(), marked.end());
     }
-    const bool waits = request.shown.provisional.contains(layer.id);  // or erased there
+    // Also true if unreviewed edits only erased texels.
+    const bool waits = request.shown.provisional.contains(layer.id);
     if (!is_shown && !waits) continue;
     legends.push_back(figure::legend_of(layer, palette, &there, request.language));
     if (waits) {

@@ -19,17 +19,18 @@ namespace strata::app {
 namespace {
 
 constexpr glm::dvec2 kLabelCell_mm{1.5, 1.5};
-constexpr std::size_t kMaxPlaces = 64;  // tried per label
+constexpr std::size_t kMaxPlaces = 64;  // tested positions per label
 constexpr std::size_t kMaxLabels = 2000;
 
-// The grid cells in which a key is seen, those farthest from other keys first.
+// The grid cells in which a key is visible. The cells farthest from other keys come first.
 struct Area {
   std::size_t cells = 0;
-  std::vector<std::pair<int, int>> places;  // distance to the area's border, and the cell
+  std::vector<std::pair<int, int>> places;  // distance to the border of the area, and the cell
 };
 std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint32_t>>& keys,
                                        int columns, int rows) {
-  // Chessboard distance, in two passes over the grid; the area outside counts as another key.
+  // Computes the chessboard distance in two passes over the grid. The area outside the grid counts
+  // as another key.
   std::vector<int> inside(keys.size(), 0);
   const auto at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
@@ -67,7 +68,7 @@ Result<std::map<std::uint32_t, std::string>> texts_of(store::Store& store,
                                            "labels.column");
   if (!found) return tl::unexpected(found.error());
   std::map<std::uint32_t, std::string> texts;
-  std::map<std::string, std::string> terms;  // by key
+  std::map<std::string, std::string> terms;  // labels of terms, by key
   if (column.kind == ColumnKind::term && column.target) {
     const auto labels =
         store.records().texts(*column.target, request.role, "label", "labels.column");
@@ -123,8 +124,8 @@ struct Composed {
   double tightness;  // the largest scale at which the drawing fits
 };
 
-// Chooses the orientation with room for the larger scale, portrait if both are equal, and the
-// requested or the fitting scale.
+// Chooses the orientation that allows the larger scale, or portrait if both are equal. Uses the
+// requested scale or the largest scale that fits.
 Composed compose(const FigureRequest& request, const std::vector<figure::Legend>& legends,
                  const glm::dvec2& size, double metres_per_unit) {
   constexpr double kMargin = 1.02;
@@ -144,7 +145,8 @@ Composed compose(const FigureRequest& request, const std::vector<figure::Legend>
   return std::move(*best);
 }
 
-// Returns the direction of true north on the paper; nothing if it is too steep to the paper.
+// Returns the direction of true north on the paper. Returns nothing if the angle between north and
+// the paper is too large.
 std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& model) {
   const Compass compass(model);
   if (!compass.is_known) return std::nullopt;
@@ -155,7 +157,8 @@ std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& mode
   return glm::normalize(flat);
 }
 
-// Fewer in the smaller pixels of a finer drawing: paper shows no more than 1200 samples an inch.
+// Uses fewer samples per pixel for a higher resolution because more than 1200 samples per inch are
+// not visible on paper.
 int samples_of(int dpi) {
   constexpr int kSamplesPerInch = 1200, kMin = 4, kMax = 16;
   return std::clamp(kSamplesPerInch * kSamplesPerInch / (dpi * dpi), kMin, kMax);
@@ -179,7 +182,7 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
         const auto columns = static_cast<std::size_t>(std::min(part.width, picture.width - part.x));
         const std::size_t stride = std::size_t{4} * static_cast<std::size_t>(band.width);
         for (int row = 0; row < band.rows; ++row) {
-          const int inner = band.top + row - part.margin;  // row of the part
+          const int inner = band.top + row - part.margin;  // row in the part
           const int y = part.y + inner;
           if (inner < 0) continue;
           if (inner >= part.height || y >= picture.height) break;
@@ -201,7 +204,7 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
   return picture;
 }
 
-// "pot-front-1-5.pdf"
+// Returns a file name such as "pot-front-1-5.pdf".
 std::string file_name(const FigureRequest& request, double scale) {
   const std::string text = scale >= 1 ? "1-" + short_number(scale) : short_number(1 / scale) + "-1";
   return request.room->model().slug + "-" + request.from + "-" + text +
@@ -247,7 +250,8 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   };
   std::vector<figure::Legend> legends;
   if (request.legend) {
-    // Without a legend the drawing is largest, so the legend lists the content of that drawing.
+    // The drawing is largest without a legend. The legend therefore lists the content of that
+    // drawing.
     auto seen = STRATA_TRY(
         legends_of(store, request, drawing_on(compose(request, {}, size, model.metres()))));
     legends = std::move(seen);

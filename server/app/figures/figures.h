@@ -20,15 +20,15 @@
 
 namespace strata::app {
 
-// A figure to draw. All checks of the user's request precede it.
+// The settings of a figure. The caller has checked the user's request.
 struct FigureRequest {
   std::shared_ptr<room::Room> room;  // as visible to the caller
   Role role = Role::viewer;
-  room::PictureRequest shown;  // with the sequence that the whole figure shows
-  std::vector<Layer> layers;   // visible layers, bottom to top
+  room::PictureRequest shown;  // contains the sequence that the whole figure shows
+  std::vector<Layer> layers;   // visible layers, from bottom to top
   figure::Plane plane;
-  std::string from;                    // "top", "view": for the file's name
-  std::optional<glm::dvec3> center{};  // world
+  std::string from;                    // "top", "view": part of the file name
+  std::optional<glm::dvec3> center{};  // in world coordinates
   std::vector<glm::dvec4> section;
   std::optional<double> scale;
   figure::Paper paper = figure::Paper::a4;
@@ -37,8 +37,9 @@ struct FigureRequest {
   figure::Format format = figure::Format::pdf;
   figure::Captions captions;
   bool legend = true;
-  std::string waiting_label;  // the legend's label for unreviewed edits
-  // of the names of layers and columns in the legend, if they have one; empty: the default names
+  std::string waiting_label;  // label for unreviewed edits in the legend
+  // The language of layer and column names in the legend, for names that have a translation. An
+  // empty text selects the default names.
   std::string language;
   struct Labels {
     Layer layer;
@@ -47,8 +48,8 @@ struct FigureRequest {
   std::optional<Labels> labels;
 };
 
-// Draws the figure and writes it to a file in `folder`. Refuses a section that removes the whole
-// model (422), or if too many figures are being made (503). Blocks.
+// Draws the figure and writes it to a file in `folder`. Returns 422 for a section that removes the
+// whole model, and 503 if too many figures are being created. Blocks.
 Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, ByteBudget& budget,
                                                          const FigureRequest& request,
                                                          const std::filesystem::path& folder,

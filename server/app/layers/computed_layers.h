@@ -12,13 +12,13 @@
 namespace strata::app {
 
 // Completes the recipe for the model. Refuses (invalid, at members of `compute`) properties that
-// the model does not have, and a missing model to compare with. Runs before the job, so that users
-// learn of mistakes at once.
+// the model does not have, and a missing model for comparison. Runs before the job, so users learn
+// of mistakes immediately.
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
                                        const Model& model);
 
-// Computes a layer from the shape of the model and paints it. `requested` has precedence over the
-// recipe's properties. At first only `user` sees the layer. Blocks.
+// Computes a layer from the shape of the model and paints it. Properties in `requested` have
+// precedence over those of the recipe. At first, only `user` can see the layer. Blocks.
 Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLayers& layers,
                               const Layer& requested, const jobs::ShapeRecipe& recipe,
                               bool has_palette, const std::string& user, Progress& progress);

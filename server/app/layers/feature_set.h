@@ -7,7 +7,7 @@
 
 #include "query/maps/flat_area.h"
 
-// The features of a layer on its model, as GIS programs define them: areas, lines and points with
+// The features of a layer on its model, as in GIS programs. They are areas, lines and points with
 // attributes.
 namespace strata::app {
 
@@ -15,20 +15,20 @@ using FeatureValue = std::variant<std::monostate, bool, std::int64_t, double, st
 
 struct FeatureField {
   enum class Kind { boolean, integer, real, text };
-  std::string name;  // unique in its table, without regard to case
+  std::string name;  // unique in its table; case does not matter
   Kind kind = Kind::text;
 };
 
 enum class FeatureKind { areas, lines, points };
 
 struct Feature {
-  std::vector<FeatureValue> values;  // one per field
-  // An area: any number of polygons. A line: one polygon of one ring, which is not closed. A point:
-  // one polygon of one ring with one point.
+  std::vector<FeatureValue> values;  // one value per field
+  // An area consists of any number of polygons. A line is one polygon with one open ring. A point
+  // is one polygon with one ring that consists of one point.
   std::vector<query::FlatPolygon> geometry;
 };
 
-// Features of one kind with the same fields.
+// Features of the same kind with the same fields.
 struct FeatureTable {
   FeatureKind kind = FeatureKind::areas;
   std::string name;  // "areas", "cracks": unique in the set
@@ -37,11 +37,11 @@ struct FeatureTable {
 };
 
 struct FeatureSet {
-  std::string name;         // of the file, without the extension
+  std::string name;         // file name without the extension
   std::string description;  // "Layer Damage of Wall, along z, in mm"
-  std::string unit;         // of the coordinates: "mm"
-  std::string axes;         // the world axes of the coordinates, in their order: "xyz"
-  int epsg = 0;             // code of the coordinate system; 0: unknown
+  std::string unit;         // unit of the coordinates: "mm"
+  std::string axes;         // world axes of the coordinates, in order: "xyz"
+  int epsg = 0;             // code of the coordinate system; 0 if unknown
   std::vector<FeatureTable> tables;
 };
 

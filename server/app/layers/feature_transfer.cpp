@@ -45,7 +45,8 @@ Result<FeatureTransfer> bring_features_of(const Services& services, TableId tabl
       if (found.features.empty()) continue;
       features.insert(features.end(), found.features.begin(), found.features.end());
       auto value = to_json(features);
-      if (!read_features(value, column.kind == ColumnKind::line)) {  // exceeds the limit of a cell
+      // The value exceeds the limit of a cell.
+      if (!read_features(value, column.kind == ColumnKind::line)) {
         brought.lost_features += found.features.size();
         continue;
       }

@@ -24,7 +24,7 @@
 namespace strata::app {
 namespace {
 
-// `e`: a number or a condition.
+// `e` is a numeric expression or a condition.
 bool reads_records_of(const Expression& e, const std::string& layer) {
   return (e.is_column() && e.name == layer) ||
          std::ranges::any_of(e.parts,
@@ -75,7 +75,7 @@ bool is_condition(const Layer& layer) {
   return expression && expression->is_condition();
 }
 
-// Fits the palette to most of the values; a condition keeps its palette.
+// Fits the palette to most of the values. A condition keeps its palette.
 Result<Layer> with_colors(room::Room& room, Layer layer) {
   if (is_condition(layer)) return layer;
   const auto values = STRATA_TRY(room.queries().statistics(layer.slug, {}, {.quantiles = true}));
@@ -107,7 +107,7 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
   formula.automatic = automatic;
   for (const std::string& slug : layers_of(expression)) {
     const auto layer = std::ranges::find(layers, slug, &Layer::slug);
-    if (layer == layers.end()) continue;  // `check_expression` checks the other names
+    if (layer == layers.end()) continue;  // `check_expression` checks all other names
     if (self && layer->id == *self)
       return fail(ErrorCode::invalid, "Layer depends on itself",
                   "The expression uses the layer that it computes. Remove this layer from the "
@@ -140,7 +140,8 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
   auto shapes =
       STRATA_TRY(shape_views(services.store, *room, expression, layer.resolution, progress));
   if (progress.cancelled()) return cancelled_problem();
-  // Read before the records: a later change of the records makes the layer stale.
+  // Reads the sequences before the records. If the records change later, the layer is then out of
+  // date.
   const auto tables = STRATA_TRY(services.store.layers().table_sequences_of(layer.id));
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
@@ -158,7 +159,7 @@ Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<
                                 bool has_palette, Progress& progress) {
   return layers.add(std::move(layer), [&](const Layer& made) -> Result<Layer> {
     auto computed = STRATA_TRY(compute_layer(services, room, made, author, progress));
-    // Hidden by default; visible to its author.
+    // The layer is hidden by default, but its author sees it.
     STRATA_TRY(services.store.personal_views().show_layer_to(author.user, made.model_id, made.id));
     return has_palette ? Result<Layer>(std::move(computed))
                        : with_colors(*room, std::move(computed));

@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr int kUndefinedCartesian = -1;
 
-// Required: OGC 12-128r17, tables 1, 3 and 22 with the rows of requirement 11.
+// The required layout: OGC 12-128r17, tables 1, 3 and 22, with the rows of requirement 11.
 constexpr const char* kLayout = R"(
 PRAGMA application_id = 1196444487;
 PRAGMA user_version = 10300;
@@ -49,7 +49,7 @@ CREATE TABLE gpkg_geometry_columns (
   CONSTRAINT fk_gc_srs FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys (srs_id));
 )";
 
-// The file could not be written, for example because the disk is full.
+// Thrown if the file could not be written, for example because the disk is full.
 struct NotWritten : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -155,7 +155,7 @@ Box box_of(const Feature& feature) {
   return box;
 }
 
-// Well-known binary (ISO 13249-3): types with z are 1000 higher.
+// Codes of well-known binary (ISO 13249-3). The codes for geometries with z are 1000 higher.
 constexpr std::uint32_t kPoint = 1001, kLine = 1002, kPolygon = 1003, kMultiPolygon = 1006;
 
 void append_head(std::vector<std::uint8_t>& out, std::uint32_t type) {
@@ -169,8 +169,8 @@ void append_path(std::vector<std::uint8_t>& out, const query::FlatRing& ring, bo
     append(out, ring[i % ring.size()]);
 }
 
-// GeoPackageBinary (clause 2.1.3): a header with the envelope in x, y and z, then well-known
-// binary.
+// Returns a GeoPackageBinary (clause 2.1.3). It consists of a header with the envelope in x, y and
+// z, followed by well-known binary.
 std::vector<std::uint8_t> blob_of(const Feature& feature, FeatureKind kind, std::int32_t srs) {
   constexpr std::uint8_t kLittleEndian = 1, kEnvelopeOfThree = 2 << 1;
   std::vector<std::uint8_t> out{'G', 'P', 0, kLittleEndian | kEnvelopeOfThree};

@@ -19,10 +19,10 @@ namespace {
 
 using Kind = FeatureField::Kind;
 
-// The table of a database layer, with the records that may have features.
+// The table of a database layer, with all records that may have features.
 struct Records {
-  std::vector<Column> columns;           // the attributes of the features
-  std::vector<Column> surface_features;  // columns of lines and points
+  std::vector<Column> columns;           // become the attributes of the features
+  std::vector<Column> surface_features;  // columns with lines and points
   std::map<std::int64_t, Record> by_key;
   RecordNames names;
   WordsOfTables words;
@@ -39,7 +39,7 @@ Result<Records> read_records(store::Store& store, const FeatureRequest& request,
     query.at = *then;
   }
   const auto table = STRATA_TRY(store.tables().find(to_string(*request.layer.table), request.role));
-  // Records without painted texels may have lines and points.
+  // Includes records without painted texels because they may have lines and points.
   const auto is_feature = [](const Column& column) { return holds_features(column.kind); };
   if (std::ranges::none_of(table.columns, is_feature)) query.keys = std::move(painted);
   auto page = STRATA_TRY(store.records().page(table.id, request.role, query));
@@ -85,8 +85,8 @@ FeatureValue value_of(const Record& record, const Column& column, const WordsOfT
   }
 }
 
-// The names of a table's fields. Prefixes `column_` to a name that is already used, or that a file
-// format reserves.
+// Creates the field names of a table. Adds the prefix `column_` to a name that is already used, or
+// that a file format reserves.
 class Fields {
  public:
   explicit Fields(std::vector<FeatureField> own) : fields_(std::move(own)) {
@@ -117,7 +117,7 @@ void add_record(Feature& feature, const Records& records, std::int64_t key) {
                                  : value_of(record->second, column, records.words));
 }
 
-// Returns the class of query::classes_of that the quantity counts.
+// Returns the class of query::classes_of to which the quantity belongs.
 std::uint32_t class_of(const query::Quantity& quantity, const Layer& layer,
                        const query::ValueClasses& classes) {
   if (quantity.value)
@@ -214,7 +214,8 @@ FeatureTable features_in(const FeatureRequest& request, const Records& records,
   return table;
 }
 
-// A map has coordinates in meters and shows the model along z; otherwise there is no code.
+// A map has coordinates in meters and shows the model along z. Otherwise, the coordinate system has
+// no code.
 int epsg_of(const Model& model, const query::OutlinePlane& plane) {
   constexpr std::string_view kAuthority = "EPSG:";
   int code = 0;

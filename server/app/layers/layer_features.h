@@ -13,15 +13,15 @@ namespace strata::app {
 struct FeatureRequest {
   std::shared_ptr<room::Room> room;  // as visible to the caller
   Layer layer;
-  room::At at;  // nothing: now
+  room::At at;  // empty: now
   query::OutlinePlane plane;
   Role role = Role::viewer;
-  std::string language;  // of terms
+  std::string language;  // of the labels of terms
 };
 
-// Returns the areas of a layer's classes, and for a database layer the lines and points of its
-// records on the model, each with its name and the record's values in the columns that the role
-// sees. Blocks.
+// Returns the areas of a layer's classes. For a database layer, also returns the lines and points
+// of its records on the model. Each feature has its name and the values of the record in the
+// columns that are visible to the role. Blocks.
 Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request);
 
 }  // namespace strata::app

@@ -39,7 +39,7 @@ Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::js
 
 Result<void> NewLayers::show(const store::IdempotentResponse<Layer>& answer) {
   store::IdempotentResponse<Layer> last = answer;
-  last.user.clear();  // showing is part of the creation
+  last.user.clear();  // no separate entry: part of the creation
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const bool is_last = i + 1 == made_.size();
     for (int tries = 0;; ++tries) {
@@ -47,7 +47,7 @@ Result<void> NewLayers::show(const store::IdempotentResponse<Layer>& answer) {
       now.visible = made_[i].visible;
       auto shown = room_->layers().update(now, is_last ? last : store::IdempotentResponse<Layer>{});
       if (shown) break;
-      // Another user renamed the layer at the same moment: retries with the new version.
+      // If another user has renamed the layer in the meantime, tries again with the new version.
       if (shown.error().code != ErrorCode::stale || tries == kMaxTries)
         return tl::unexpected(shown.error());
     }

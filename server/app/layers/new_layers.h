@@ -12,18 +12,20 @@
 
 namespace strata::app {
 
-// Layers that a job makes with their content. They are hidden until they are painted, so that
-// nobody sees them incomplete, and removed if that fails. Used on the job's thread; blocks.
+// Layers that a job creates together with their content. They are hidden until they are painted, so
+// users never see an incomplete layer. They are removed if the job fails. Used on the thread of the
+// job. Blocks.
 class NewLayers {
  public:
   NewLayers(std::shared_ptr<room::Room> room, EditCounters& counters, Author author)
       : room_(std::move(room)), counters_(counters), author_(std::move(author)) {}
 
-  // Makes the layer and paints it as one edit of the author. `recipe`: for its history.
+  // Creates the layer and paints it as one edit of the author. `recipe` becomes part of its
+  // history.
   Result<Layer> add(Layer layer, TileMap tiles, nlohmann::json recipe);
-  // Makes the layer and calls `fill`.
+  // Creates the layer and calls `fill`.
   Result<Layer> add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill);
-  // Sets the requested visibility of the layers. The last update stores the answer.
+  // Sets the requested visibility of the layers. The last update stores the response.
   Result<void> show(const store::IdempotentResponse<Layer>& answer);
   void take_back();  // removes all added layers
 
@@ -42,7 +44,7 @@ class NewLayers {
   std::vector<Made> made_;
 };
 
-// Returns the order above all other layers.
+// Returns an order above that of all other layers.
 int order_on_top(const std::vector<Layer>& others);
 
 }  // namespace strata::app

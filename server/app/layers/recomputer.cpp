@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kMaxPause{600};
 constexpr int kMaxChecks = 10;
-// The author in the layer's history: the server, which ignores locks.
+// The author in the history of the layer is the server, which may edit locked layers.
 const Author kAuthor("Strata", Role::owner);
 
 }  // namespace
@@ -95,7 +95,7 @@ void Recomputer::attempt(
   const auto pause =
       failed == failures_.end() ? kFirstPause : std::min(kMaxPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
-  // A layer that is no longer there, or not yet in the open room, is no fault.
+  // Does not log a layer that was deleted or that the open room does not contain yet.
   if (failed != failures_.end() || is_stopping() || done.error().code == ErrorCode::not_found)
     return;
   if (services_.store.layers().find(layer.model_id, to_string(layer.id), Role::owner))

@@ -14,16 +14,17 @@
 
 namespace strata::app {
 
-// Computes automatic layers again, one after the other, when their input has changed: an edit, a
-// record, another computed layer. This blocks edits of the model, so it first waits for a second
-// without painting, at most ten times. Polls the database once a second, so that a restart loses no
-// change. Retries failures at increasing intervals. Also counts the surface of layers that were
-// never counted (store::Layers::to_sum), such as those of older versions.
+// Computes automatic layers again when their inputs have changed. An input is an edit, a record or
+// another computed layer. Computes one layer after the other. A computation blocks edits of the
+// model, so `attempt` first waits for a second without edits. It waits at most ten times. Polls the
+// database once a second, so a restart loses no change. Retries failures at increasing intervals.
+// Also counts the surface of layers that were never counted (store::Layers::to_sum), such as layers
+// from older versions.
 class Recomputer {
  public:
   explicit Recomputer(const Services& services);
   ~Recomputer() { stop(); }
-  void stop();  // cancels the current computation, and waits
+  void stop();  // cancels the running computation and waits for it
 
  private:
   struct Failure {
@@ -36,7 +37,7 @@ class Recomputer {
   };
   void run();
   bool is_quiet(const room::Room& room, LayerId layer_id);
-  // `work` opens the room and updates the layer; logs a failure once.
+  // `work` updates the layer in the opened room. Logs a repeated failure only once.
   void attempt(const Layer& layer, const char* what,
                const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work);
   void recompute(const Layer& layer);
@@ -44,7 +45,7 @@ class Recomputer {
 
   const Services services_;
   std::map<LayerId, Failure> failures_;  // by layer
-  std::map<LayerId, Wait> waits_;        // likewise
+  std::map<LayerId, Wait> waits_;        // by layer
   Progress progress_;
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -21,7 +21,7 @@ Result<void> add_photo(const Services& services, const room::SurfaceImageView& i
                        query::VertexColors& colors) {
   const auto encoded = STRATA_TRY(services.store.surface_images().picture(image.surface_image_id));
   const auto info = STRATA_TRY(inspect_picture(encoded));
-  // Decoding takes at most twice the memory of the pixels.
+  // Decoding needs at most twice the memory of the pixels.
   const auto bytes =
       static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height) * 8;
   const auto share = STRATA_TRY(services.rooms.memory().reserve(bytes, "a photo of the surface"));

@@ -8,10 +8,10 @@
 
 namespace strata::app {
 
-// Returns the colors of a model's vertices under these layers, bottom to top, with the visible
-// surface images below. `memory` is the share of the colors, held as long as they exist. Refuses a
-// palette by a column that the role does not see (422), and an image that exceeds the memory limit
-// (503). Blocks.
+// The colors of a model's vertices with these layers, from bottom to top, above the visible surface
+// images. `memory` is reserved for the colors as long as they exist. `compose_vertices` refuses a
+// palette that uses a column invisible to the role (422), and an image that exceeds the memory
+// limit (503). Blocks.
 struct ComposedVertices {
   query::VertexColors colors;
   MemoryLedger::Share memory;

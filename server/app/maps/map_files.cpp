@@ -45,7 +45,7 @@ std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Returns the kind of a file; nothing for a companion of another file.
+// Returns the type of a map file. Returns nothing for a file that only accompanies another file.
 std::optional<MapKind> kind_of(const mesh::InputFiles::Entry& file, bool is_alone) {
   if (query::is_shapefile(file.bytes) && ending_of(file.name) != "shx") return MapKind::shapefile;
   if (query::is_tiff(file.bytes)) return MapKind::tiff;
@@ -56,7 +56,7 @@ std::optional<MapKind> kind_of(const mesh::InputFiles::Entry& file, bool is_alon
   if (ending == "shp") return MapKind::shapefile;
   if (ending == "geojson" || ending == "json") return MapKind::geojson;
   const bool is_part = ending == "dbf" || ending == "prj" || ending == "cpg" || ending == "shx";
-  // Without a known extension: JSON begins with an object, after blanks and a byte order mark.
+  // Detects JSON without a known extension: an object after blanks and a byte order mark.
   const std::string_view text = as_text(file.bytes);
   const auto begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
   const bool may_be_json =
@@ -77,7 +77,7 @@ Result<MapFiles> MapFiles::open(const std::vector<MapFile>& files, const fs::pat
     auto mapped = MappedFile::open(file.path);
     if (file.is_ours) {
       std::error_code ignored;
-      fs::remove(file.path, ignored);  // the mapping stays valid
+      fs::remove(file.path, ignored);  // the memory mapping stays valid
     }
     if (!mapped) {
       unreadable = mapped.error();

@@ -17,27 +17,29 @@ enum class MapKind { geojson, shapefile, picture, tiff };
 
 struct MapFile {
   std::filesystem::path path;
-  std::string name;      // the sender's name; may be empty
-  bool is_ours = false;  // removed as soon as it is open
+  std::string name;      // the sender's file name; may be empty
+  bool is_ours = false;  // deleted as soon as it is open
 };
 
-// The files of one map as they were sent: the body, the files of a form, or those of a zip. Their
-// first bytes distinguish them, so a body needs no name.
+// The files of one map as the user sent them: the request body, the files of a form, or the files
+// in a zip. The first bytes of a file show its type, so a body does not need a name.
 class MapFiles {
  public:
-  // Extracts a zip to unnamed files in `scratch`, which live as long as this. Refuses (malformed,
-  // too_large, unsupported, invalid) as unpack_archive does, and several maps or none.
+  // Extracts a zip to unnamed files in `scratch`, which exist as long as this object. Refuses the
+  // same files as unpack_archive does (malformed, too_large, unsupported, invalid). Also refuses
+  // several maps, or files without a map.
   static Result<MapFiles> open(const std::vector<MapFile>& files,
                                const std::filesystem::path& scratch);
 
   MapKind kind() const { return kind_; }
   std::span<const std::uint8_t> main() const { return files_[main_].bytes; }
   std::string_view text() const;
-  // Returns the bytes of the main file's companion with one of these extensions ("prj"); empty if
-  // it was not sent.
+  // Returns the bytes of the file with the name of the main file and one of these extensions
+  // ("prj"). Returns no bytes if the user did not send this file.
   std::span<const std::uint8_t> companion(std::initializer_list<std::string_view> endings) const;
   std::string_view companion_text(std::initializer_list<std::string_view> endings) const;
-  // Returns sizes and hashes for the journal: those of the body, or `files` for several.
+  // Returns the size and hash of the body for the journal, or a list `files` if there are several
+  // files.
   nlohmann::json record() const;
 
  private:

@@ -8,14 +8,14 @@
 
 namespace strata::app {
 
-// Returns the keys of a layer with a categorical legend, to which a map can add; nothing for other
-// legends. `records`: keys that are in use although no texel has them.
+// Returns the keys in a categorical legend, to which a map can add keys. Returns nothing for other
+// legends. `records` contains keys that are in use although no texel has them.
 Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer,
                                                const std::set<double>& records);
 
-// Adds a map's names to the layer's legend. Names are metadata, so only curators can add them:
-// refuses (403) new names of other users, who can use existing names; ignores their new colors.
-// Blocks.
+// Adds names from a map to the layer's legend. Names are metadata, so only curators can add them.
+// Refuses (403) new names from other users, and ignores their new colors. Other users can use
+// existing names. Blocks.
 Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
                            const query::KeyNames& keys);
 

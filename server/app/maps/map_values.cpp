@@ -18,7 +18,7 @@ Result<void> check_kind(const MapFiles& files, bool polygons) {
               "body");
 }
 
-// Returns the colors with their keys, as requested or found.
+// Returns colors with their keys. These are the requested colors, or the colors found in the image.
 Result<std::vector<query::ColorKey>> color_keys(const std::string& requested,
                                                 const Picture& picture, double tolerance) {
   if (requested != "auto") return query::parse_color_keys(requested, "colors");
@@ -64,7 +64,8 @@ Result<MapValues> values_by_luminance(MapPicture map, const Layer& layer) {
   return MapValues{bits_at, std::nullopt};
 }
 
-// Checks every number of the band, wherever it is: the result must not depend on the surface.
+// Converts every number of the band, even outside the surface, because a failure must not depend on
+// the surface.
 Result<void> convert(query::BandRaster& band, const Layer& layer) {
   for (std::size_t i = 0; i < band.bits.size(); ++i) {
     if (!band.valid[i]) continue;
@@ -165,7 +166,7 @@ Result<Picture> picture_of(const MapFiles& files, const std::optional<query::Map
 Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
                                               const std::optional<query::MapTiff>& tiff,
                                               ByteBudget& budget) {
-  // Decoding a TIFF takes twice four bytes per pixel.
+  // Decoding a TIFF needs twice four bytes per pixel.
   if (tiff) return budget.take(8 * pixels(tiff->width, tiff->height));
   const auto info = STRATA_TRY(inspect_picture(files.main(), kMaxMapSide));
   return budget.take(4 * pixels(info.width, info.height));

@@ -11,47 +11,48 @@
 
 namespace strata::app {
 
-// A map as numbers of one layer.
+// The values of a map for one layer.
 struct MapValues {
-  // of the layer's type
+  // Values in the type of the layer.
   std::function<std::optional<std::uint32_t>(const glm::dvec2& place)> bits_at;
-  std::optional<query::KeyNames> keys;  // of a categorical legend, with the map's additions
+  std::optional<query::KeyNames> keys;  // keys of a categorical legend, with additions from the map
 };
 
 struct MapTarget {
   room::Room& room;
   const Layer& layer;
-  std::set<double> records{};  // of a database layer: keys that are in use
+  std::set<double> records{};  // keys in use, for a database layer
 };
 
-// Reads GeoJSON or a shapefile, by `value`, or by `attribute` and `names` of the options.
+// Reads GeoJSON or a shapefile with `value`, or with `attribute` and `names`, of the options.
 Result<MapValues> polygon_values(const MapOptions& options, const MapFiles& files,
                                  const MapTarget& target, ByteBudget& budget);
-// Reads polygons of any supported file, checked against the model's coordinates.
+// Reads polygons from any supported file. Checks them against the coordinates of the model.
 Result<query::FeatureMap> features_of(const MapFiles& files, const Model& model);
 
-// Reads PNG, JPEG or TIFF, by `colors` with `tolerance`, or `band`, or neither: a TIFF's only band,
-// otherwise the luminance.
+// Reads PNG, JPEG or TIFF. Uses `colors` with `tolerance`, or `band`, of the options. Without them,
+// uses the only band of a TIFF, or the luminance.
 Result<MapValues> picture_values(const MapOptions& options, const MapFiles& files,
                                  const MapTarget& target, ByteBudget& budget);
 
-// A picture in colors with its position.
+// A color image with its position.
 struct MapPicture {
   Picture picture;
   query::WorldFile world;
-  std::shared_ptr<const void> held;  // reserved part of the budget
+  std::shared_ptr<const void> held;  // reserved memory of the budget
 };
-// Reads the header of a TIFF, checked against the model's coordinates; nothing: another format.
+// Reads the header of a TIFF and checks it against the coordinates of the model. Returns nothing
+// for another format.
 Result<std::optional<query::MapTiff>> tiff_of(const MapFiles& files, const Model& model);
 Result<Picture> picture_of(const MapFiles& files, const std::optional<query::MapTiff>& tiff);
-// Reserves memory of the budget before decoding.
+// Reserves memory of the budget before the image is decoded.
 Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
                                               const std::optional<query::MapTiff>& tiff,
                                               ByteBudget& budget);
-// Reads the whole picture, with the position from `world_of`. Refuses polygons (415).
+// Reads the whole image, with the position from `world_of`. Refuses polygons (415).
 Result<MapPicture> map_picture(const MapOptions& options, const MapFiles& files, const Model& model,
                                ByteBudget& budget);
 
-constexpr double kMinTolerance = 1, kMaxTolerance = 60;  // of colors
+constexpr double kMinTolerance = 1, kMaxTolerance = 60;  // when comparing colors
 
 }  // namespace strata::app

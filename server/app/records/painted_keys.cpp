@@ -42,7 +42,7 @@ Result<std::vector<PaintedLayer>> painted_layers(const Services& services, Table
     if (layer.sequence == 0) continue;  // the layer was never painted
     auto room = STRATA_TRY(services.rooms.open(to_string(layer.model_id), seen_by));
     auto areas = room->queries().key_areas(layer.slug);
-    if (!areas && areas.error().code == ErrorCode::not_found) continue;  // deleted in the meantime
+    if (!areas && areas.error().code == ErrorCode::not_found) continue;  // the layer is deleted
     if (!areas) return tl::unexpected(areas.error());
     painted.push_back({std::move(room), std::move(layer), std::move(*areas)});
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kKey = "key";
 constexpr const char* kVersion = "version";
-// RecordMeasures
+// The names in RecordMeasures.
 constexpr std::array<std::string_view, 3> kMeasures = {"area_m2", "length_m", "point_count"};
 
 std::string with_comma(std::string number) {
@@ -32,7 +32,7 @@ bool is_called(const Column& column, const std::string& head) {
                      [&](const auto& label) { return label.second == head; });
 }
 
-// The meaning of each cell of a row: a column or a special word.
+// The meaning of a cell in each row: a column of the table or a special name.
 struct Head {
   std::string text;
   const Column* column = nullptr;

@@ -10,47 +10,49 @@
 #include "domain/tables/table.h"
 #include "store/tables/table_changes.h"
 
-// Records as CSV, in the form of spreadsheets: the first row names the columns.
+// Records as CSV, in the layout of spreadsheets. The first row contains the names of the columns.
 namespace strata::app {
 
-// Returns a record's cell of CSV; empty if the column has no value. A term is shown by its word if
-// `words` has its table, otherwise by its key.
+// Returns the CSV cell of a record. It is empty if the column has no value. A term is shown by its
+// word if `words` contains the table of the term, and otherwise by its key.
 std::string record_cell(const Record& record, const Column& column, char separator,
                         const WordsOfTables& words = {});
-// Returns the word of a term's cell; nothing if it is not a term, has none, or is not in `words`.
+// Returns the word for a cell with a term. Returns nothing if the cell contains no term, if the
+// term has no word, or if `words` does not contain it.
 std::optional<std::string> term_word(const Record& record, const Column& column,
                                      const WordsOfTables& words);
 
-// Measures of records: a value for each of the names, record by record.
+// Measures of records, with a value for each name and record.
 struct MeasuredRecords {
   std::vector<std::string> names{};
   std::vector<std::vector<double>> values{};
 };
-// If the separator is a semicolon, numbers have a decimal comma, as in the countries whose Excel
-// writes semicolons. Begins with a byte order mark.
+// Begins with a byte order mark. With a semicolon as separator, numbers have a decimal comma, as in
+// the countries where Excel writes semicolons.
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
                         const MeasuredRecords& measured, char separator,
                         const WordsOfTables& words = {});
 
 struct RowMistake {
   int line = 0;
-  std::string column;  // its name in the first row; empty: the whole row
+  std::string column;  // name in the first row; empty for the whole row
   Error problem;
 };
 
 struct RecordRows {
   std::vector<store::RecordInput> records;
-  std::vector<int> lines;                 // of each record
-  std::map<ColumnId, std::string> heads;  // the names of the columns in the first row, by id
-  // the first hundred; `records` excludes these rows
+  std::vector<int> lines;                 // line of each record
+  std::map<ColumnId, std::string> heads;  // column names in the first row, by column id
+  // The first hundred mistakes. `records` does not contain their rows.
   std::vector<RowMistake> mistakes;
   std::size_t rows = 0;
 };
 
-// A head is `key`, `version` (of the record when it was read), a column's slug, name or label in
-// any language, or `area_m2`, `length_m` or `point_count`, which are ignored unless a column has
-// that name. Rows without a key are new records. Terms are keys, or words of `words`. Error: the
-// text is not CSV or its first row is invalid.
+// Reads records from CSV. The name of a column is `key`, `version` (of the record when it was
+// read), or the slug, name or label of a table column in any language. `area_m2`, `length_m` and
+// `point_count` are ignored unless a table column has that name. A row without a key is a new
+// record. Terms are keys, or words in `words`. Returns an error if the text is not CSV or its first
+// row is invalid.
 Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
                                     const WordsOfTables& words = {});
 

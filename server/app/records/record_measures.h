@@ -13,18 +13,19 @@ namespace strata::app {
 
 inline constexpr const char* kAreaMeasure = "area_m2";
 
-// The measures of a record on the surface: under a layer, `area_m2` of its texels there; `length_m`
-// of its lines and `point_count` of its points, if the table has such columns, under a layer those
-// on its model, otherwise those on all models.
+// The measures of a record on the surface. For a layer, `area_m2` is the area of the record's
+// texels. If the table has columns with lines or points, `length_m` is the length of the lines and
+// `point_count` the number of points. For a layer, only lines and points on its model count.
+// Otherwise, those on all models count.
 class RecordMeasures {
  public:
-  // `columns`: those of the records that are passed to `of`; the place's layer must be visible to
-  // the caller. May open a room, and blocks.
+  // `columns` must be the columns of the records that are passed to `of`. The layer in `place` must
+  // be visible to the caller. May open a room. Blocks.
   static Result<RecordMeasures> of_place(const Services& services, const RecordPlace& place,
                                          const std::vector<Column>& columns);
 
   const std::vector<std::string>& names() const { return names_; }
-  std::vector<double> of(const Record& record) const;  // one per name
+  std::vector<double> of(const Record& record) const;  // one value per name
   double area_m2(std::int64_t key) const;
 
  private:
@@ -32,10 +33,10 @@ class RecordMeasures {
   bool has_area_ = false;
   std::map<std::int64_t, query::KeyArea> areas_;
   std::vector<Column> lines_, points_;
-  std::map<ModelId, double> metres_;  // meters per unit of the models whose features count
+  std::map<ModelId, double> metres_;  // meters per unit of the models whose lines and points count
 };
 
-// Adds each value under its name; counts are integers.
+// Adds each value under its name. Counts are integers.
 void add_measures(nlohmann::json& json, const std::vector<std::string>& names,
                   const std::vector<double>& values);
 

@@ -8,7 +8,7 @@
 
 namespace strata::app {
 
-// The table of the records in a request, named directly or as the table of a layer.
+// The table of the records in a request. The request names the table or a layer of the table.
 struct RecordPlace {
   Table table;  // as visible to the user
   std::optional<Model> model;

@@ -12,7 +12,7 @@
 namespace strata::app {
 namespace {
 
-constexpr int kDeepest = 3;  // tables may name each other's records, even in cycles
+constexpr int kDeepest = 3;  // tables may refer to each other, even in cycles
 
 std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::RecordPage& page,
                                               Role seen_by, const std::string& language,
@@ -20,7 +20,7 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
   std::map<std::int64_t, std::string> names;
   const Column* title = name_column(page.table);
   if (!title) return names;
-  std::map<std::int64_t, std::string> named;  // names of the records that the titles refer to
+  std::map<std::int64_t, std::string> named;  // names of the records in the titles
   if (title->kind == ColumnKind::term && depth < kDeepest) {
     store::RecordQuery all;
     all.limit = store::kMaxRecords;
@@ -45,7 +45,7 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
 
 }  // namespace
 
-// The part of a word that distinguishes it: spreadsheets drop blanks at both ends of cells.
+// Removes blanks at both ends because spreadsheets also remove them from cells.
 std::string RecordWords::bare(const std::string& word) { return std::string(trimmed(word)); }
 
 void RecordWords::add(std::int64_t key, const std::string& word) {

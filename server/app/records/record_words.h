@@ -12,21 +12,24 @@
 
 namespace strata::app {
 
-// Translates between the keys of a table's records and words: terms have labels and codes, other
-// records a title. The two directions agree: `key_of` finds the key of every result of `word`.
+// Converts between the keys of a table's records and words. Terms have labels and codes. Other
+// records have a title. The two directions are consistent: `key_of` returns the key for each result
+// of `word`.
 class RecordWords {
  public:
-  // `language`: of the labels that `word` returns ("es-mx"); `key_of` accepts those of all
-  // languages. Blocks.
+  // `language` is the language of the labels that `word` returns ("es-mx"). `key_of` accepts labels
+  // in all languages. Blocks.
   static Result<RecordWords> load(store::Store& store, TableId table_id, Role seen_by,
                                   const std::string& language);
 
-  // Returns the record's label or title if it is unique, otherwise its code, otherwise its key. For
-  // a missing record, its key.
+  // Returns the label or title of the record if it is unique. Otherwise returns the code or,
+  // without a code, the key. Returns the key for a missing record.
   std::string word(std::int64_t key) const;
-  // Returns the record's name, which may not be unique; empty if it has none.
+  // Returns the name of the record, which need not be unique. Returns an empty text if the record
+  // has no name.
   std::string name(std::int64_t key) const;
-  // Digits are a key. Refuses (422) a word of no record or of several. `field` names the cell.
+  // Accepts digits as a key. Refuses (422) a word that belongs to no record or to several records.
+  // `field` is the name of the cell.
   Result<std::int64_t> key_of(const std::string& word, const std::string& field) const;
 
  private:
@@ -35,11 +38,11 @@ class RecordWords {
 
   std::string table_;
   std::map<std::int64_t, std::string> names_, codes_;
-  std::map<std::string, std::optional<std::int64_t>> keys_;  // by word; nothing: ambiguous
+  std::map<std::string, std::optional<std::int64_t>> keys_;  // by word; empty: ambiguous
 };
 
-// The words of all tables that the columns of kind `term` refer to, by table; several columns may
-// refer to one table.
+// The words of the tables that columns of kind `term` refer to, by table. Several columns may refer
+// to the same table.
 using WordsOfTables = std::map<TableId, RecordWords>;
 Result<WordsOfTables> words_of(store::Store& store, const std::vector<Column>& columns,
                                Role seen_by, const std::string& language);

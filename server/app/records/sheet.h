@@ -16,22 +16,23 @@ namespace strata::app {
 using SheetCell = std::variant<std::monostate, double, std::string>;
 
 struct Sheet {
-  std::string name;  // of the file, without the extension
+  std::string name;  // file name without the extension
   std::vector<std::string> heads;
-  std::vector<std::vector<SheetCell>> rows;  // all rows have the same number of cells
-  // for XLSX, by column; may be shorter or empty: the spreadsheet chooses
+  std::vector<std::vector<SheetCell>> rows;  // all rows have the same length
+  // Number formats for XLSX, by column. May be shorter than the row or contain empty texts. The
+  // spreadsheet program then chooses the format.
   std::vector<std::string> number_formats{};
 };
 
-// Keeps the columns whose heads end with `area_m2`, for scripts, and appends each of them again in
-// the unit that suits its largest value.
+// Keeps the columns whose names end with `area_m2`, for scripts. Appends a copy of each in the unit
+// that suits its largest value.
 void add_readable_areas(Sheet& sheet);
 
-// Writes CSV with a byte order mark, which spreadsheets need; escapes a text that one would run as
-// a formula.
+// Returns CSV with a byte order mark, which spreadsheet programs need. Escapes text that such a
+// program would run as a formula.
 std::string csv_text(const Sheet& sheet, char separator);
-// Writes XLSX to a file in `folder`. The filters of its head exclude the last row, which has
-// totals. Refused (storage_full): the disk is full.
+// Writes XLSX to a file in `folder`. The filters in the first row exclude the last row, which
+// contains totals. Returns storage_full if the disk is full.
 Result<std::shared_ptr<const TemporaryFile>> write_workbook(const Sheet& sheet,
                                                             const std::filesystem::path& folder);
 

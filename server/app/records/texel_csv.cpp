@@ -50,7 +50,7 @@ void TexelCsv::append_number(std::string& text, double value, bool is_single) co
 }
 
 void TexelCsv::append_place(std::string& text, double value) const {
-  char digits[400];  // the widest double has 309 digits before its decimal point
+  char digits[400];  // the largest double has 309 digits before the decimal point
   char* end =
       std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals_).ptr;
   while (end[-1] == '0') --end;

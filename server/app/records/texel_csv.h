@@ -10,9 +10,9 @@
 
 namespace strata::app {
 
-// Texels as lines of CSV: `x,y,z,area_m2,value` and columns of the key's record. Coordinates are
-// rounded to a tenth of a micrometer; areas and values keep single precision, numbers in cells
-// double precision.
+// Texels as lines of CSV: `x,y,z,area_m2,value`, and columns of the record with the key.
+// Coordinates are rounded to a tenth of a micrometer. Areas and values have single precision.
+// Numbers in cells of records have double precision.
 class TexelCsv {
  public:
   TexelCsv(Unit unit, char separator)
@@ -21,7 +21,7 @@ class TexelCsv {
                                      : 4),
         separator_(separator) {}
 
-  // Keys without a record have empty cells.
+  // Adds columns of records. Keys without a record have empty cells.
   void add_records(const std::vector<Record>& records, const std::vector<Column>& columns);
   std::string head() const;
   void append(std::string& text, const query::TexelSample& sample, bool is_cell) const;

@@ -16,25 +16,24 @@ namespace strata::app {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMaxCellLength = 32'767;  // UTF-16 units
+constexpr std::size_t kMaxCellLength = 32'767;  // in UTF-16 units
 constexpr std::size_t kMaxSheetNameLength = 31;
 
-// Returns the length in bytes of the first UTF-8 character of a valid text.
+// Returns the number of bytes in the first UTF-8 character of a valid text.
 std::size_t character_bytes(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
   return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
 }
 
-// Whether the file holds the first character of a text as an escape: characters that XML does not
-// allow, and CR.
+// Returns whether the first character of a text is escaped in the file. This applies to CR and to
+// characters that XML does not allow.
 bool is_escaped(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
   return (first < 0x20 && first != '\t' && first != '\n') || text.starts_with("\ufffe") ||
          text.starts_with("\uffff");
 }
 
-// Whether the text begins with an escape of Excel in the file: `_x`, four hexadecimal digits and
-// `_`.
+// Returns whether the text begins like an escape of Excel: `_x`, four hexadecimal digits and `_`.
 bool begins_escape(std::string_view text) {
   return text.size() >= 7 && text.starts_with("_x") &&
          (text[6] == '_' || is_escaped(text.substr(6))) &&
@@ -42,7 +41,7 @@ bool begins_escape(std::string_view text) {
                              [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
-// Returns the first character of a text as a cell holds it (ECMA-376 Part 1, 22.9.2.19,
+// Returns the first character of a text as a cell contains it (ECMA-376 Part 1, 22.9.2.19,
 // ST_Xstring). The library escapes control characters itself.
 std::string escaped(std::string_view text, std::string_view character) {
   if (begins_escape(text)) return "_x005F_";
@@ -51,7 +50,8 @@ std::string escaped(std::string_view text, std::string_view character) {
   return std::string(character);
 }
 
-// The library counts the characters of an escape, Excel counts one: both limits apply.
+// The library counts all characters of an escape, but Excel counts one. The text must satisfy both
+// limits.
 std::string cell_text(std::string_view text) {
   std::string out;
   std::size_t units = 0, written = 0, before_last = 0;
@@ -126,7 +126,7 @@ Workbook::Workbook(const fs::path& folder, const std::string& sheet_name,
   std::string temporary = folder.string();
   lxw_workbook_options options{};
   options.constant_memory = LXW_TRUE;
-  options.tmpdir = temporary.data();  // copied
+  options.tmpdir = temporary.data();  // the library copies it
   book.book = workbook_new_opt(book.file->path.c_str(), &options);
   if (book.book)
     book.sheet =
@@ -179,7 +179,7 @@ void Workbook::add_row(const std::vector<BookCell>& cells) {
   ++book.rows;
 }
 
-// Writes the filter at once: the library accepts no row before the current one.
+// Writes the filter immediately because the library does not accept rows before the current one.
 void Workbook::end_filter() {
   Impl& book = *impl_;
   if (book.is_filtered || !book.sheet || book.numbers.empty()) return;

@@ -35,7 +35,7 @@ void RecordEditLocks::end(const Record& record, const Uuid& session, const Tell&
 
 void RecordEditLocks::leave(const Uuid& session, const Tell& tell) {
   std::lock_guard lock(mutex_);
-  std::map<ProjectId, std::vector<Entry>> gone;  // by project
+  std::map<ProjectId, std::vector<Entry>> gone;  // entries by project
   std::erase_if(held_, [&](const auto& entry) {
     const bool own = entry.second.editor.session == session;
     if (own) gone[entry.second.project_id].push_back({entry.first, std::nullopt});

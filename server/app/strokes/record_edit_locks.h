@@ -15,11 +15,12 @@
 
 namespace strata::app {
 
-// The people who are editing records. One editor per record; advisory, bound to the connection and
-// never stored: the record's version prevents lost updates. Thread-safe; does not block.
+// The users who are editing records. Each record has at most one editor. The locks are advisory,
+// belong to a connection and are never stored. The version of the record prevents lost updates.
+// Thread-safe. Does not block.
 class RecordEditLocks {
  public:
-  static constexpr std::size_t kMaxOfSession = 100;  // records
+  static constexpr std::size_t kMaxOfSession = 100;  // records per session
 
   struct Record {
     TableId table = 0;
@@ -32,20 +33,21 @@ class RecordEditLocks {
   };
   struct Entry {
     Record record;
-    std::optional<Editor> editor;  // nothing: no longer edited
+    std::optional<Editor> editor;  // empty: no longer edited
   };
-  // Receives the changed entries, or all entries, of a project. Called with the mutex locked, so
-  // that all receive them in one order: it must return at once and not call this object.
+  // Receives the changed entries, or all entries, of a project. Called while the mutex is locked,
+  // so all receivers get the entries in the same order. The function must not block or call this
+  // object.
   using Tell = std::function<void(ProjectId project_id, const std::vector<Entry>& entries)>;
 
-  // Makes the editor the one of the record. If another one has it and `take_over` is false, changes
-  // nothing. Refuses (422, `key`) more than `kMaxOfSession`.
+  // Sets the editor of the record. If the record has another editor and `take_over` is false,
+  // changes nothing. Refuses (422, `key`) more than `kMaxOfSession` records.
   Result<void> begin(ProjectId project_id, const Record& record, const Editor& editor,
                      bool take_over, const Tell& tell);
-  // does nothing if another session has it
+  // Has no effect if another session edits the record.
   void end(const Record& record, const Uuid& session, const Tell& tell);
-  void leave(const Uuid& session, const Tell& tell);  // the connection is closed
-  // makes no call if there are no entries
+  void leave(const Uuid& session, const Tell& tell);  // when the connection is closed
+  // Does not call `tell` if there are no entries.
   void list(ProjectId project_id, const Tell& tell) const;
 
  private:

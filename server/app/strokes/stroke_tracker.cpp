@@ -78,7 +78,8 @@ Result<StrokeTracker::Batch> StrokeTracker::extend(const Owner& owner, const Uui
   if (!known)
     return fail(ErrorCode::not_found, "Unknown stroke",
                 "The server has no stroke with this id. Send stroke.begin first.", "stroke");
-  // The first batch after a restart may have any number: the earlier ones are in the journal.
+  // The first batch after a restart may have any number because the earlier ones are in the
+  // journal.
   if (known->batches.empty() && !known->last) known->first_n = n;
   const int next = known->first_n + static_cast<int>(known->batches.size());
   if (n > next)

@@ -6,7 +6,7 @@
 
 namespace strata {
 
-// Changes only A to Z, in any locale: for names of protocols and files.
+// Changes only A to Z, in any locale. For names in protocols and file names.
 inline std::string to_lower(std::string_view text) {
   std::string out(text);
   for (char& c : out)
@@ -14,7 +14,7 @@ inline std::string to_lower(std::string_view text) {
   return out;
 }
 
-// Returns `text` without the `blanks` at both ends.
+// Returns `text` without leading and trailing `blanks`.
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r\n") {
   text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
   return text.substr(0, text.find_last_not_of(blanks) + 1);

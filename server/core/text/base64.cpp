@@ -14,7 +14,7 @@ std::string encoded(std::span<const std::uint8_t> bytes, int variant) {
   return text;
 }
 
-// Sodium requires that the bits after the last whole byte are zero.
+// Sodium requires that the unused bits of the last character are zero.
 void clear_bits_left_over(std::string& text) {
   static constexpr std::string_view kAlphabet =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";

@@ -9,7 +9,8 @@
 
 namespace strata {
 
-// RFC 4648. The first is padded; the second is for addresses: `-` and `_`, without padding.
+// Encode as in RFC 4648. The first function pads the text. The second one is for addresses: it uses
+// `-` and `_`, and does not pad.
 std::string to_base64(std::span<const std::uint8_t> bytes);
 std::string to_base64url(std::span<const std::uint8_t> bytes);
 

@@ -10,11 +10,12 @@
 namespace strata {
 namespace {
 
-constexpr std::size_t kMaxLength = 100;  // bytes of a name: the cost grows with the square
-constexpr std::size_t kMinPrefix = 3;    // of one name that begins another
+constexpr std::size_t kMaxLength = 100;  // in bytes; the cost grows with the square of the length
+constexpr std::size_t kMinPrefix = 3;  // length of a name that can be the beginning of another name
 
-// The optimal string alignment distance (that of Levenshtein with exchanges, no place edited
-// twice), of bytes: names are mostly ASCII. Returns any number above `limit` if it is larger.
+// Returns the optimal string alignment distance in bytes, because names are mostly ASCII. (It is
+// the Levenshtein distance with transpositions, where no part is edited twice.) If the distance
+// exceeds `limit`, returns any number above `limit`.
 std::size_t distance(std::string_view a, std::string_view b, std::size_t limit) {
   const std::size_t difference = a.size() > b.size() ? a.size() - b.size() : b.size() - a.size();
   if (difference > limit) return limit + 1;
@@ -48,7 +49,7 @@ std::vector<std::string> closest_names(std::string_view wrong, std::span<const s
     const std::string candidate = search_text(name);
     if (candidate.empty() || candidate.size() > kMaxLength) continue;
     const std::size_t steps = distance(sought, candidate, limit);
-    // One character can become any other: then nothing would remain of a short name.
+    // A name with all its characters replaced is not a typing mistake.
     const bool is_typo = steps <= limit && steps < std::min(sought.size(), candidate.size());
     const auto shorter = std::min(sought.size(), candidate.size());
     const bool is_beginning =

@@ -7,10 +7,11 @@
 
 namespace strata {
 
-// Returns those of `names` for which `wrong` is probably a typing mistake, the most similar first,
-// at most `most`: without regard to case and accents, up to a third of the characters may be
-// missing, superfluous, different, or exchanged with their neighbor; or one begins with the other.
-// Names without a similar one give nothing. Longer texts than 100 bytes are not compared.
+// Returns the `names` for which `wrong` is probably a typing mistake, the most similar first.
+// Returns at most `most` names. Ignores case and accents. Up to a third of the characters may be
+// missing, superfluous, different, or exchanged with their neighbor. A name also matches if it
+// begins with `wrong` or if `wrong` begins with it. Texts of more than 100 bytes are not compared.
+// The result may be empty.
 std::vector<std::string> closest_names(std::string_view wrong, std::span<const std::string> names,
                                        std::size_t most = 3);
 

@@ -120,26 +120,28 @@ class Reader {
   CsvText out_;
 };
 
-// A reader with another separator, or without quoting, begins a cell after any of these.
+// A reader with another separator, or one that ignores quotes, begins a cell after any of these
+// characters.
 constexpr std::string_view kCellEnds = ",;\t\r\n";
 constexpr std::array<std::string_view, 8> kFormulaBegins = {"=",      "+",      "-",      "@",
                                                             "\uff1d", "\uff0b", "\uff0d", "\uff20"};
 
-// Ignores leading apostrophes and quotes: a reader removes the quotes.
+// Ignores leading apostrophes and quotes, because a reader removes the quotes.
 bool begins_formula(std::string_view cell) {
   cell.remove_prefix(std::min(cell.find_first_not_of("'\""), cell.size()));
   return std::ranges::any_of(kFormulaBegins,
                              [&](std::string_view begin) { return cell.starts_with(begin); });
 }
 
-// Some readers remove a tab or CR at the begin of the text and run the rest.
+// Some readers remove a leading tab or CR and evaluate the rest.
 bool begins_formula(std::string_view text, std::size_t at) {
   if (begins_formula(text.substr(at))) return true;
   const std::size_t first = at == 0 ? text.find_first_not_of("'\"") : std::string_view::npos;
   return first != std::string_view::npos && (text[first] == '\t' || text[first] == '\r');
 }
 
-// Calls `visit` at the begin of the text and of each part that another reader may read as a cell.
+// Calls `visit` at the beginning of the text and of each part that another reader may read as a
+// cell.
 template <class Visit>
 void for_each_cell_begin(std::string_view text, Visit visit) {
   for (std::size_t at = 0;; ++at) {
@@ -149,8 +151,8 @@ void for_each_cell_begin(std::string_view text, Visit visit) {
   }
 }
 
-// Quotes for any separator, since some readers accept several. A number with a decimal comma stays
-// unquoted, since some readers treat quoted numbers as text.
+// Also quotes cells with other separators, because some readers accept several separators. Does not
+// quote a number with a decimal comma, because some readers treat quoted numbers as text.
 bool needs_quotes(std::string_view cell, char separator) {
   if (cell.find_first_of("\"\r\n") != std::string_view::npos ||
       cell.find(separator) != std::string_view::npos)
@@ -180,7 +182,7 @@ void append_csv_cell(std::string& line, std::string_view cell, char separator) {
 }
 
 std::string csv_line(const std::vector<std::string>& cells, char separator) {
-  // readers ignore a row that looks empty
+  // Readers ignore a row that looks empty.
   if (cells.size() == 1 && cells.front().empty()) return "\"\"\r\n";
   std::string line;
   for (const std::string& cell : cells) {

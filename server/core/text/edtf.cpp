@@ -26,7 +26,8 @@ struct Span {
   std::int64_t first = 0, last = 0;  // both inclusive
 };
 
-// Returns the years of `156X`: the missing digits at the right are unknown; at least one is known.
+// Returns the years of a text such as `156X`, where the digits at the right are unknown. At least
+// one digit must be known.
 std::optional<Span> years_of(std::string_view digits, bool negative) {
   std::size_t known = digits.find('X');
   if (known == std::string_view::npos) known = digits.size();
@@ -46,14 +47,14 @@ Span days_of_month(std::int64_t year, int month) {
   return {day_number(year, month, 1), day_number(year, month, days_in_month(year, month))};
 }
 
-// Returns three months from `month`; winter ends in the next year.
+// Returns the three months that begin with `month`. Winter ends in the next year.
 Span days_of_season(std::int64_t year, int month) {
   const bool turns = month > 10;
   return {day_number(year, month, 1),
           days_of_month(year + (turns ? 1 : 0), turns ? month - 10 : month + 2).last};
 }
 
-// Returns the days of a date without its qualifier.
+// Returns the days of a date that has no qualifier.
 std::optional<Span> days_of_date(std::string_view text) {
   const bool many_digits = text.starts_with('Y');
   if (many_digits) text.remove_prefix(1);
@@ -105,8 +106,8 @@ std::optional<Span> read_date(std::string_view text, Period& period) {
 
 }  // namespace
 
-// Howard Hinnant, "chrono-compatible low-level date algorithms": years begin in March, eras have
-// 400 years.
+// Source: Howard Hinnant, "chrono-compatible low-level date algorithms". In this algorithm, years
+// begin in March, and eras have 400 years.
 std::int64_t day_number(std::int64_t year, int month, int day) {
   if (month <= 2) --year;
   const std::int64_t era = (year >= 0 ? year : year - 399) / 400;

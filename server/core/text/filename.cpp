@@ -36,7 +36,7 @@ std::string base_filename(std::string_view path) {
   out = without_unseen(mended_utf8(out));
   if (out == "." || out == "..") out.clear();
   if (out.size() <= kMaxFilenameLength) return out;
-  std::size_t cut = out.size() - kMaxFilenameLength;  // the end has the extension
+  std::size_t cut = out.size() - kMaxFilenameLength;  // keeps the extension, which is at the end
   while (!is_utf8(std::string_view(out).substr(cut))) ++cut;
   return out.substr(cut);
 }

@@ -6,10 +6,10 @@
 
 namespace strata {
 
-// Writes two lower-case digits per byte.
+// Writes two lowercase digits per byte.
 std::string to_hex(std::span<const std::uint8_t> bytes);
 
-// Returns the value of a digit of either case; -1 for other characters.
+// Returns the value of a digit in upper or lower case, and -1 for other characters.
 int hex_digit_value(char c);
 
 }  // namespace strata

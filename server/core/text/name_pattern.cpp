@@ -57,7 +57,7 @@ std::vector<std::vector<bool>> NamePattern::fits(std::string_view name, std::siz
   std::vector<std::vector<bool>> can(parts_.size() + 1, std::vector<bool>(name.size() + 1, false));
   can[last][name.size()] = true;
   for (std::size_t p = last; p-- > first;) {
-    bool later = false;  // the remaining parts fit at a later place
+    bool later = false;  // the remaining parts match from a later position
     for (std::size_t at = name.size() + 1; at-- > 0;) {
       can[p][at] = parts_[p].is_word ? later
                                      : stands_at(name, at, parts_[p].text) &&
@@ -73,7 +73,7 @@ std::vector<bool> NamePattern::reached(std::string_view name, std::size_t last) 
   ends[0] = true;
   for (std::size_t p = 0; p < last; ++p) {
     std::vector<bool> next(name.size() + 1, false);
-    bool earlier = false;  // the earlier parts fit at an earlier place
+    bool earlier = false;  // the earlier parts end at an earlier position
     for (std::size_t at = 0; at <= name.size(); ++at) {
       if (parts_[p].is_word)
         next[at] = earlier;

@@ -10,20 +10,22 @@
 
 namespace strata {
 
-// A pattern of file names that describe their content: "{code}_{view}_{n}.jpg". A `{word}` matches
-// one or more bytes; the text between words matches itself, without regard to the case of A to Z.
+// A pattern for file names that describe the content of the file, such as "{code}_{view}_{n}.jpg".
+// A `{word}` matches one or more bytes. The text between words matches itself, without regard to
+// the case of A to Z.
 class NamePattern {
  public:
   static constexpr std::size_t kMaxWords = 8;
 
-  // `invalid` (`field`): no word, a word twice, two words without text between them, unbalanced
-  // braces.
+  // Returns the error `invalid` (at `field`) for a pattern without a word, a repeated word, two
+  // words without text between them, or unbalanced braces.
   static Result<NamePattern> parse(std::string_view text, const std::string& field);
 
   bool has(std::string_view word) const;
 
-  // The words of a name; nothing if the name does not match. If several readings exist, `word` is a
-  // known one (the longest), and the other words are as short as possible from the left.
+  // Returns the words of a name, or nullopt if the name does not match. If a name can match in
+  // several ways, `word` is the longest known word. The other words are as short as possible from
+  // the left.
   struct Reading {
     std::map<std::string, std::string> words;
     bool is_known = false;
@@ -46,21 +48,21 @@ class NamePattern {
   struct Span {
     std::size_t begin = 0, end = 0;
   };
-  // Returns the possible places of the word, the longest first.
+  // Returns the possible positions of the word, the longest first.
   std::vector<Span> spans(std::string_view name, std::string_view word) const;
   std::map<std::string, std::string> words_around(std::string_view name, std::string_view word,
                                                   Span span) const;
-  // Returns for each part, and for the end, and for each place whether the parts from there (up to
-  // `last`) match the rest of the name.
+  // Returns a table by part (and the end) and by position in the name. An entry is true if the
+  // parts from there to `last` match the rest of the name.
   std::vector<std::vector<bool>> fits(std::string_view name, std::size_t first,
                                       std::size_t last) const;
-  // Returns the possible ends of the parts before `last`, which begin with the name.
+  // Returns where the parts before `last` can end if they match from the beginning of the name.
   std::vector<bool> reached(std::string_view name, std::size_t last) const;
 
   std::vector<Part> parts_;
 };
 
-// Normalizes a value as people write it in file names: lower case, without spaces, hyphens and
+// Normalizes a value as users write it in file names: lower case, without spaces, hyphens and
 // underscores.
 std::string loose_name(std::string_view text);
 

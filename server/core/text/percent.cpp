@@ -5,14 +5,14 @@
 namespace strata {
 namespace {
 
-// Returns the byte of the escape at the beginning of `text`; -1 if no escape is there.
+// Returns the byte of the escape at the beginning of `text`, or -1 without an escape.
 int escaped_byte(std::string_view text) {
   if (text.size() < 3 || text[0] != '%') return -1;
   const int high = hex_digit_value(text[1]), low = hex_digit_value(text[2]);
   return high < 0 || low < 0 ? -1 : high * 16 + low;
 }
 
-// Sets `wrong` if a percent sign begins no escape, and keeps the percent sign.
+// Sets `wrong` if an escape is invalid, and then keeps its percent sign.
 std::string decoded(std::string_view text, bool& wrong) {
   std::string out;
   out.reserve(text.size());

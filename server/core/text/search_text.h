@@ -5,9 +5,9 @@
 
 namespace strata {
 
-// Normalizes a text for searches, without regard to case, accents and compatibility forms
-// ("Depósito" → "deposito"; Unicode case folding and compatibility decomposition, by utf8proc).
-// Invalid UTF-8 stays unchanged.
+// Normalizes a text for searches that ignore case, accents and compatibility forms ("Depósito" →
+// "deposito"). Uses Unicode case folding and compatibility decomposition, from utf8proc. Does not
+// change invalid UTF-8.
 std::string search_text(std::string_view text);
 
 }  // namespace strata

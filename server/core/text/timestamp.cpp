@@ -18,7 +18,7 @@ std::optional<int> two_digits(std::string_view text, std::size_t at) {
 struct CivilDate {
   int year = 0, month = 0, day = 0;
 };
-// Howard Hinnant's inverse of day_number, for days from year 0 on.
+// The inverse of day_number by Howard Hinnant, for days from year 0.
 CivilDate civil_date(std::int64_t day) {
   day += 719468;
   const std::int64_t era = day / 146097;

@@ -8,16 +8,16 @@
 
 namespace strata {
 
-// Returns the day number (edtf.h) of YYYY-MM-DD from year 1 on, the common range of databases and
-// spreadsheets. Earlier days are periods.
+// Returns the day number (edtf.h) of YYYY-MM-DD from year 1, the range that databases and
+// spreadsheets support. Write an earlier day as a period.
 std::optional<std::int64_t> day_of(std::string_view text);
 
-// Converts RFC 3339 to UTC with milliseconds. Accepts a space instead of the T, absent seconds, and
-// a day alone, which means its midnight in UTC. Without a zone the time is UTC. Returns nothing
-// outside the years 1 to 9999.
+// Converts RFC 3339 to UTC with milliseconds. Accepts a space instead of the T, a time without
+// seconds, and a day without a time (midnight in UTC). A time without a zone is in UTC. Returns
+// nullopt outside the years 1 to 9999.
 std::optional<std::string> utc_timestamp(std::string_view text);
 
-// RFC 3339 in UTC, with milliseconds.
+// Formats a time as RFC 3339 in UTC, with milliseconds.
 std::string utc_text(std::chrono::system_clock::time_point time);
 
 }  // namespace strata

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";
 
-// Returns the length of the text's first character; 0 if it is invalid.
+// Returns the length in bytes of the first character of the text, or 0 if it is invalid.
 std::size_t character_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -17,7 +17,7 @@ std::size_t character_bytes(std::string_view text) {
                             : first >= 0xf0 && first <= 0xf4 ? 4
                                                              : 0;
   if (bytes == 0 || text.size() < bytes) return 0;
-  // Refuses overlong forms, surrogates and code points above U+10FFFF.
+  // Rejects overlong forms, surrogates and code points above U+10FFFF.
   const unsigned char low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
   const unsigned char high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
   if (byte(1) < low || byte(1) > high) return 0;
@@ -50,7 +50,7 @@ std::string mended_utf8(std::string_view text) {
 
 std::size_t character_count(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) {
-    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;  // not inside a character
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;  // the first byte of a character
   }));
 }
 

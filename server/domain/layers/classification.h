@@ -7,25 +7,26 @@
 
 namespace strata {
 
-// Methods that divide numbers into classes, as for maps.
+// Methods to divide numbers into classes, as for maps.
 enum class ClassMethod {
   equal,     // intervals of equal width
-  quantile,  // equal counts, except that equal numbers stay together
+  quantile,  // classes with equal counts, except that equal numbers are in the same class
 };
 
 struct NumberClass {
-  double from = 0, to = 0;  // from ≤ number < to; the last class includes the largest number
+  // A class contains the numbers from ≤ number < to. The last class also contains `to`.
+  double from = 0, to = 0;
   std::uint64_t count = 0;
 };
-// Returns at most `count` ascending classes that contain all `numbers` (finite, any order).
-// Quantiles leave out empty classes, and equal numbers form one class.
+// Divides `numbers` (finite, in any order) into at most `count` ascending classes. Quantiles leave
+// out empty classes. If all numbers are equal, they form one class.
 std::vector<NumberClass> classify(std::span<const double> numbers, ClassMethod method, int count);
 
 struct TextClass {
   std::string value;
   std::uint64_t count = 0;
 };
-// Returns the distinct values, the most frequent first.
+// Returns the distinct values, starting with the most frequent one.
 std::vector<TextClass> classify(std::span<const std::string> values);
 
 }  // namespace strata

@@ -4,6 +4,6 @@
 
 namespace strata {
 
-constexpr std::size_t kMaxGroupLength = 60;  // characters of the heading of layers
+constexpr std::size_t kMaxGroupLength = 60;  // characters of the heading of a group of layers
 
 }  // namespace strata

@@ -4,7 +4,8 @@
 
 namespace strata {
 
-// The result of an expression over the columns of the record with a key; true is 1, false is 0.
+// A key, and the result of an expression over the columns of its record. 1 means true, 0 means
+// false.
 struct KeyNumber {
   std::uint32_t key = 0;
   double number = 0;

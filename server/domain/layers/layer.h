@@ -16,25 +16,26 @@ namespace strata {
 
 enum class LayerKind { numeric, database };
 
-// The formula of a computed layer. Only computations write its texels.
+// The formula of a computed layer. Computations write the texels of such a layer.
 struct LayerFormula {
-  // a number or a condition over layers of the model (expression/expression_parser)
+  // A number or a condition over layers of the model (expression/expression_parser).
   std::string expression;
-  // computed again soon after an input has changed
+  // Compute the layer again soon after an input has changed.
   bool automatic = false;
-  std::int64_t computed_sequence = 0;  // of the model, at the last computation; 0: never
-  bool records_changed = false;        // records of an input table changed since then
+  // The sequence of the model at the last computation. 0 before the first computation.
+  std::int64_t computed_sequence = 0;
+  bool records_changed = false;  // records of an input table have changed since then
   struct Input {
-    std::string slug;              // the layer's name in the expression
-    std::optional<LayerId> layer;  // nothing: it was deleted
-    std::optional<TableId> table;  // the table that the expression reads by the layer's keys
+    std::string slug;              // slug of the layer in the expression
+    std::optional<LayerId> layer;  // nullopt if the layer was deleted
+    std::optional<TableId> table;  // the table with the records that the expression reads
     bool operator==(const Input&) const = default;
   };
   std::vector<Input> inputs;  // by slug
-  bool stale = true;          // as far as known here
+  bool stale = true;          // the values are out of date, according to this copy
 };
 
-// The origin of a layer's values that nobody painted.
+// The origin of values that were computed and not painted.
 enum class LayerOrigin { expression, shape };
 
 struct Layer {
@@ -44,35 +45,37 @@ struct Layer {
   std::string slug;  // unique in the model, never all digits
   LayerKind kind = LayerKind::numeric;
   ValueType type = ValueType::u8;
-  int resolution = 2048;  // texels per side: a power of two, atlas.lowest_resolution…16384
+  int resolution = 2048;  // texels per side: a power of two from atlas.lowest_resolution to 16384
   std::string unit;
   std::string description;
-  Labels labels;        // its name in other languages
-  Labels descriptions;  // its description in other languages
-  // heading in the list of layers, for all users; without blanks at its ends
+  Labels labels;        // the name in other languages
+  Labels descriptions;  // the description in other languages
+  // The heading in the list of layers, the same for all users. Without leading and trailing blanks.
   std::optional<std::string> group;
   Palette palette;
-  // follows the colors of its table's terms, and is not stored
+  // The palette follows the colors of the terms of the table, and is not stored.
   bool palette_of_terms = false;
   double opacity = 1;
   LayerBlend blend = LayerBlend::normal;
   bool visible = true;
-  // users below curator can change neither its texels nor its metadata
+  // Users below curator can change neither the texels nor the metadata.
   bool locked = false;
-  // edits of users below curator are provisional until a curator accepts or rejects them
+  // Edits of users below curator are provisional until a curator accepts or rejects them.
   bool review = false;
   Visibility visibility = Visibility::everyone;
-  int order = 0;                 // drawn ascending: higher is on top
-  std::optional<TableId> table;  // database: the project's table whose keys the texels hold
+  int order = 0;  // layers are drawn in ascending order, so the highest number is on top
+  // For database layers: the table of the project whose keys the texels hold.
+  std::optional<TableId> table;
   std::optional<LayerFormula> formula;
   std::optional<LayerOrigin> origin;
-  // with an origin: it was unlocked since then, so its values may differ from the computed ones
+  // Set when a layer with an origin is unlocked. Its values may then differ from the computed
+  // values.
   bool edited_by_hand = false;
-  std::int64_t sequence = 0;  // of its last edit
+  std::int64_t sequence = 0;  // of the last edit of the layer
   std::int64_t version = 1;   // of the metadata, for ETag and If-Match
 };
 
-// Its values are the computed ones, and nobody can change them until the layer is unlocked.
+// Returns whether the values are the computed ones. They cannot change until the layer is unlocked.
 inline bool is_as_computed(const Layer& layer) {
   return layer.origin && layer.locked && !layer.edited_by_hand;
 }

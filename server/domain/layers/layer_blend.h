@@ -5,11 +5,11 @@
 
 namespace strata {
 
-// How a layer's colors are combined with what is below them.
+// How the colors of a layer are combined with the content below it.
 enum class LayerBlend {
-  normal,    // covers it
-  multiply,  // filters it: only darker, so relief and photographs stay visible
-  screen,    // lightens it: only lighter
+  normal,    // covers the content
+  multiply,  // only makes the content darker, so relief and photographs stay visible
+  screen,    // only makes the content lighter
 };
 std::optional<LayerBlend> parse_layer_blend(std::string_view name);
 std::string_view name(LayerBlend blend);

@@ -46,7 +46,8 @@ Result<void> read_pattern(const nlohmann::json& item, PaletteMode mode, const st
 }
 
 Palette linear_palette(double min, double max) {
-  // Viridis at nine stops: perceptually uniform, readable with every color vision and in grayscale.
+  // Viridis at nine stops. It is perceptually uniform, and readable with every type of color vision
+  // and in grayscale.
   static constexpr Rgba kStops[] = {{68, 1, 84, 255},    {71, 45, 123, 255},  {59, 82, 139, 255},
                                     {44, 114, 142, 255}, {33, 145, 140, 255}, {40, 174, 128, 255},
                                     {94, 201, 98, 255},  {173, 220, 48, 255}, {253, 231, 37, 255}};

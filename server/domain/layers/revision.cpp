@@ -7,13 +7,13 @@
 namespace strata {
 namespace {
 
-// Storage form: one version byte, one byte per texel width, then a zstd frame of the planes one
-// after the other. Revision: written mask, difference of valid, difference of values. Tile: valid,
-// values.
+// The stored format: one byte for the version, one byte for the width of a texel, then a zstd frame
+// with the planes in sequence. The planes of a revision are the written mask, the difference of
+// `valid`, and the difference of the values. The planes of a tile are `valid` and the values.
 constexpr std::uint8_t kRevisionVersion = 1;
 constexpr std::uint8_t kTileVersion = 129;
 constexpr std::size_t kHeaderBytes = 2;
-constexpr int kZstdLevel = 1;  // 700 MB/s on tiles; sparse paint shrinks 17-fold already
+constexpr int kZstdLevel = 1;  // 700 MB/s on tiles; already shrinks sparse paint 17-fold
 
 constexpr std::size_t mask_bytes() { return sizeof(TileMask::words); }
 

@@ -8,13 +8,13 @@
 
 namespace strata {
 
-// The effect of one edit on one tile: the texels it wrote (also those with an unchanged value) and
-// the bitwise difference of the content before and after. XOR makes it its own inverse: `apply`
-// works forward and backward in history.
+// The effect of one edit on one tile. It consists of the texels that the edit wrote (even with an
+// unchanged value) and the bitwise difference between the content before and after. The XOR
+// difference is its own inverse, so `apply` moves forward and backward in the history.
 struct TileRevision {
   TileAddress address;
   TileMask written;
-  TileData difference;  // values: before XOR after; valid: before XOR after
+  TileData difference;  // before XOR after, for the values and for `valid`
   bool operator==(const TileRevision&) const = default;
 };
 
@@ -22,8 +22,8 @@ TileRevision make_revision(TileAddress address, const TileData& before, const Ti
                            const TileMask& written);
 void apply(const TileRevision& revision, TileData& tile);
 
-// Storage form (zstd, versioned). Decoding checks every bound: damaged bytes are an Error, never a
-// crash.
+// Convert to and from the stored format (zstd, with a version). The decoders check every bound, so
+// damaged bytes give an Error and never a crash.
 std::vector<std::uint8_t> encode_revision(const TileRevision& revision);
 Result<TileRevision> decode_revision(TileAddress address, ValueType type,
                                      std::span<const std::uint8_t> bytes);

@@ -8,8 +8,8 @@
 
 namespace strata {
 
-// Returns the bits of the texel at a texture coordinate (clamped to the atlas; row 0 is v = 0);
-// nothing if the texel is not valid.
+// Returns the bits of the texel at a texture coordinate, which is clamped to the atlas (row 0 is at
+// v = 0). Returns nullopt if the texel is not valid.
 std::optional<std::uint32_t> bits_at(const TileMap& tiles, int resolution, glm::vec2 uv);
 
 }  // namespace strata

@@ -10,9 +10,9 @@
 
 namespace strata {
 
-// A tile (page) is 128 × 128 texels: the unit of storage, read-back and journal. A block is 8 × 8
-// texels: the unit of culling. Texel (0,0) is the lower left of the atlas (uv origin); rows run
-// upward. Everything is row-major: texel index in a tile = y * 128 + x.
+// A tile (page) is 128 × 128 texels, the unit of storage, read-back and the journal. A block is
+// 8 × 8 texels, the unit of culling. Texel (0,0) is at the lower left of the atlas (uv origin), and
+// rows go upward. All data is row-major: the index of a texel in its tile is y * 128 + x.
 constexpr int kTileSize = 128;
 constexpr int kTexelsPerTile = kTileSize * kTileSize;
 constexpr int kBlockSize = 8;
@@ -36,7 +36,8 @@ struct TileMask {
   bool operator==(const TileMask&) const = default;
 };
 
-// Content of a tile: `values` holds kTexelsPerTile little-endian texels; an invalid texel stores 0.
+// The content of a tile. `values` holds kTexelsPerTile little-endian texels. An invalid texel is
+// stored as 0.
 struct TileData {
   std::vector<std::uint8_t> values;
   TileMask valid;
@@ -46,16 +47,16 @@ struct TileData {
       : values(std::size_t{kTexelsPerTile} * strata::bytes_per_texel(type)) {}
   bool operator==(const TileData&) const = default;
 
-  std::uint32_t bits(int texel) const;        // bits of the texel, 0 when invalid
+  std::uint32_t bits(int texel) const;        // bits of the texel; 0 if it is invalid
   void write(int texel, std::uint32_t bits);  // sets the value and the valid flag
   void clear(int texel);                      // erases: value 0, invalid
   int texel_bytes() const { return static_cast<int>(values.size() / kTexelsPerTile); }
 };
 
-// Returns the same bits in texels of another type that is wide enough (widens_to).
+// Copies the bits into texels of another type, which must be wide enough (widens_to).
 TileData widened(const TileData& tile, ValueType type);
 
-// Copies the texels of `mask` between tiles of one type.
+// Copies the texels in `mask`. Both tiles must have the same type.
 void copy_texels(const TileData& from, const TileMask& mask, TileData& to);
 
 }  // namespace strata

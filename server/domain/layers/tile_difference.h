@@ -4,7 +4,7 @@
 
 namespace strata {
 
-// Returns the texels whose value or validity differs, of two tiles of one type.
+// Returns the texels whose value or validity differs between two tiles of the same type.
 TileMask differing(const TileData& a, const TileData& b);
 
 }  // namespace strata

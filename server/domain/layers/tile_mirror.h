@@ -12,9 +12,9 @@ namespace strata {
 
 using TileMap = std::unordered_map<TileAddress, std::shared_ptr<const TileData>>;
 
-// The content of one layer in main memory: the tiles with a valid texel, and the sequence of the
-// last edit in them. Stored tiles are immutable, so a snapshot is a consistent state without a copy
-// of texels. Thread-safe.
+// The content of one layer in main memory: the tiles that have a valid texel, and the sequence of
+// the last edit that they contain. Stored tiles are immutable, so a snapshot is a consistent state
+// and does not copy texels. Thread-safe.
 class TileMirror {
  public:
   TileMirror(ValueType type, int resolution) : type_(type), resolution_(resolution) {}
@@ -27,19 +27,20 @@ class TileMirror {
     std::int64_t sequence = 0;
   };
   Snapshot snapshot() const;
-  // null if none of its texels is valid
+  // Returns null if the tile has no valid texel.
   std::shared_ptr<const TileData> tile(TileAddress address) const;
   std::int64_t sequence() const;
   std::size_t bytes() const;
-  bool empty() const;  // no texel is valid
+  bool empty() const;  // returns whether no texel is valid
 
-  // Replaces tiles in one step; drops null and empty tiles. Call in the order of the sequence.
+  // Replaces tiles in one step. Drops null and empty tiles. Call in the order of the sequences.
   void put(const TileMap& tiles, std::int64_t sequence);
-  // Replaces everything.
+  // Replaces all tiles.
   void assign(TileMap tiles, std::int64_t sequence);
 
-  // Acquire before an edit is passed to the GPU, and release once `put` has stored its result or it
-  // was refused: between these times the GPU may be ahead of the mirror. May outlive the mirror.
+  // Acquire before an edit is passed to the GPU. Release after `put` has stored the result, or
+  // after the edit was refused. Between these times, the GPU may be ahead of the mirror. The result
+  // may outlive the mirror.
   std::shared_ptr<const void> hold() const;
   bool held() const { return *holds_ > 0; }
 

@@ -5,8 +5,8 @@
 namespace strata {
 namespace {
 
-// Computed: any two colors differ by at least 14 in CIELAB, for normal and for red- or
-// green-deficient vision; the first eight by at least 17.
+// Computed colors. Any two of them differ by at least 14 in CIELAB, for normal and for red- or
+// green-deficient vision. The first eight differ by at least 17.
 constexpr std::array<std::string_view, 12> kColors = {"#aa3333", "#0066dd", "#117799", "#771155",
                                                       "#661199", "#995500", "#dd1166", "#337766",
                                                       "#334400", "#bb1188", "#663333", "#8855bb"};

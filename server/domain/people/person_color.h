@@ -7,12 +7,13 @@
 
 namespace strata {
 
-// Returns a person's color, as #rrggbb. It depends only on the account's id, so it is the same for
-// everybody, everywhere and always. Dark enough for white letters (contrast 4.5 or more).
-// Successive accounts differ, also for color-blind people; colors repeat from the 13th account on.
+// Returns the color of a user, as #rrggbb. The color depends only on the id of the account, so all
+// users see the same color at all times. White letters are readable on it (contrast 4.5 or more).
+// Successive accounts have different colors, also for color-blind users. The colors repeat after 12
+// accounts.
 std::string_view person_color(PersonId account);
 
-// For names without an account, such as those in the journal of another server.
+// For names without an account, such as names in the journal of another server.
 inline constexpr std::string_view kNobodysColor = "#5f6668";
 
 }  // namespace strata

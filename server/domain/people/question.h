@@ -15,18 +15,18 @@
 
 namespace strata {
 
-// The limits of one question.
+// The limits for one question.
 struct QuestionLimits {
-  std::chrono::milliseconds time{0};  // from begin to answer; 0: no limit
+  std::chrono::milliseconds time{0};  // from the beginning to the answer; 0: no limit
   std::uint64_t steps = 0;            // texels times formula steps per texel; 0: no limit
-  // of main memory while the answer is made; 0: no limit
+  // The main memory while the answer is computed, in bytes. 0: no limit.
   std::uint64_t bytes = 0;
 };
 
 QuestionLimits limits_of(Role role);
 
-// Stops the work of a question that has ended: thrown by computations, caught where the question
-// was begun.
+// Stops the work on a question that has ended. Computations throw it. The code that began the
+// question catches it.
 class QuestionEnded : public std::exception {
  public:
   explicit QuestionEnded(Error problem) : problem_(std::move(problem)) {}
@@ -37,42 +37,44 @@ class QuestionEnded : public std::exception {
   const Error problem_;
 };
 
-// A question while it is being worked on: its user, its remaining limits, and whether its answer is
-// still needed. Long loops over texels check it at every tile (`QuestionTurn`,
-// `mesh::parallel_for`): they stop when it has ended, and wait while another person's questions
-// have the processors. Thread-safe, except Scope and QuestionTurn, which belong to a thread.
+// A question that the server is answering, with its user, its remaining limits, and whether its
+// answer is still needed. Long loops over texels check the question at every tile (`QuestionTurn`,
+// `mesh::parallel_for`). They stop when the question has ended, and wait while questions of another
+// user have the processors. Thread-safe, except Scope and QuestionTurn, which belong to one thread.
 class Question : public std::enable_shared_from_this<Question> {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // People share `turns` fairly; null: without sharing.
+  // Users share `turns` fairly. If `turns` is null, users do not share.
   Question(std::string asker, QuestionLimits limits, std::shared_ptr<QuestionTurns> turns);
 
   const std::string& asker() const { return asker_; }
-  // Ends it: its answer is no longer needed, or cannot be given. The first reason counts.
+  // Ends the question because its answer is no longer needed or cannot be computed. Keeps only the
+  // first reason.
   void end(Error why);
   bool ended() const { return ended_; }
-  std::optional<Error> why() const;  // nothing: it has not ended
-  // Removes the time limit: the answer is being sent, as fast as the client reads it.
+  std::optional<Error> why() const;  // nullopt if the question has not ended
+  // Removes the time limit. Call when the answer is being sent, because the speed depends on the
+  // client.
   void let_take_time() { has_deadline_ = false; }
 
-  // Stops waiting for turns: others wait for this question.
+  // Stops waiting for turns. Call when other users wait for this question.
   void skip_turns() { takes_turns_ = false; }
 
-  // Throws QuestionEnded if it has ended; waits during another person's turn.
+  // Throws QuestionEnded if the question has ended. Waits during a turn of another user.
   void check();
-  // Call before taking this number of steps: refuses all of them (QuestionEnded, `invalid`) if they
-  // exceed the limit.
+  // Call before taking this number of steps. If they exceed the limit, takes none of them and
+  // throws QuestionEnded (`invalid`).
   void spend(std::uint64_t steps);
-  // Counts the steps taken, for the server's metrics.
+  // Counts steps after they were taken, for the metrics of the server.
   void took(std::uint64_t steps) {
     if (turns_) turns_->took(steps);
   }
-  // Refuses (QuestionEnded, `invalid`) if the held memory exceeds the limit. Negative `bytes`
-  // release memory.
+  // Counts memory. Negative `bytes` release memory. If the total exceeds the limit, throws
+  // QuestionEnded (`invalid`).
   void hold(std::int64_t bytes);
 
-  // The question that this thread works on; null: the work has no limits.
+  // Returns the question of this thread, or null if the work has no limits.
   static Question* current();
   class Scope {
    public:
@@ -85,7 +87,7 @@ class Question : public std::enable_shared_from_this<Question> {
     const std::shared_ptr<Question> question_;
     Question* const before_;
   };
-  // A thread that helps another one, which waits for it, with a question.
+  // Marks a thread that works on the question of another thread, while the other thread waits.
   class Helper {
    public:
     explicit Helper(Question* question);
@@ -93,7 +95,7 @@ class Question : public std::enable_shared_from_this<Question> {
     Helper(const Helper&) = delete;
     Helper& operator=(const Helper&) = delete;
   };
-  // For work that others also wait for: it belongs to no question.
+  // For work whose result other users also need. Such work belongs to no question.
   class Aside : public Scope {
    public:
     Aside() : Scope(nullptr) {}
@@ -112,11 +114,11 @@ class Question : public std::enable_shared_from_this<Question> {
   std::atomic<std::int64_t> bytes_{0};
   mutable std::mutex mutex_;
   Error why_;
-  std::atomic<int> turns_held_{0};  // by the thread that works on it, and its helpers
+  std::atomic<int> turns_held_{0};  // by the thread of the question and its helpers
   QuestionTurns::Place place_;
 };
 
-// A turn for one part of the current question's work. Does nothing without a question.
+// A turn for one part of the work on the current question. Does nothing without a question.
 class QuestionTurn {
  public:
   QuestionTurn();
@@ -126,7 +128,7 @@ class QuestionTurn {
   void check() const {
     if (question_) question_->check();
   }
-  // `steps` of its work at once: tiles, texels.
+  // `steps` is the amount of work since the last check: tiles or texels.
   void check(std::uint64_t steps) const {
     if (!question_) return;
     question_->took(steps);
@@ -138,13 +140,13 @@ class QuestionTurn {
   const bool has_turn_;
 };
 
-// Checks the current question (Question::check), during work that needs no turn: rows that a client
-// waits for.
+// Checks the current question (Question::check) during work that needs no turn, such as sending
+// rows to a client.
 inline void check_question() {
   if (Question* question = Question::current()) question->check();
 }
 
-// Counts memory for the current question as long as this exists.
+// Counts memory for the current question during the lifetime of this object.
 class QuestionMemory {
  public:
   explicit QuestionMemory(std::uint64_t bytes);

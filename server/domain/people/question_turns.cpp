@@ -22,8 +22,8 @@ void QuestionTurns::leave(Place& place) {
   place.state = Place::State::away;
   place.paused = false;
   --askers_.at(place.asker).places;
-  // Keeps the time of an asker who was served more than the others, so that asking again at once
-  // resets nothing, until the others have had as much.
+  // Keeps the time of a user who had more time than the others, until the others have had as much.
+  // So a user cannot reset the time by asking again immediately.
   std::erase_if(askers_, [&](const auto& each) {
     return each.second.places == 0 && each.second.served <= now_;
   });
@@ -32,7 +32,7 @@ void QuestionTurns::leave(Place& place) {
 
 void QuestionTurns::check(Place& place) {
   if (!place.paused) {
-    // The owner of the lock writes `since` before it sets `paused` to false.
+    // The thread that holds the lock writes `since` before it sets `paused` to false.
     const std::lock_guard lock(mutex_);
     if (place.state != Place::State::running) return;
     const auto now = Clock::now();

@@ -11,33 +11,34 @@
 
 namespace strata {
 
-// Shares the processors between questions. A few run at once; the others wait, and running ones
-// pause after a while. Fair between people by the running time of their questions, regardless of
-// their number (start-time fair queueing, as render/thread/frame_queue): the person with the least
-// time is next, and a pause in asking earns no credit. Thread-safe.
+// Shares the processors between questions. A few questions run at the same time. The others wait,
+// and running questions pause after a while. The processor time is shared fairly between users,
+// regardless of the number of their questions (start-time fair queueing, as in
+// render/thread/frame_queue). The user with the least processor time is next, and a user gains no
+// credit during a pause. Thread-safe.
 class QuestionTurns {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `slice`: least running time before another person's question.
+  // `slice` is the minimum running time before a question of another user can run.
   explicit QuestionTurns(int at_once = 1, Clock::duration slice = std::chrono::milliseconds(30))
       : at_once_(at_once), slice_(slice) {}
 
-  // One question's place in the queue.
+  // The position of one question in the queue.
   struct Place {
     enum class State { away, waiting, running } state = State::away;
     std::string asker;
     std::uint64_t order = 0;
-    Clock::time_point since{};  // begin of the running time
+    Clock::time_point since{};  // beginning of the current running time
     std::atomic<bool> paused{false};
     std::condition_variable changed;
-    bool over = false;  // no longer waits
+    bool over = false;  // the question no longer waits
   };
 
-  void enter(Place& place);  // returns when it is its turn, or when it is over
+  void enter(Place& place);  // returns in the turn of the question, or when it is over
   void leave(Place& place);
-  // Call from any thread that works on an entered question: yields the turn to another if due, and
-  // returns in the next own turn.
+  // Call from any thread that works on an entered question. If a turn of another question is due,
+  // waits for the next turn of this question.
   void check(Place& place);
   void give_up(Place& place);  // stops waiting
 
@@ -60,10 +61,10 @@ class QuestionTurns {
   const int at_once_;
   const Clock::duration slice_;
   mutable std::mutex mutex_;
-  std::map<std::string, Asker> askers_;  // with entered questions
+  std::map<std::string, Asker> askers_;  // users with entered questions
   std::list<Place*> waiting_;
   std::list<Place*> running_;
-  Clock::duration now_{};  // the served time of the asker with the last turn
+  Clock::duration now_{};  // the served time of the user who had the last turn
   std::uint64_t last_order_ = 0;
   std::atomic<std::uint64_t> steps_{0};
 };

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// Which users of a project see a layer, column or attachment. Ascending: each level is visible to
-// fewer users. Others get the same answers as for a missing entity.
+// Which users of a project see a layer, column or attachment. Each level is visible to fewer users
+// than the one before it. Other users get the same responses as for an entity that does not exist.
 enum class Visibility {
   everyone,  // "public"
   team,      // annotators and above
@@ -17,12 +17,13 @@ enum class Visibility {
 std::optional<Visibility> parse_visibility(std::string_view name);
 std::string_view name(Visibility visibility);
 
-// The only rule. `role`: the role in the project.
+// The only rule for visibility. `role` is the role in the project.
 bool sees(Role role, Visibility visibility);
-// Returns the least role that sees it: content computed for everybody with this visibility may only
-// read data that this role sees.
+// Returns the lowest role that sees this visibility. Content that is computed for all users with
+// that role may only read data that the role sees.
 Role least_role(Visibility visibility);
-// Returns the most restricted visibility that the role sees, which defines all that it sees.
+// Returns the most restricted visibility that the role sees. It determines everything that the role
+// sees.
 Visibility sight_of(Role role);
 
 }  // namespace strata

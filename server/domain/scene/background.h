@@ -4,7 +4,7 @@
 
 namespace strata {
 
-// The background of a picture: a gradient from its top row to its bottom row.
+// The background of an image: a gradient from the top row to the bottom row.
 struct Background {
   Rgba top{242, 240, 236, 255};
   Rgba bottom{214, 211, 205, 255};

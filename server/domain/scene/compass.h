@@ -7,13 +7,13 @@
 
 namespace strata {
 
-// The directions of the model's axes on the map. `east` and `north` are axes: as on a map if z is
-// up, and always with east × north = up.
+// The directions of the map for a model. `east` and `north` are axes of the model, as on a map if z
+// is up, and always with east × north = up.
 struct Compass {
   explicit Compass(const Model& model);
   glm::dvec3 east{1, 0, 0}, north{0, 1, 0};
-  double turned_degrees = 0;  // true north from `north`, clockwise as seen from above
-  bool is_known = false;      // the model has a north, or map coordinates
+  double turned_degrees = 0;  // clockwise angle from `north` to true north, seen from above
+  bool is_known = false;      // the model has a north direction or map coordinates
 
   glm::dvec3 true_north() const;
 };

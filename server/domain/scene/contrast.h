@@ -4,7 +4,8 @@
 
 namespace strata {
 
-// The contrast of two opaque colors, 1 to 21, as WCAG 2.2 defines it (relative luminance in sRGB).
+// Returns the contrast of two opaque colors, from 1 to 21, as WCAG 2.2 defines it (relative
+// luminance in sRGB).
 double contrast(const Rgba& a, const Rgba& b);
 
 }  // namespace strata

@@ -19,7 +19,7 @@ struct Project {
   std::string slug;
   std::string description;
   std::int64_t version = 1;
-  // a change of an entity with a version must name the version in If-Match
+  // Changes to an entity with a version must give the version in If-Match.
   bool require_if_match = false;
 };
 
@@ -28,52 +28,53 @@ double metres_per(Unit unit);
 std::string_view name(Unit unit);
 std::optional<Unit> parse_unit(std::string_view name);
 
-// The atlas's facts in the answer of GET /models/{model}.
+// Facts about the atlas, for the response to GET /models/{model}.
 struct AtlasReport {
-  // Surface per texel of a layer: the precision of painting.
+  // The surface per texel of a layer. It determines the precision of painting.
   struct TexelSize {
     int resolution = 0;
     double area_mean = 0, area_max = 0;  // unit²
   };
-  // Reasons why less than 60 % of the texels are used; `code` is stable, `text` is for people.
+  // A reason why less than 60 % of the texels are used. `code` is stable, and `text` is for users.
   struct Limit {
     std::string code;  // "long_triangles", "many_charts", "hollow_charts", "file_coordinates"
     std::string text;
   };
-  std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
+  // "file": the UVs of the scan were kept; "made": the server unwrapped the mesh
+  std::string source;
   int lowest_resolution = 2048;
   int charts = 0;
-  double coverage = 0;  // share of texels on the surface, at lowest_resolution
-  // share of covered texels with several owners, at lowest_resolution
+  double coverage = 0;  // fraction of texels on the surface, at lowest_resolution
+  // The fraction of covered texels with several owners, at lowest_resolution.
   double overlap = 0;
-  double stretch_mean = 0;  // area-weighted surface area per uv area, relative to the mean
+  double stretch_mean = 0;  // surface area per uv area, relative to the mean, area-weighted
   double stretch_p99 = 0;
-  // unit², largest surface area of one texel at lowest_resolution
+  // The largest surface area of one texel at lowest_resolution, in unit².
   double texel_area_max = 0;
-  // from lowest_resolution up; empty in models that are older than the measurement
+  // Ascending from lowest_resolution. Empty for models that were imported before this was measured.
   std::vector<TexelSize> texel_sizes;
-  // empty with 60 % or more, and in older models
+  // Empty if 60 % or more of the texels are used, and in older models.
   std::vector<Limit> limits{};
 };
 
-// The reason for a proposed unit or up direction.
+// The source of a proposed unit or up direction.
 enum class ScaleReason { given, format, comment, coordinates, size, shape };
 std::string_view name(ScaleReason reason);
 std::optional<ScaleReason> parse_scale_reason(std::string_view name);
 
-// The unit and up direction that a file states or implies (mesh/repair/scale_proposal.h).
+// The unit and up direction that a file states or suggests (mesh/repair/scale_proposal.h).
 struct ScaleProposal {
   Unit unit = Unit::m;
   ScaleReason unit_reason = ScaleReason::size;
   double unit_confidence = 1;  // 0…1
-  std::string unit_comment;    // that names the unit
-  std::string up = "z";        // of kUpDirections
+  std::string unit_comment;    // the comment that contains the unit
+  std::string up = "z";        // one of kUpDirections
   ScaleReason up_reason = ScaleReason::shape;
   double up_confidence = 1;
   std::string up_comment;
 };
 nlohmann::json to_json(const ScaleProposal& proposal);
-// reads the stored form
+// Reads the stored form.
 std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json);
 
 struct Repair {
@@ -81,21 +82,22 @@ struct Repair {
   std::uint64_t count = 0;
 };
 
-// The borders of the surface: loops of edges of one triangle only, which are rims of holes and of
-// parts that were not scanned. A closed surface has none.
+// The borders of the surface: loops of edges that belong to only one triangle. They are rims of
+// holes and of parts that were not scanned. A closed surface has no open edges.
 struct OpenEdges {
   static constexpr std::size_t kMaxListed = 16;
   std::uint64_t loops = 0;
-  double length = 0;            // unit, of all loops together
-  std::vector<double> longest;  // unit, of single loops, longest first, at most kMaxListed
+  double length = 0;  // total length of all loops, in units
+  // The lengths of single loops in units, longest first, at most kMaxListed.
+  std::vector<double> longest;
 };
 nlohmann::json to_json(const OpenEdges& edges, double metres_per_unit);
-// reads the stored form, which has metres_per_unit = 1
+// Reads the stored form, where metres_per_unit is 1.
 std::optional<OpenEdges> open_edges_from_json(const nlohmann::json& json);
 
 struct SourceFile {
   std::string name;
-  std::string sha256;  // lower-case hex
+  std::string sha256;  // in lowercase hex
   std::uint64_t bytes = 0;
 };
 
@@ -107,23 +109,23 @@ struct Model {
   Unit unit = Unit::m;
   bool unit_assumed = true;
   bool scale_verified = false;
-  std::string up = "z";  // of kUpDirections (domain/scene/up.h)
-  // nothing for models that are older than proposals
+  std::string up = "z";  // one of kUpDirections (domain/scene/up.h)
+  // Models that were imported before proposals existed have no proposal.
   std::optional<ScaleProposal> proposal;
   std::string north;     // free text: degrees from +y, or empty
   std::string crs;       // "EPSG:n" or empty
-  glm::dvec3 origin{0};  // model space is world minus origin
+  glm::dvec3 origin{0};  // model space is the world minus this position
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
-  glm::dvec3 bounds_min{0};  // world
+  glm::dvec3 bounds_min{0};  // in world coordinates
   glm::dvec3 bounds_max{0};
   double area = 0;  // unit²
   AtlasReport atlas;
   std::vector<Repair> repairs;
-  // nothing for models that are older than the measurement
+  // nullopt for models that were imported before the edges were measured.
   std::optional<OpenEdges> open_edges;
   std::vector<SourceFile> source_files;
-  // the least role that gets the source files or equivalent data
+  // The lowest role that may get the source files or equivalent data.
   Role source_download = Role::annotator;
   int default_resolution = 2048;  // of new layers
   std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri,

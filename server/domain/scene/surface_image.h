@@ -8,8 +8,8 @@
 
 namespace strata {
 
-// A picture on the surface, in texture coordinates (uv origin bottom left: the picture's top row is
-// v = 1).
+// An image on the surface, in texture coordinates. The uv origin is at the bottom left, and the top
+// row of the image is at v = 1.
 struct SurfaceImage {
   SurfaceImageId id = 0;
   ModelId model_id = 0;
@@ -18,11 +18,11 @@ struct SurfaceImage {
   std::string description;
   std::string media_type;  // "image/jpeg" or "image/png"
   int width = 0, height = 0;
-  std::uint64_t bytes = 0;  // of the encoded picture
-  std::string sha256;       // of the encoded picture, lower-case hex
+  std::uint64_t bytes = 0;  // size of the encoded image
+  std::string sha256;       // of the encoded image, in lowercase hex
   double opacity = 1;
   bool visible = true;
-  int order = 0;  // blended ascending: higher is on top
+  int order = 0;  // images are blended in ascending order, so the highest number is on top
   std::int64_t version = 1;
 };
 

@@ -8,13 +8,13 @@
 
 namespace strata {
 
-// A brush shape of the site (media/shape_texture.h). Its shape never changes, so that stroke
-// records stay valid permanently; a deleted tool is not listed or found by its slug, but its id
-// still selects its shape.
+// A brush shape of the site (media/shape_texture.h). The shape never changes, so records of strokes
+// stay valid. A deleted tool is not listed and cannot be found by its slug, but its id still
+// selects its shape.
 struct Tool {
   ToolId id = 0;
   std::string name;
-  // unique among existing tools; neither all digits nor `disc` nor `square`
+  // Unique among the tools that are not deleted. Not all digits, and not `disc` or `square`.
   std::string slug;
   bool deleted = false;
   std::int64_t version = 1;

@@ -4,7 +4,7 @@
 
 namespace strata {
 
-// Converts millimeters on the object to the model's unit.
+// Convert between millimeters on the object and the unit of the model.
 inline double in_model_units(double millimetres, Unit unit) {
   return millimetres * 0.001 / metres_per(unit);
 }

@@ -10,22 +10,23 @@
 
 namespace strata {
 
-// A file of records of a table. Its content never changes.
+// A file that belongs to records of a table. The content never changes.
 struct Attachment {
   AttachmentId id = 0;
   TableId table_id = 0;
   std::string name;        // a file name without folders
-  std::string media_type;  // determined from its bytes
+  std::string media_type;  // determined from the bytes of the file
   std::uint64_t bytes = 0;
   std::string sha256;  // hexadecimal
-  // of readable pictures, before the rotation in Exif
+  // Of a readable image, before the rotation in Exif.
   std::optional<int> width, height;
   std::string user;
   std::chrono::system_clock::time_point time;
   Visibility visibility = Visibility::everyone;
 };
 
-// By its visibility (domain/people/visibility.h). Annotators also see the files that they attached.
+// Follows the visibility (domain/people/visibility.h). Annotators also see the files that they
+// attached.
 inline bool sees(const Author& who, const Attachment& attachment) {
   return sees(who.role, attachment.visibility) ||
          (who.role >= Role::annotator && who.user == attachment.user);

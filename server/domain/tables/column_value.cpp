@@ -42,7 +42,7 @@ Result<json> check_limits(const Column& column, double number, json value,
 }
 
 Result<json> check_integer(const Column& column, const json& value, const std::string& field) {
-  // A whole number may be written as 3.0 or 1e3.
+  // Accepts a whole number that is written as 3.0 or 1e3.
   const double number = value.is_number() ? value.get<double>() : NAN;
   if (!(std::abs(number) <= static_cast<double>(kGreatestInteger)) || std::trunc(number) != number)
     return refuse(column, "whole numbers of at most 2^53", field);
@@ -52,7 +52,7 @@ Result<json> check_integer(const Column& column, const json& value, const std::s
 Result<json> check_numeric(const Column& column, const json& value, const std::string& field) {
   const double number = value.is_number() ? value.get<double>() : NAN;
   if (!std::isfinite(number)) return refuse(column, "finite numbers", field);
-  // no -0, which is 0 as text
+  // Replaces -0 by 0, because both are 0 as text.
   return check_limits(column, number, number == 0 ? 0.0 : number, field);
 }
 
@@ -68,7 +68,7 @@ Result<std::string> check_text(const Column& column, const json& value, const ch
 }
 
 Result<json> check_url(const Column& column, const std::string& text, const std::string& field) {
-  // Only schemes that a browser opens without running code.
+  // Accepts only schemes that a browser opens without running code.
   const bool known = text.starts_with("https://") || text.starts_with("http://") ||
                      text.starts_with("mailto:") || text.starts_with("urn:") ||
                      text.starts_with("doi:");
@@ -309,7 +309,7 @@ Result<json> convert_value(const Column& from, const Column& to, const json& val
   if (from.kind == ColumnKind::timestamp &&
       (to.kind == ColumnKind::date || to.kind == ColumnKind::period))
     return check_value(to, value.get_ref<const std::string&>().substr(0, 10), field);
-  // A key of one table is invalid in another.
+  // A key of one table is invalid in other tables.
   const bool from_keys = from.target.has_value(), to_keys = to.target.has_value();
   if (from_keys && to_keys && from.target != to.target)
     return refuse(to, "keys of a different table than \"" + from.name + "\"", field);

@@ -6,10 +6,10 @@
 
 namespace strata {
 
-// Returns the label in a language or its base language ("es" for "es-MX"); null if there is no
-// label. Tags are compared without regard to case.
+// Returns the label in a language, or in its base language ("es" for "es-MX"). Returns null without
+// such a label. Tags are compared without regard to case.
 const std::string* find_label(const Labels& labels, std::string_view language);
-// The same, with the language-independent name as default.
+// Returns the label, or else `name`, which does not depend on the language.
 const std::string& label_or(const Labels& labels, std::string_view language,
                             const std::string& name);
 

@@ -5,7 +5,7 @@
 
 namespace strata {
 
-// Names or descriptions of an entity by language tag (BCP 47: "es", "pt-BR").
+// The names or descriptions of an entity by language tag (BCP 47: "es", "pt-BR").
 using Labels = std::map<std::string, std::string>;
 
 }  // namespace strata

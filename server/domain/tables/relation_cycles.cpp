@@ -13,7 +13,7 @@ const std::vector<std::int64_t>& named_by(const Relation& relation, std::int64_t
   return found == relation.end() ? none : found->second;
 }
 
-// Tarjan's search with an explicit stack: chains of relations can be as long as tables.
+// Tarjan's search with an explicit stack, because a chain of relations can be as long as a table.
 class Knots {
  public:
   explicit Knots(const Relation& relation) : relation_(relation) {}
@@ -31,7 +31,7 @@ class Knots {
   };
   struct Step {
     std::int64_t key = 0;
-    std::size_t next = 0;  // next named key to visit
+    std::size_t next = 0;  // index of the next related key to visit
   };
 
   void enter(std::int64_t key) {
@@ -85,7 +85,7 @@ class Knots {
   std::vector<std::vector<std::int64_t>> knots_;
 };
 
-// Breadth-first search from the component's lowest key until a key names it.
+// A breadth-first search from the lowest key of the component until a key refers to it.
 std::vector<std::int64_t> shortest_cycle(const Relation& relation,
                                          const std::vector<std::int64_t>& knot) {
   const std::int64_t first = knot.front();

@@ -6,13 +6,14 @@
 
 namespace strata {
 
-// The keys that each key names: "above", "cuts".
+// For each key, the keys that it refers to in a relation such as "above" or "cuts".
 using Relation = std::map<std::int64_t, std::vector<std::int64_t>>;
 
-// Finds the contradictions of a stratigraphy: keys that are above themselves, directly or through
-// others. Returns for each strongly connected component of such keys one shortest cycle through its
-// lowest key, in the order in which one names the next; ascending by that key. Linear in keys and
-// pairs, for each component too. R. Tarjan, "Depth-first search and linear graph algorithms", 1972.
+// Finds the contradictions in a stratigraphy: keys that are above themselves, directly or through
+// other keys. Returns one shortest cycle for each strongly connected component of such keys. The
+// cycle goes through the lowest key of the component, and each key refers to the next one. The
+// cycles are ordered by their lowest key. The time is linear in keys and pairs, also for each
+// component. R. Tarjan, "Depth-first search and linear graph algorithms", 1972.
 std::vector<std::vector<std::int64_t>> relation_cycles(const Relation& relation);
 
 }  // namespace strata

@@ -33,7 +33,7 @@ bool fits(const std::vector<SurfaceFeature>& features, bool lines) {
   return features.size() <= kMaxFeatures && places <= kMaxFeaturePlaces;
 }
 
-// Parses the output of print_features, with additional spaces.
+// Parses the output of print_features, and accepts additional spaces.
 class FeatureReader {
  public:
   FeatureReader(std::string_view text, bool lines) : rest_(text), lines_(lines) {}
@@ -42,7 +42,7 @@ class FeatureReader {
     std::vector<SurfaceFeature> features;
     do {
       skip_blank();
-      if (rest_.empty() && !features.empty()) break;  // a semicolon at the end
+      if (rest_.empty() && !features.empty()) break;  // allows a semicolon at the end
       SurfaceFeature feature;
       std::int64_t model = 0;
       if (features.size() == kMaxFeatures || !number(model) ||

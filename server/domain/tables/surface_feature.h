@@ -14,37 +14,38 @@
 
 namespace strata {
 
-// A feature of a record on a model, in addition to texels: a line (a crack, which is paid by the
-// meter) or a point (a sample). Columns of kind `line` and `point` hold lists of them: `[{"model":
-// 3, "coordinates": [[x, y, z], …]}]`. Coordinates are world coordinates in the model's unit; those
-// of a line are so dense that the surface between them is straight.
+// A line (a crack, which is paid by the meter) or a point (a sample) of a record on a model, in
+// addition to texels. Columns of kind `line` and `point` hold lists of features: `[{"model": 3,
+// "coordinates": [[x, y, z], …]}]`. Coordinates are world coordinates in the unit of the model. The
+// points of a line are so close that the surface between them is straight.
 struct SurfaceFeature {
   ModelId model = 0;
-  std::vector<glm::dvec3> places;  // one for a point, two or more for a line
+  std::vector<glm::dvec3> places;  // one point, or two or more points of a line
   bool operator==(const SurfaceFeature&) const = default;
 };
 
-struct KeyFeature {  // of a record
+struct KeyFeature {  // a feature of the record with the key
   std::int64_t key = 0;
   SurfaceFeature feature;
   bool operator==(const KeyFeature&) const = default;
 };
 
-inline constexpr std::size_t kMaxFeatures = 1000;         // of a cell
-inline constexpr std::size_t kMaxFeaturePlaces = 10'000;  // of a cell
+inline constexpr std::size_t kMaxFeatures = 1000;         // per cell
+inline constexpr std::size_t kMaxFeaturePlaces = 10'000;  // per cell
 inline constexpr double kMaxFeatureCoordinate = 1e12;
 
-// Reads the features of a cell's value; nothing for another kind or beyond these limits.
+// Reads the features in the value of a cell. Returns nullopt for another kind and beyond these
+// limits.
 std::optional<std::vector<SurfaceFeature>> read_features(const nlohmann::json& value, bool lines);
 nlohmann::json to_json(std::span<const SurfaceFeature> features);
-// The features of a record in a column of lines or points; empty without a value.
+// Returns the features of a record in a column of lines or points. Empty without a value.
 std::vector<SurfaceFeature> features_of(const Record& record, const Column& column);
 
-// In the form of CSV cells: `3 LINESTRING Z (0 0 1, 2.5 0 1); 3 POINT Z (1 2 3)`, the model's id
-// before well-known text (ISO 13249-3).
+// Prints and parses the form for CSV cells: `3 LINESTRING Z (0 0 1, 2.5 0 1); 3 POINT Z (1 2 3)`.
+// The id of the model precedes the well-known text (ISO 13249-3).
 std::string print_features(std::span<const SurfaceFeature> features, bool lines);
 std::optional<std::vector<SurfaceFeature>> parse_features(std::string_view text, bool lines);
 
-double length_of(const SurfaceFeature& feature);  // in the model's unit; 0 for a point
+double length_of(const SurfaceFeature& feature);  // in the unit of the model; 0 for a point
 
 }  // namespace strata

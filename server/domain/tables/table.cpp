@@ -155,7 +155,7 @@ Result<void> check_column(Column& column) {
   STRATA_TRY(check_choices(column));
   STRATA_TRY(check_limits(column));
   STRATA_TRY(check_kind(column));
-  // Annotators, who write records, must be able to fill a required column.
+  // Annotators write records, so they must be able to fill a required column.
   if (column.required && column.visibility == Visibility::curators &&
       column.default_value.is_null())
     return fail(ErrorCode::invalid, "Required but private column",
@@ -202,7 +202,7 @@ nlohmann::json to_json(const Table& table) {
                       {"columns", std::move(columns)},
                       {"records", table.records},
                       {"sequence", table.sequence}};
-  // Omits a column that is invisible or was dropped.
+  // Omits a column that the user cannot see or that was dropped.
   if (table.title_column &&
       std::ranges::find(table.columns, *table.title_column, &Column::id) != table.columns.end())
     json["title_column"] = *table.title_column;
@@ -237,7 +237,7 @@ const Column* name_column(const Table& table) {
       first([&](const Column& c) { return is_text(c) && c.required && c.unique; });
   if (!found)
     found = first([&](const Column& c) { return is_text(c) && (c.required || c.unique); });
-  // A first column of terms names the object of an observation, not its author.
+  // If the first column holds terms, it names the object of an observation and not its author.
   if (!found && !columns.empty() && columns.front().kind == ColumnKind::term)
     found = &columns.front();
   if (!found) found = first(is_text);

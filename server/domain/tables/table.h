@@ -26,9 +26,9 @@ enum class ColumnKind {
   url,
   term,      // the key of a record of `target`
   relation,  // keys of records of `target`: "above", "cuts", "same as"
-  // ids of attachments of the table, in the displayed order: raster pictures
+  // Ids of attachments of the table, in the order of display: raster images.
   picture,
-  document,  // likewise, any files
+  document,  // the same, for any files
   line,      // lines on models (domain/tables/surface_feature): "cracks"
   point,     // points on models: "samples"
 };
@@ -40,12 +40,12 @@ inline bool holds_attachments(ColumnKind kind) {
 inline bool holds_features(ColumnKind kind) {
   return kind == ColumnKind::line || kind == ColumnKind::point;
 }
-// Whether one cell holds several values.
+// Returns whether one cell holds several values.
 inline bool holds_lists(ColumnKind kind) {
   return kind == ColumnKind::relation || holds_attachments(kind) || holds_features(kind);
 }
 
-// A column of a project's table. Its id is never used again.
+// A column of a project's table. The id of a column is never used again.
 struct Column {
   ColumnId id = 0;
   std::string name;
@@ -55,7 +55,7 @@ struct Column {
   std::string unit;  // integer and numeric
   bool required = false;
   bool unique = false;
-  // For new records without a value of the column; null: no default.
+  // The value for new records that have no value in the column. Null: no default.
   nlohmann::json default_value;
   std::string comment;
   std::vector<std::string> choices;        // enumeration: at least one
@@ -63,10 +63,11 @@ struct Column {
   std::optional<double> minimum, maximum;  // integer and numeric
   int order = 0;
   Visibility visibility = Visibility::everyone;
-  bool hidden = false;  // dropped: its values stay for undo and for reading the past
+  bool hidden = false;  // dropped; the values stay for undo and for reading the past
 };
 
-// A table of a project: the records of the keys in database layers, on any of its models.
+// A table of a project. It holds the records for the keys in database layers, on all models of the
+// project.
 struct Table {
   TableId id = 0;
   ProjectId project_id = 0;
@@ -74,36 +75,36 @@ struct Table {
   std::string slug;  // unique in the project, never all digits
   Labels labels;
   std::string description;
-  // those that are not hidden, by order; for a user, those that the user sees
+  // By order, without hidden columns. For a user, only the columns that the user sees.
   std::vector<Column> columns;
-  // the chosen column of the records' names
+  // The column that was chosen for the names of the records.
   std::optional<ColumnId> title_column;
-  std::int64_t records = 0;   // their number
-  std::int64_t sequence = 0;  // of the last change of records or columns
-  std::int64_t version = 1;   // of everything except the records, for ETag and If-Match
+  std::int64_t records = 0;   // number of records
+  std::int64_t sequence = 0;  // of the last change to records or columns
+  std::int64_t version = 1;   // of everything except the records; for ETag and If-Match
 };
 
 inline constexpr std::int64_t kMaxRecordKey = 0xffffffff;
-// target of a column that refers to its own table, which does not exist yet
+// The target of a column that refers to its own table, before the table exists.
 inline constexpr TableId kOwnTable = 0;
 inline constexpr int kMaxColumns = 256;
 inline constexpr int kMaxChoices = 1000;
-// bytes of a unit, a choice, a label, a comment
+// The maximum bytes of a unit, a choice, a label or a comment.
 inline constexpr std::size_t kMaxColumnTextLength = 2000;
 
-// A row, identified by its key. `values` by column id; a missing entry has no value.
+// A row, identified by its key. `values` are by column id. A missing entry has no value.
 struct Record {
   std::int64_t key = 0;
   std::int64_t version = 1;
   std::map<ColumnId, nlohmann::json> values;
 };
 
-// Checks that a column's properties fit together: choices, target and limits belong to its kind,
-// the default is a valid value. Normalizes the default. The field of an Error is that of the column
+// Checks that the properties of a column match: choices, target and limits belong to its kind, and
+// the default is a valid value. Normalizes the default. The Error contains the field of the column
 // ("choices", "default").
 Result<void> check_column(Column& column);
 Result<void> check_labels(const Labels& labels, const std::string& field = "labels");
-// Texts in other languages, each of at most `longest` bytes.
+// Checks texts in other languages, each of at most `longest` bytes.
 Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
                                      const std::string& field);
 
@@ -111,20 +112,21 @@ nlohmann::json to_json(const Column& column);
 nlohmann::json to_json(const Table& table);
 // Removes the columns that the role does not see.
 Table seen_by(Table table, Role role);
-// `{key, version, values: {slug: value}}`, with every column of `columns`.
+// Returns `{key, version, values: {slug: value}}`, with all columns in `columns`.
 nlohmann::json to_json(const Record& record, const std::vector<Column>& columns);
 
-// Whether the column can name records.
+// Returns whether the column can name records.
 bool can_be_title(const Column& column);
-// Returns the column that names the records: the chosen one if it is in `columns`; otherwise the
-// first text that is required and unique, otherwise one that is either, otherwise the first column
-// if it holds terms, otherwise any text, otherwise a unique one without a target; null: no names.
+// Returns the column that names the records, or null without such a column. This is the chosen
+// column if it is in `columns`. Otherwise it is the first match in this order: a text that is
+// required and unique, a text that is required or unique, the first column if it holds terms, any
+// text, a unique column without a target.
 const Column* name_column(const Table& table);
-// Returns the record's name; empty if it has none. If the column holds keys of another table, the
-// key.
+// Returns the name of the record. Empty if it has no name. If the column holds keys of another
+// table, returns the key.
 std::string record_name(const Record& record, const Table& table);
 
-// By id or slug; null: not found.
+// Finds a column by id or slug. Returns null if it does not exist.
 const Column* find_column(const std::vector<Column>& columns, const std::string& ref);
 
 }  // namespace strata

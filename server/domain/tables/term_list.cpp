@@ -23,7 +23,7 @@ Rgba color_of_text(const std::string& text) {
   return {number(1), number(3), number(5), 255};
 }
 
-// The nth distinguishable shade of `color`: lighter and darker in turn.
+// Returns the nth distinguishable shade of `color`, alternately lighter and darker.
 Rgba shade(const Rgba& color, int nth) {
   const double part = std::min(0.6, 0.2 * (nth / 2 + 1));
   const double end = nth % 2 == 0 ? 255 : 0;
@@ -162,7 +162,7 @@ std::vector<ListedTerm> list_terms(const TermColumns& columns, std::span<const R
     }
   };
   for (const auto key : top) write_down(key);
-  if (out.size() < terms.size())  // cycles
+  if (out.size() < terms.size())  // terms in cycles
     for (const auto& [key, listed] : terms)
       if (!met.contains(key)) write_down(key);
   return out;
@@ -181,7 +181,7 @@ std::vector<bool> terms_with(std::span<const ListedTerm> terms, std::string_view
   for (const ListedTerm& listed : terms) {
     std::string all = listed.term.code + "\n" + listed.term.label;
     for (const auto& [language, label] : listed.term.labels) all += "\n" + label;
-    // The separate lines prevent matches across two texts.
+    // The separate lines prevent a match that spans two texts.
     std::string folded;
     for (std::size_t begin = 0; begin <= all.size();) {
       const std::size_t end = std::min(all.find('\n', begin), all.size());
@@ -197,7 +197,7 @@ std::vector<bool> terms_with(std::span<const ListedTerm> terms, std::string_view
 
 Palette terms_palette(std::span<const ListedTerm> terms) {
   std::map<std::int64_t, Rgba> colors;
-  std::map<std::int64_t, int> shades;  // number of shades of a term that its descendants use
+  std::map<std::int64_t, int> shades;  // number of shades of a term that its child terms use
   std::map<std::int64_t, Palette::Point> points;
   for (const ListedTerm& listed : terms) {  // parents come first
     const auto above = listed.parent ? colors.find(*listed.parent) : colors.end();

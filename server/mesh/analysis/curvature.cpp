@@ -15,8 +15,8 @@ constexpr int kTerms = 6;  // 1, x, y, x²/2, xy, y²/2
 using Normals = std::array<std::array<double, kTerms>, kTerms>;
 using Terms = std::array<double, kTerms>;
 
-// Solves the normal equations in place (lower triangle) by Cholesky. Returns false where they are
-// as good as singular.
+// Solves the normal equations (lower triangle) in place with the Cholesky method. Returns false if
+// they are nearly singular.
 bool solve(Normals& a, Terms& b) {
   for (int i = 0; i < kTerms; ++i)
     for (int j = 0; j <= i; ++j) {
@@ -53,8 +53,8 @@ std::optional<Curvature> curvature_at(const SurfaceSamples& samples, const glm::
     const SurfaceSamples::Sample* sample;
     double weight;
   };
-  // Each thread keeps this array from one point to the next: the search for neighbors takes longer
-  // than their use.
+  // Each thread reuses this array for all its points. The array stores the neighbors because
+  // searching for them takes longer than using them.
   thread_local std::vector<Weighted> neighbours;
   neighbours.clear();
   glm::dvec3 mean_normal(0);
@@ -65,7 +65,7 @@ std::optional<Curvature> curvature_at(const SurfaceSamples& samples, const glm::
   const double length = glm::length(mean_normal);
   if (neighbours.size() < kTerms + 2 || !(length > 0)) return std::nullopt;
 
-  // In units of the radius, so that the equations are well scaled.
+  // Lengths are in units of the radius, so the equations are well scaled.
   const TangentFrame frame(mean_normal / length);
   Normals a{};
   Terms b{};
@@ -81,7 +81,7 @@ std::optional<Curvature> curvature_at(const SurfaceSamples& samples, const glm::
   }
   if (!solve(a, b)) return std::nullopt;
   // The fundamental forms of z = f(x, y) at x = y = 0. The sign is negative because heights
-  // decrease away from a bulge.
+  // decrease away from the top of a bulge.
   const double fx = b[1], fy = b[2], root = std::sqrt(1 + fx * fx + fy * fy);
   const double e = 1 + fx * fx, f = fx * fy, g = 1 + fy * fy;
   const double l = -b[3] / root, m = -b[4] / root, n = -b[5] / root;
@@ -114,8 +114,9 @@ std::optional<double> roughness_at(const SurfaceSamples& samples, const glm::vec
   const double xx = products[0] / area - mean.x * mean.x, xy = products[1] / area - mean.x * mean.y,
                xz = products[2] / area - mean.x * mean.z, yy = products[3] / area - mean.y * mean.y,
                yz = products[4] / area - mean.y * mean.z, zz = products[5] / area - mean.z * mean.z;
-  // The direction of least variance: the smallest root of the characteristic polynomial in closed
-  // form, then the longest cross product of two rows of the remaining matrix.
+  // The direction of least variance. The smallest root of the characteristic polynomial has a
+  // closed form. The direction is then the longest cross product of two rows of the remaining
+  // matrix.
   const double third = (xx + yy + zz) / 3;
   const double off = xy * xy + xz * xz + yz * yz;
   const double dx = xx - third, dy = yy - third, dz = zz - third;

@@ -20,7 +20,8 @@ float ModelDistance::at(const glm::vec3& position) const {
   const glm::vec3 point(world_there - there_->origin);
   const auto hit = tree_.nearest(point, static_cast<float>(max_distance_ * there_per_here_));
   if (!hit) return std::numeric_limits<float>::quiet_NaN();
-  // Inside a face its own normal decides; on an edge or corner, the mean of the normals around it.
+  // Inside a face, the face's own normal gives the sign. On an edge or a vertex, the mean of the
+  // surrounding normals gives it.
   constexpr float kOnEdge = 1e-5f;
   const glm::vec3& w = hit->barycentric;
   glm::vec3 normal = hit->normal;

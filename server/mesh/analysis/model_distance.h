@@ -8,18 +8,18 @@
 
 namespace strata::mesh {
 
-// Signed distance from points of one model to the surface of another: positive in front of it,
-// negative behind. The sign is that of the pseudo-normal at the nearest point (see SurfaceNormals),
-// so the other surface need not be closed. Thread-safe.
+// The signed distance from points of one model to the surface of another. It is positive in front
+// of the surface and negative behind it. The sign comes from the pseudo-normal at the nearest point
+// (see SurfaceNormals), so the other surface need not be closed. Thread-safe.
 class ModelDistance {
  public:
-  // `metres_here`, `metres_there`: length in meters of one unit of each model. The world
-  // coordinates of both models use one coordinate system.
+  // `metres_here` and `metres_there` are the lengths in meters of one unit of each model. The world
+  // coordinates of both models use the same coordinate system.
   ModelDistance(const glm::dvec3& origin_here, double metres_here,
                 std::shared_ptr<const Geometry> there, double metres_there, double max_distance);
 
-  // `position` is in the space of this model. Returns the distance in units of this model; NaN
-  // where nothing lies within `max_distance`.
+  // `position` is in the space of this model. Returns the distance in units of this model, or NaN
+  // if the other surface is farther away than `max_distance`.
   float at(const glm::vec3& position) const;
 
  private:

@@ -21,8 +21,8 @@ struct ReleaseScene {
 using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
 using Scene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 
-// Evenly distributed over the hemisphere with the density of a cosine: a golden-angle spiral on the
-// disc, lifted (Malley's method).
+// Returns directions that are evenly distributed over the hemisphere with cosine-weighted density:
+// a golden-angle spiral on the disc, projected up to the hemisphere (Malley's method).
 std::vector<glm::vec3> cosine_directions(int count) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   std::vector<glm::vec3> directions(count);
@@ -34,7 +34,7 @@ std::vector<glm::vec3> cosine_directions(int count) {
   return directions;
 }
 
-// 0…1, always the same for the same position.
+// Returns a number from 0 to 1 that depends on the position only.
 float turn_of(const glm::vec3& p) {
   std::uint32_t h = 2166136261u;
   for (int k = 0; k < 3; ++k) h = (h ^ std::bit_cast<std::uint32_t>(p[k])) * 16777619u;
@@ -52,7 +52,8 @@ class RayOpenness final : public Openness {
         device_(std::move(device)),
         scene_(std::move(scene)),
         distance_(distance),
-        // Above the rounding of float coordinates, below any measured length.
+        // Larger than the rounding errors of float coordinates and smaller than any measured
+        // length.
         lift_(glm::length(geometry_->box_max - geometry_->box_min) * 2e-6f),
         directions_(cosine_directions(rays)) {}
 
@@ -88,7 +89,8 @@ class RayOpenness final : public Openness {
 
 constexpr const char* kPreparing = "Preparing rays";
 
-// The ray tracer calls this while it builds its tree; false cancels.
+// The ray tracer calls this function while it builds its tree. It returns false to cancel the
+// build.
 bool goes_on(void* progress, double done) {
   auto& watched = *static_cast<Progress*>(progress);
   watched.report(done, kPreparing);

@@ -8,16 +8,16 @@
 
 namespace strata::mesh {
 
-// Ambient occlusion by rays: the share of the light from all around that reaches a point of a
-// surface, 1 in the open, 0 in a closed cavity. Rays leave over the outer half-space with cosine
-// weighting; a ray that meets the surface, from either side, within `distance` is dark. The
-// directions are an even set, turned about the normal by an angle that depends on the position
-// only: neighbors differ by noise of about 0.4 / √rays, and every run gives the same result. Model
-// space. Thread-safe.
+// Ambient occlusion by ray tracing: the share of the surrounding light that reaches a point of a
+// surface. It is 1 in the open and 0 in a closed cavity. Rays start over the outer half-space with
+// cosine weighting. A ray is dark if it hits the surface, from either side, within `distance`. The
+// directions are evenly distributed and rotated around the normal by an angle that depends on the
+// position only. Neighboring points therefore differ by noise of about 0.4 / √rays, and every run
+// gives the same result. Positions are in model space. Thread-safe.
 class Openness {
  public:
-  // Refused (storage_full) where memory is too small for the ray tracer's tree, some 100 bytes a
-  // triangle, and when cancelled.
+  // Fails with `out_of_memory` if the memory is too small for the ray tracer's tree, which takes
+  // about 100 bytes per triangle. Also fails when cancelled.
   static Result<std::unique_ptr<Openness>> make(std::shared_ptr<const Geometry> geometry,
                                                 float distance, int rays, Progress& progress);
   virtual ~Openness() = default;

@@ -26,8 +26,8 @@ float longest_edge(const Geometry& geometry, std::size_t triangle) {
 int cuts_of(float edge, float spacing) { return static_cast<int>(std::ceil(edge / spacing)); }
 int points_of(int cuts) { return (cuts + 1) * (cuts + 2) / 2; }
 
-// Long triangles are cut evenly, so slivers cost more than their area: the spacing is widened until
-// the total fits.
+// Widens the spacing until the total number of points is small enough. Long triangles are cut
+// evenly, so slivers get more points than their area needs.
 float fitting_spacing(const std::vector<float>& edges, float spacing) {
   for (;; spacing *= 1.5f) {
     double points = 0;

@@ -14,29 +14,29 @@
 
 namespace strata::mesh {
 
-// Value at a point of a surface, from its position and normal in model space; NaN for no value.
-// Called on several threads at once.
+// Returns the value at a point of a surface from its position and normal in model space. NaN means
+// no value. The function is called on several threads at the same time.
 using PointFunction = std::function<float(const glm::vec3& position, const glm::vec3& normal)>;
 
 // A function of points, evaluated at the vertices of a mesh and interpolated between them. A
-// triangle with an edge longer than `spacing` gets its own grid of points, so that a coarse mesh
-// loses nothing. Immutable after construction; thread-safe.
+// triangle with an edge longer than `spacing` gets its own grid of points, so a coarse mesh loses
+// no detail. Immutable after construction and thread-safe.
 class SampledField {
  public:
-  // `spacing` > 0; it is widened where the grids would have more than four million points. Refused
-  // when cancelled.
+  // `spacing` must be positive. It is widened if the grids would have more than four million
+  // points. Fails when cancelled.
   static Result<SampledField> make(std::shared_ptr<const Geometry> geometry,
                                    const SurfaceNormals& normals, float spacing,
                                    const PointFunction& function, Progress& progress,
                                    int threads = background_threads());
 
-  // The mean leaves out corners without a value; NaN where no corner has one.
+  // The interpolation ignores corners without a value. Returns NaN if no corner has a value.
   float at(std::uint32_t triangle, const glm::vec3& weights) const;
 
  private:
   struct Grid {
     std::uint32_t first;  // into grid_values_
-    int cuts;             // (cuts + 1)(cuts + 2)/2 points: rows of constant second weight
+    int cuts;             // (cuts + 1)(cuts + 2)/2 points: rows with a constant second weight
   };
   static int index_in_grid(int cuts, int i, int j) { return i * (2 * (cuts + 1) - i + 1) / 2 + j; }
   float grid_at(const Grid& grid, const glm::vec3& weights) const;

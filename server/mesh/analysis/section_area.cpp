@@ -11,8 +11,8 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kMostGap = 0.01;  // of the outline's length
-// More open ends are a surface in pieces; the search for their partners is quadratic.
+constexpr double kMostGap = 0.01;  // as a share of the outline's length
+// A surface with more open ends is in pieces. The search for matching ends takes quadratic time.
 constexpr std::size_t kMostOpenEnds = 2000;
 constexpr std::size_t kTrianglesAtOnce = 1 << 16;
 constexpr double kParallel = 1e-12;
@@ -23,7 +23,7 @@ struct Piece {
   glm::dvec2 from, to;
 };
 
-// A half-plane that keeps dot(normal, p) + offset >= 0; the normal has unit length.
+// A half-plane that keeps the points with dot(normal, p) + offset >= 0. The normal has unit length.
 struct Half {
   glm::dvec2 normal;
   double offset;
@@ -31,8 +31,8 @@ struct Half {
   glm::dvec2 flattened(const glm::dvec2& p) const { return p - std::min(0.0, height(p)) * normal; }
 };
 
-// Moves what is outside onto the border. Closed outlines stay closed, and what was outside no
-// longer bounds an area.
+// Moves the parts outside the half-plane onto its border. Closed outlines stay closed, and the
+// moved parts no longer bound an area.
 std::vector<Piece> clipped(const std::vector<Piece>& pieces, const Half& half) {
   std::vector<Piece> result;
   result.reserve(pieces.size());
@@ -49,7 +49,7 @@ std::vector<Piece> clipped(const std::vector<Piece>& pieces, const Half& half) {
   return result;
 }
 
-// The outline of a plane's cut through the mesh.
+// The outline of a plane's section through the mesh.
 class Outline {
  public:
   Outline(const Geometry& geometry, const glm::dvec4& plane) : geometry_(geometry) {
@@ -67,7 +67,7 @@ class Outline {
     }
   }
 
-  // Closes small gaps. False: the outline is open.
+  // Closes the gaps in the outline. Returns false if the gaps are too many or too long.
   bool close() {
     std::vector<glm::dvec2> starts, ends;
     for (const auto& [edge, crossing] : crossings_) {
@@ -89,12 +89,13 @@ class Outline {
 
   std::vector<Piece>& pieces() { return pieces_; }
 
-  // What another plane keeps of this one; nothing: all or none of it, `all` says which.
+  // Returns the half-plane of this plane that the other plane keeps. Returns nothing if the other
+  // plane keeps all of this plane or no part of it. `all` is true in the first case.
   std::optional<Half> half(const glm::dvec4& plane, bool& all) const {
     const double length = glm::length(glm::dvec3(plane));
     const glm::dvec3 normal = glm::dvec3(plane) / length;
     const double offset = plane.w / length + glm::dot(normal, geometry_.origin);
-    const glm::dvec3 foot = -offset_ * normal_;  // of the origin on this plane
+    const glm::dvec3 foot = -offset_ * normal_;  // the origin projected onto this plane
     const glm::dvec2 in_plane(glm::dot(normal, u_), glm::dot(normal, v_));
     const double height = glm::dot(normal, foot) + offset, across = glm::length(in_plane);
     all = height >= 0;
@@ -105,14 +106,14 @@ class Outline {
  private:
   struct Crossing {
     glm::dvec2 place;
-    int balance = 0;  // pieces that start here minus those that end here
+    int balance = 0;  // pieces that start here minus pieces that end here
   };
 
   glm::dvec3 position(std::uint32_t index) const {
     return geometry_.positions[index] - geometry_.origin;
   }
 
-  // The place where the plane crosses an edge, the same for all triangles at it.
+  // Returns the point where the plane crosses an edge. All triangles at the edge share this point.
   Crossing& crossing(std::uint32_t a, std::uint32_t b) {
     if (a > b) std::swap(a, b);
     const auto [found, is_new] = crossings_.try_emplace(std::uint64_t{a} << 32 | b);

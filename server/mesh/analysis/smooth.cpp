@@ -17,8 +17,8 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
   std::vector<bool> is_fixed(positions.size(), false);
   for (std::size_t v = 0; v < stays.size(); ++v)
     if (stays[v]) is_fixed[v] = true;
-  // A vertex moves no farther than a share of its shortest edge: the long edges of slivers would
-  // pull it past its neighbors.
+  // A vertex moves by at most a share of the length of its shortest edge. Otherwise the long edges
+  // of slivers would pull it past its neighbors.
   std::vector<float> shortest(positions.size(), std::numeric_limits<float>::max());
   for (const auto edge : connectivity.edges()) {
     const auto side = connectivity.halfedge_handle(edge, 0);
@@ -32,8 +32,8 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
   for (int i = 0; i < iterations; ++i) {
     std::fill(sum.begin(), sum.end(), glm::vec3(0));
     std::fill(weight.begin(), weight.end(), 0.f);
-    // Every edge counts once for each of its triangles, in their order: sums of floats depend on
-    // the order, and so would the atlas.
+    // Every edge counts once for each of its triangles, in the order of the triangles. Sums of
+    // floats depend on their order, and the atlas depends on these sums.
     for (std::size_t c = 0; c < triangles.size(); ++c) {
       const std::uint32_t a = triangles[c], b = triangles[c % 3 == 2 ? c - 2 : c + 1];
       if (!is_fixed[a]) sum[a] += smoothed[b], weight[a] += 1;

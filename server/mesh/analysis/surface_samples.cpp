@@ -13,11 +13,10 @@ namespace {
 
 constexpr int kCellsPerRadius = 5;
 constexpr double kMaxPieces = 2e7;
-// The cells of a group have 20 bits an axis.
+// A group stores its cell with 20 bits per axis.
 constexpr double kMaxCells = 1 << 20;
 constexpr int kMaxBands = 64;
-// For triangles with more cuts, the pieces that may lie in a band are selected before they are
-// made.
+// For triangles with more cuts, only the pieces that may be in a band are made.
 constexpr int kManyCuts = 8;
 constexpr const char* kSampling = "Sampling the surface";
 
@@ -27,7 +26,7 @@ struct Piece {
   float area;
 };
 
-// Returns the axis direction, of six, that is nearest to a normal.
+// Returns the number of the axis direction, one of six, that is nearest to a normal.
 std::uint64_t facing(const glm::vec3& n) {
   const glm::vec3 size = glm::abs(n);
   const int axis = longest_axis(size);
@@ -36,8 +35,8 @@ std::uint64_t facing(const glm::vec3& n) {
 
 }  // namespace
 
-// Makes, groups and drops the pieces in bands across the model's longest axis. The bands are always
-// the same ones.
+// Makes, groups and discards the pieces in bands perpendicular to the model's longest axis. The
+// bands do not depend on the number of threads.
 class SampleBands {
  public:
   SampleBands(const Geometry& geometry, SurfaceSamples& samples)
@@ -52,7 +51,7 @@ class SampleBands {
 
   int count() const { return static_cast<int>(bands_.size()); }
 
-  // Several threads may work on different bands at once.
+  // Several threads may process different bands at the same time.
   void sample(int which) {
     Band& band = bands_[which];
     const int first_cell = first_cell_of(which), end_cell = first_cell_of(which + 1);
@@ -92,7 +91,8 @@ class SampleBands {
     }
   }
 
-  // Merges the samples that several bands have of the same cell. Call it after all bands.
+  // Merges the samples that several bands have in the same cell. Call it after all bands are
+  // sampled.
   void gather() {
     auto& cells = samples_.cells_;
     std::uint32_t total = 0;
@@ -131,7 +131,7 @@ class SampleBands {
   int first_cell_of(int band) const {
     return static_cast<int>(static_cast<std::int64_t>(cells_) * band / count());
   }
-  // Also accepts cells outside the box.
+  // Also accepts cells outside the bounding box.
   int band_of(int cell) const {
     const auto inside = static_cast<std::int64_t>(std::clamp(cell, 0, cells_ - 1));
     return static_cast<int>(((inside + 1) * count() - 1) / cells_);
@@ -143,7 +143,7 @@ class SampleBands {
   Buckets triangles_by_band() const {
     return {count(), static_cast<std::uint32_t>(geometry_.triangle_count()), [&](std::uint32_t t) {
               const float a = corner(t, 0)[axis_], b = corner(t, 1)[axis_], c = corner(t, 2)[axis_];
-              // One cell wider, to allow for rounding.
+              // The range is one cell wider on each side, to allow for rounding.
               const auto cell_at = [&](float at) {
                 return static_cast<int>(std::floor((at - samples_.low_[axis_]) / cell_));
               };
@@ -178,12 +178,12 @@ class SampleBands {
     for (int i = 0; i < cuts; ++i) {
       int j_begin = 0, j_end = cuts - i;
       if (cuts > kManyCuts) {
-        // The places where the row enters and leaves the band, widened by a cell and a piece.
+        // The points where the row enters and leaves the band, widened by a cell and a piece.
         const double at = (a[axis_] + double{ab[axis_]} * i / cuts - samples_.low_[axis_]) / cell_;
         const double step = double{ac[axis_]} / cuts / cell_;
         const double low = (first - 2 - at) / step, high = (end + 2 - at) / step;
         if (!std::isnan(low) && !std::isnan(high)) {
-          // infinite for a row along the band: inside it or not
+          // The bounds are infinite for a row parallel to the band, inside or outside it.
           j_begin = static_cast<int>(std::clamp(std::min(low, high) - 1, 0.0, double(j_end)));
           j_end = static_cast<int>(std::clamp(std::max(low, high) + 2, 0.0, double(j_end)));
         }

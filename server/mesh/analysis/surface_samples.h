@@ -12,10 +12,11 @@
 
 namespace strata::mesh {
 
-// A surface as about evenly spaced points, independent of the shapes of its triangles: all triangle
-// pieces within a cell of radius / 5 that face the same way are one sample. So a neighborhood has
-// some 80 samples in a scan of any density, noise finer than the cells is averaged, and the two
-// faces of a thin wall stay apart. Model space. Immutable after construction; thread-safe.
+// A surface as approximately evenly spaced points, independent of the shapes of its triangles. All
+// triangle pieces that are in the same cell of radius / 5 and face the same way form one sample. A
+// neighborhood therefore has about 80 samples in a scan of any density. Noise finer than the cells
+// is averaged, and the two faces of a thin wall stay separate. Positions are in model space.
+// Immutable after construction and thread-safe.
 class SurfaceSamples {
  public:
   struct Sample {
@@ -23,21 +24,21 @@ class SurfaceSamples {
     float area;
   };
 
-  // The smallest radius allowed for a mesh of this area (unit²) and box: a smaller one would need
-  // tens of millions of samples.
+  // Returns the smallest radius allowed for a mesh with this area (unit²) and bounding box. A
+  // smaller radius would need tens of millions of samples.
   static double least_radius(double area, const glm::dvec3& extent);
 
-  // radius ≥ least_radius. Refused when cancelled. The result does not depend on the number of
-  // threads. In addition to the result it needs some 60 bytes a piece of the bands in progress, and
-  // 4 a triangle.
+  // Requires radius ≥ least_radius. Fails when cancelled. The result does not depend on the number
+  // of threads. In addition to the memory of the result it needs about 60 bytes per piece of the
+  // bands in progress and 4 bytes per triangle.
   static Result<SurfaceSamples> make(const Geometry& geometry, float radius, Progress& progress,
                                      int threads = background_threads());
 
   float radius() const { return radius_; }
   std::size_t size() const { return samples_.size(); }
 
-  // Calls visit(sample, squared distance) for each sample within the radius of `point` that faces
-  // within 80° of `normal`.
+  // Calls visit(sample, squared distance) for each sample within the radius of `point` with a
+  // normal within 80° of `normal`.
   template <class Visit>
   void near(const glm::vec3& point, const glm::vec3& normal, Visit&& visit) const {
     constexpr float kMinCos = 0.17f;
@@ -69,7 +70,7 @@ class SurfaceSamples {
 
   float radius_;
   glm::vec3 low_;
-  std::vector<Sample> samples_;  // the samples of one cell of the radius's size are adjacent
+  std::vector<Sample> samples_;  // the samples of one cell with the size of the radius are adjacent
   static constexpr std::uint32_t kUnplaced = 0xffffffffu;
   struct Range {
     std::uint32_t first = kUnplaced, count = 0;

@@ -15,13 +15,13 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::size_t kRays = 24'000'000, kFewestRays = 16, kMostRays = 64;
-// How far a wall darkens what is near it, as a share of the model's extent.
+// The distance within which a wall darkens its surroundings, as a share of the model's extent.
 constexpr float kReach = 0.25f;
-constexpr float kSuspicious = 0.1f;  // an outside that is so dark may be an inside
-constexpr int kSmoothings = 2;       // against the noise of few rays
+constexpr float kSuspicious = 0.1f;  // an outer side this dark may be an inner side
+constexpr int kSmoothings = 2;       // reduces the noise of few rays
 constexpr int kPositionsAtOnce = 2048;
 
-// Does not own: the caller keeps the geometry.
+// The pointer does not own the geometry. The caller keeps it.
 std::shared_ptr<const Geometry> borrowed(const Geometry& geometry) {
   return {std::shared_ptr<void>(), &geometry};
 }
@@ -32,7 +32,7 @@ float openness_at(const Openness& rays, const glm::vec3& position, const glm::ve
   return outside < kSuspicious ? std::max(outside, rays.at(position, -normal)) : outside;
 }
 
-// The mean of each position and those that its triangles connect it to.
+// Replaces each value by the mean of its position and the positions connected to it by triangles.
 void smooth(const Geometry& geometry, std::vector<float>& values) {
   std::vector<float> sums(values), weights(values.size(), 1);
   for (std::size_t i = 0; i + 2 < geometry.indices.size(); i += 3) {

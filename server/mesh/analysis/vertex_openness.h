@@ -7,18 +7,20 @@
 
 namespace strata::mesh {
 
-// Models with more triangles get the light of a coarser copy: the ray tracer's tree takes some 100
-// bytes a triangle.
+// A model with more triangles gets its openness from a coarser copy, because the ray tracer's tree
+// takes about 100 bytes per triangle.
 constexpr std::size_t kMostTracedTriangles = 2'500'000;
 
-// The light from all around that reaches the vertices (mesh/analysis/openness.h), for the shading
-// of pictures: the highest byte of each vertex's color becomes 255 in the open and 0 in a closed
-// cavity. Where the outside is a thin wall's inside, the other side counts, because windings are
-// not always right. Takes at most about 25 million rays, on half of the cores; every run gives the
-// same result. Refused when cancelled, and as `out_of_memory`: the geometry is then unchanged.
+// Computes the share of the surrounding light that reaches each vertex (mesh/analysis/openness.h),
+// for the shading of frames. The highest byte of each vertex's color becomes 255 in the open and 0
+// in a closed cavity. If the outer side seems to be the inside of a thin wall, the other side
+// counts, because windings are not always correct. The function traces at most about 25 million
+// rays on half of the cores. Every run gives the same result. Fails when cancelled or with
+// `out_of_memory`. In both cases the geometry is unchanged.
 Result<void> bake_openness(Geometry& geometry, Progress& progress);
 
-// Gives the vertices of `to` the openness of the nearest place of `from`, both of one model.
+// Gives each vertex of `to` the openness of the nearest point of `from`. Both are versions of one
+// model.
 void copy_openness(const Geometry& from, Geometry& to);
 
 }  // namespace strata::mesh

@@ -21,35 +21,37 @@ namespace {
 
 constexpr int kThreads = 2;
 constexpr double kExpectedCoverage = 0.66;
-// A narrow cone stretches least. On rugged surfaces it makes many small charts, whose margins fill
-// the atlas: where the atlas uses less than kGoodCoverage, a wider cone is tried and the denser of
-// the two atlases is used.
+// A narrow cone stretches the charts least. On rugged surfaces it makes many small charts, and
+// their margins fill the atlas. If the atlas uses less than kGoodCoverage, a wider cone is tried
+// and the denser of the two atlases is used.
 constexpr std::array<float, 2> kCones{55, 65};
 constexpr double kGoodCoverage = 0.61, kTargetCoverage = 0.72;
-// Texels between charts: with the wide gap, the gutter rings of neighbors (2 texels each) stay
-// apart at the lowest resolution.
+// The number of texels between charts. With the wide gap, the gutter rings of neighboring charts (2
+// texels each) stay apart at the lowest resolution.
 constexpr int kWideGap = 4, kNarrowGap = 2;
-// Hollow charts are cut in meshes of at least this many triangles: smaller ones have enough texels,
-// and fewer seams are better for them.
+// Hollow charts are cut in meshes of at least this many triangles. Smaller meshes have enough
+// texels and benefit more from fewer seams.
 constexpr std::size_t kCutsFrom = 5000;
-constexpr double kMinHollow = 0.003;  // smallest box of a chart worth cutting, share of the atlas
-// Faces that keep less than 1 / kMaxStretch of their area get their own charts, if they are worth
-// as many texels. The footprint of faces in those charts is at least kStraightFootprint. No face
-// has kNoFootprint, which makes each face a chart.
+constexpr double kMinHollow = 0.003;  // smallest box of a chart to cut, share of the atlas
+// Faces that keep less than 1 / kMaxStretch of their area get their own charts if they would get at
+// least kMinSqueezed texels. The footprint of faces in those charts is at least kStraightFootprint.
+// No face reaches kNoFootprint, so this value makes each face a chart.
 constexpr float kMaxStretch = 2.6f, kStraightFootprint = 0.45f, kNoFootprint = 2;
 constexpr double kMinSqueezed = 0.1;
-// Laplacian rounds: two remove scanner noise; more would only add stretch.
+// Rounds of Laplacian smoothing. Two rounds remove scanner noise, and more rounds would only add
+// stretch.
 constexpr int kSmoothing = 2;
-// No texel has two owners at the lowest resolution, nor at twice and four times that, the usual
-// resolutions of layers.
+// No texel has two owners at the lowest resolution, at twice that resolution and at four times that
+// resolution. These are the usual resolutions of layers.
 constexpr int kVerifiedResolutions = 3;
 constexpr int kMaxMendingRounds = 20;
-// The density is lowered by this factor, this many times, before a new one is searched for.
+// The factor that lowers the density, and the number of times it is applied before a new density is
+// searched for.
 constexpr double kRepackingStep = 0.995;
 constexpr int kMaxRepackings = 8;
 constexpr int kMaxResolution = 16384;
-// 1/8192 texel at the lowest resolution: a multiple of 2^-24 of the atlas at 2048, so that float
-// UVs hold it exactly and every GPU snaps the same vertex to the same place.
+// 1/8192 texel at the lowest resolution. At 2048 this is a multiple of 2^-24 of the atlas, so float
+// UVs hold it exactly. Every GPU then snaps a vertex to the same position.
 constexpr double kUvSteps = 8192;
 
 // The intermediate results of unwrapping a surface.
@@ -57,7 +59,7 @@ struct Unwrap {
   std::vector<Chart> charts;
   std::vector<glm::vec2> plane;  // of each corner, in its chart's plane
   std::vector<Outline> outlines;
-  // longest side of a chart, in units of the plane: longer charts are squeezed; 0: no limit
+  // longest side of a chart, in units of the plane; longer charts are squeezed; 0: no limit
   float longest = 0;
   int gap = kWideGap;  // texels between charts
   PackingStart start;
@@ -99,8 +101,8 @@ tl::unexpected<Error> no_room(std::size_t charts, int resolution) {
               "lowest_resolution");
 }
 
-// The area of a face on the surface divided by its area in the plane: how much more surface a texel
-// holds there than elsewhere.
+// Returns the area of a face on the surface divided by its area in the plane. The result is
+// proportional to the surface area that a texel of the face holds.
 float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane,
                  std::uint32_t face) {
   const glm::vec2* p = &plane[3 * std::size_t{face}];
@@ -109,7 +111,7 @@ float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane,
   return area > 0 ? surface.original_frames.areas[face] / area : 0;
 }
 
-// The factor by which a chart may be made shorter so that no texel of it holds too much.
+// Returns the factor by which a chart may be shortened without exceeding kMaxStretch in any face.
 float least_scale(const ChartSurface& surface, const Unwrap& unwrap, const Chart& chart) {
   float most = 1;
   for (const auto face : chart.faces)
@@ -154,7 +156,7 @@ Result<void> begin_pack(int resolution, const Progress& progress, Unwrap& unwrap
   return {};
 }
 
-// Uses the narrow gap where the charts do not fit with the wide one.
+// Packs with the narrow gap if the charts do not fit with the wide gap.
 Result<void> begin_pack_somehow(int resolution, const Progress& progress, Unwrap& unwrap) {
   auto begun = begin_pack(resolution, progress, unwrap);
   if (begun || progress.cancelled() || unwrap.gap == kNarrowGap) return begun;
@@ -180,7 +182,7 @@ ChartOptions chart_options(const ChartSurface& surface, int lowest_resolution) {
   return options;
 }
 
-// Gives the faces their own charts and flattens these.
+// Gives the faces their own charts and flattens these charts.
 Result<void> split(const ChartSurface& surface, std::span<const std::uint32_t> faces,
                    float smallest_footprint, int lowest_resolution, const Progress& progress,
                    Unwrap& unwrap) {
@@ -219,7 +221,7 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
   return unwrap;
 }
 
-// Replaces `unwrap` by `changed` where that is denser.
+// Replaces `unwrap` by `changed` if `changed` has the higher coverage.
 Result<void> take_denser(int lowest_resolution, const Progress& progress, Unwrap changed,
                          Unwrap& unwrap) {
   auto begun = begin_pack(lowest_resolution, progress, changed);
@@ -230,7 +232,7 @@ Result<void> take_denser(int lowest_resolution, const Progress& progress, Unwrap
 
 // Squeezes the charts that are longer than the side of an atlas with the target coverage.
 void squeeze_long(const ChartSurface& surface, int lowest_resolution, Unwrap& unwrap) {
-  // Squeezed charts have less area, so each round must squeeze a little more.
+  // Squeezed charts have a smaller area, so each round must squeeze the charts a little more.
   for (int round = 0; round < 3; ++round) {
     unwrap.longest = static_cast<float>((1 - 2.0 * kWideGap / lowest_resolution) *
                                         std::sqrt(area_in_planes(unwrap) / kTargetCoverage));
@@ -238,8 +240,8 @@ void squeeze_long(const ChartSurface& surface, int lowest_resolution, Unwrap& un
   }
 }
 
-// Raises a low coverage: squeezes the charts whose length keeps all others small, cuts hollow ones,
-// and makes the gaps narrow, until the coverage is good enough.
+// Raises a low coverage until it is good enough. Squeezes the charts whose length keeps all other
+// charts small, cuts hollow charts, and narrows the gaps.
 Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const Progress& progress,
                       Unwrap& unwrap) {
   const auto is_poor = [&] { return unwrap.expected_coverage < kGoodCoverage; };
@@ -271,7 +273,8 @@ Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const 
   return {};
 }
 
-// Packs again after a few small charts were added: they usually fit at the same density, or nearly.
+// Packs again after a few small charts were added. They usually fit at the same or almost the same
+// density.
 Result<void> pack_again(int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
   for (int attempt = 0; attempt < kMaxRepackings; ++attempt) {
     const double density = unwrap.packing.texels_per_unit * std::pow(kRepackingStep, attempt);
@@ -310,8 +313,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
 
   Atlas atlas;
   const auto resolutions = verified_resolutions(lowest_resolution);
-  // Each round moves the later of two faces that share a texel to its own chart, so two or three
-  // rounds are enough; if not, the report lists the overlap.
+  // If two faces share a texel, the later face moves to its own chart. Two or three rounds are
+  // usually enough. If they are not, the report lists the overlap.
   for (int round = 0; round < kMaxMendingRounds; ++round) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(0.85, "Checking that nothing overlaps");

@@ -5,33 +5,33 @@
 
 namespace strata::mesh {
 
-// Texture coordinates of every corner, and the report on them.
+// The texture coordinates of every corner and the report on them.
 struct Atlas {
-  std::vector<glm::vec2> corner_uvs;  // 3 a triangle, inside [0,1]²
+  std::vector<glm::vec2> corner_uvs;  // 3 per triangle, inside [0,1]²
   AtlasReport report;
-  // For the file's own coordinates: triangles that could not stay at their coordinates in the file
-  // (ascending), the factor by which all others were scaled to make room for these, and both in
-  // words.
+  // These members are for the file's own coordinates. `moved` lists the triangles that could not
+  // keep the coordinates of the file (ascending). `kept_scale` is the factor by which all other
+  // triangles were scaled to make room for them. `repairs` describes both changes in words.
   std::vector<std::uint32_t> moved = {};
   float kept_scale = 1;
   std::vector<Repair> repairs = {};
 };
 
-// Keeps the file's own UVs, where they can carry layers: inside one tile, every triangle with area
-// has uv area (except up to 0.1 % of the surface), and at least 99.5 % of covered texels at
-// `lowest_resolution` have one owner (the rest is reported as `overlap`). Triangles that violate
-// this are moved to free texels, where they are at most 10 % of the surface. Otherwise returns an
-// error with the reason, and the caller makes an atlas.
+// Keeps the file's own UVs if they can carry layers. All UVs must be inside one tile. Every
+// triangle with area must have an area in UV space, except for up to 0.1 % of the surface. At least
+// 99.5 % of the covered texels at `lowest_resolution` must have one owner. The rest is reported as
+// `overlap`. Triangles that violate these rules are moved to free texels if they are at most 10 %
+// of the surface. Otherwise returns an error with the reason, and the caller makes an atlas.
 Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
 
-// Unwraps the surface: cone-bounded charts, grown on a smoothed copy and flattened so that no
-// triangle is folded and few are squeezed, each at the scale of its surface, packed by their exact
-// texels with ≥ 2 texels between them at `lowest_resolution`. Connected faces of one plane are one
-// chart. Where less than 60 % of the texels would be used, charts as long as the atlas are
-// squeezed, hollow ones of larger meshes cut, and the gaps made narrow; where the coverage stays
-// lower, the report's limits give the reasons. The result is verified at the final density:
-// conflicting faces get their own charts. Uses two threads; the result does not depend on their
-// number.
+// Unwraps the surface into charts bounded by a cone of normals. Charts are grown on a smoothed copy
+// and flattened so that no triangle is folded and few are squeezed. Each chart has the scale of its
+// surface. Charts are packed by their exact texels with at least 2 texels between them at
+// `lowest_resolution`. Connected faces of one plane form one chart. If less than 60 % of the texels
+// would be used, charts as long as the atlas are squeezed. Hollow charts of larger meshes are cut,
+// and the gaps are narrowed. If the coverage stays lower, the report's limits give the reasons. The
+// result is verified at the final density, and conflicting faces get their own charts. Uses two
+// threads. The result does not depend on the number of threads.
 Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
 
 }  // namespace strata::mesh

@@ -6,10 +6,10 @@
 namespace strata::mesh {
 namespace {
 
-// share of the side of the atlas: a chart at least this long keeps the others small
+// as a share of the atlas side; a chart at least this long keeps the other charts small
 constexpr double kNearlyAll = 0.9;
 constexpr double kThin = 0.25;  // width over length
-constexpr double kMuch = 0.15;  // of the atlas
+constexpr double kMuch = 0.15;  // share of the atlas
 
 }  // namespace
 

@@ -9,16 +9,17 @@
 
 namespace strata::mesh {
 
-// promised share of the texels that lie on the surface; a smaller one is explained
+// promised share of the texels with surface; a smaller share is explained
 constexpr double kPromisedCoverage = 0.6;
 
-// The reasons why an atlas of these charts has a `coverage` below kPromisedCoverage: at least one,
-// the most important first. Empty where the coverage is high enough. `gap`: texels between charts.
+// Returns the reasons why an atlas of these charts has a `coverage` below kPromisedCoverage. The
+// list has at least one reason and begins with the most important one. It is empty if the coverage
+// is high enough. `gap` is the number of texels between charts.
 std::vector<AtlasReport::Limit> limits_of_packing(std::span<const Outline> outlines,
                                                   const Packing& packing, int side, int gap,
                                                   double coverage);
 
-// For the file's own coordinates.
+// Returns the reasons for an atlas with the file's own coordinates.
 std::vector<AtlasReport::Limit> limits_of_file(double coverage);
 
 }  // namespace strata::mesh

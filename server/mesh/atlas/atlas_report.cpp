@@ -22,11 +22,11 @@ struct Stretch {
   float area;
 };
 
-// A stretch beyond this factor of the mean counts as this factor: the ratio of a sliver says
-// nothing about the atlas.
+// A stretch greater than this multiple of the mean counts as this multiple, because the ratio of a
+// sliver is not meaningful for the atlas.
 constexpr double kMaxStretch = 50;
 constexpr int kMaxMeasured = 8192;                         // finer grids would take seconds
-constexpr std::size_t kBandTexels = std::size_t{1} << 22;  // measured at a time
+constexpr std::size_t kBandTexels = std::size_t{1} << 22;  // texels measured at a time
 
 void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasMeasure& measure) {
   if (area <= 0 || uv_area <= 0) return;
@@ -47,8 +47,8 @@ void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasM
   }
 }
 
-// The factor that scales the mean triangle to an area of 1: nanometer and megameter models stay in
-// the range of float.
+// Returns the factor that scales the mean triangle to an area of 1. With this factor, nanometer and
+// megameter models stay within the range of float.
 double scale_of(const TriangleMesh& mesh, double area) {
   return area > 0 ? static_cast<double>(mesh.triangle_count()) / area : 1;
 }
@@ -80,7 +80,7 @@ double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> u
                           int resolution) {
   const auto side = static_cast<std::size_t>(resolution);
   const double scale = scale_of(mesh, surface_area(mesh));
-  // In bands: the whole atlas at 8192² would take 268 MB.
+  // The atlas is measured in bands, because the whole atlas at 8192² would take 268 MB.
   const int rows = static_cast<int>(std::max<std::size_t>(1, kBandTexels / side));
   std::vector<float> texel_areas(side * static_cast<std::size_t>(rows));
   float largest = 0;

@@ -5,7 +5,8 @@
 
 namespace strata::mesh {
 
-// A row of texels as bits, 64 a word: returns those of [begin, end) that lie in word number `word`.
+// A row of texels is stored as bits, 64 per word. Returns the bits of [begin, end) in word number
+// `word`.
 inline std::uint64_t bits_between(int word, int begin, int end) {
   const int low = std::max(begin - 64 * word, 0), high = std::min(end - 64 * word, 64);
   if (low >= high) return 0;

@@ -24,8 +24,8 @@ int longest_run(const ChartMask& mask, int row) {
   return length;
 }
 
-// Orders the row with the longest run first, then rows far apart, then those between them: this
-// order finds early that a place is not free.
+// Orders the row with the longest run first, then rows far apart, then the rows between them. With
+// this order, an occupied position is rejected early.
 void order_rows(const ChartMask& mask, std::vector<std::uint16_t>& order) {
   order.clear();
   int longest = 0, length = 0;
@@ -82,7 +82,7 @@ int Canvas::longest_free(int y) {
   words_touched_ += static_cast<std::uint64_t>(word_count_);
   int longest = 0, free_since = kEdgeMargin;
   for (int word = 0; word < word_count_; ++word) {
-    // From each free run's end to the next one's beginning.
+    // A free run extends from the end of an occupied run to the beginning of the next occupied run.
     Word taken = line[word];
     while (taken != 0) {
       const int begin = std::countr_zero(taken), length = std::countr_one(taken >> begin);
@@ -99,8 +99,8 @@ Canvas::Spot Canvas::find(const ChartMask& mask, int lowest, int highest) {
   highest = std::min(highest, height_ - kEdgeMargin - mask.height + 1);
   if (last < first) return {};
   order_rows(mask, row_order_);
-  // The rows that are first checked for a long enough run of free texels: most rows of a filled
-  // atlas have none.
+  // These rows are checked first for a long enough run of free texels. Most rows of a filled atlas
+  // have no such run.
   struct RowRun {
     int row, run;
   };

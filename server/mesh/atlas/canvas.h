@@ -7,8 +7,8 @@
 
 namespace strata::mesh {
 
-// The occupied texels of an atlas as bits, with the data for a fast search of the lowest free place
-// of a chart's exact shape: charts lie in each other's bays and holes.
+// The occupied texels of an atlas as bits, with data for a fast search for the lowest free position
+// of a chart's exact shape. Charts can lie in the bays and holes of other charts.
 class Canvas {
  public:
   Canvas(int side, int gap) : Canvas(side, side, gap) {}
@@ -17,14 +17,16 @@ class Canvas {
   struct Spot {
     int x = -1, y = 0;
   };
-  // Returns the lowest place from row `lowest` on, and of those the leftmost, whose texels are all
-  // free, with y below `highest`; x < 0 where no such place exists.
+  // Returns a position where all texels of the mask are free, with `lowest` ≤ y < `highest`. Of
+  // these positions it returns the lowest, and of the lowest positions the leftmost. x < 0 if no
+  // such position exists.
   Spot find(const ChartMask& mask, int lowest, int highest);
 
-  // Occupies the texels of the mask, and all within `gap` texels of them.
+  // Occupies the texels of the mask and all texels within a distance of `gap` texels.
   void put(const ChartMask& mask, Spot spot);
 
-  // How many words of bits were read and written: the amount of work, the same on every machine.
+  // Returns the number of words of bits read and written. This measure of the work is the same on
+  // every machine.
   std::uint64_t words_touched() const { return words_touched_; }
 
  private:
@@ -38,17 +40,17 @@ class Canvas {
   int longest_free(int y);
 
   const int width_, height_, gap_, word_count_, stride_;
-  // Bit x of a row of level j: whether any of texels x … x + 2^j - 1 is occupied. Rows have extra
-  // words, which are free texels for reads beyond the end.
+  // Bit x of a row at level j is set if any of the texels x … x + 2^j - 1 is occupied. Rows have
+  // extra words that count as free texels for reads beyond the end.
   std::vector<std::vector<Word>> levels_;
-  // For each row: the longest run of free texels between the margins, measured on demand; less than
-  // 0: not measured yet.
+  // For each row, the longest run of free texels between the margins. It is measured on demand. A
+  // value less than 0 means not measured yet.
   std::vector<std::int32_t> longest_free_;
   std::uint64_t words_touched_ = 0;
-  // in the searched row: places where the chart does not fit
+  // in the searched row: positions where the chart does not fit
   std::vector<Word> blocked_;
-  std::vector<std::uint16_t> open_;       // its words with a free place
-  std::vector<std::uint16_t> row_order_;  // of the mask: those that block most first
+  std::vector<std::uint16_t> open_;       // words of blocked_ with a free position
+  std::vector<std::uint16_t> row_order_;  // rows of the mask; the rows that block most come first
 };
 
 }  // namespace strata::mesh

@@ -11,7 +11,7 @@
 namespace strata::mesh {
 namespace {
 
-// Texels of a chart's window as bits.
+// The texels of a chart's window as bits.
 class Window {
  public:
   void reset(glm::ivec2 size) {

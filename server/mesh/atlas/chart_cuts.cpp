@@ -25,8 +25,8 @@ float area_in_plane(std::span<const glm::vec2> plane, const Chart& chart) {
   return sum;
 }
 
-// For many faces: two halves, by the sides of the middle of the box's longer side on which their
-// middles lie.
+// Cuts a chart with many faces into two halves. A face belongs to the half that contains its
+// center. The cut is perpendicular to the box's longer side and passes through its middle.
 std::vector<Chart> halves_of(const Chart& chart, const Outline& outline,
                              std::span<const glm::vec2> plane) {
   std::vector<Chart> halves{chart, chart};
@@ -40,8 +40,8 @@ std::vector<Chart> halves_of(const Chart& chart, const Outline& outline,
   return halves;
 }
 
-// For a few faces, such as the eight of a frame, which no straight line cuts into its bars: joins
-// single faces, one by one, into the parts that fill their boxes best.
+// Joins single faces, one by one, into the parts that fill their boxes best. Suits charts with few
+// faces, such as the eight faces of a frame. No straight line can cut such a frame into its bars.
 class Joiner {
  public:
   Joiner(const ChartSurface& surface, std::span<const glm::vec2> plane, const Chart& chart)
@@ -93,7 +93,7 @@ class Joiner {
   std::vector<Chart> parts_;
   std::vector<std::size_t> part_of_;  // for each face of the chart
   std::map<std::uint32_t, std::size_t> number_of_;
-  // key: first face and number of faces of both parts
+  // key: first face and number of faces of each part
   std::map<std::array<std::size_t, 4>, float> fills_;
 };
 

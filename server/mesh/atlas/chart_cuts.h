@@ -8,10 +8,10 @@
 
 namespace strata::mesh {
 
-// Cuts charts that leave most of their boxes empty (frames, rings, branches), across the longer
-// sides of the boxes and along edges of triangles, until their parts fill their boxes or have boxes
-// smaller than `least_box` (area in the plane). `plane` is the result of `flatten`; it is not
-// changed. Returns whether any chart was cut.
+// Cuts charts that leave most of their boxes empty, for example frames, rings and branches. The
+// cuts run across the longer sides of the boxes and along edges of triangles. Cutting ends when the
+// parts fill their boxes or their boxes have an area in the plane below `least_box`. `plane` is the
+// result of `flatten` and is not changed. Returns true if any chart was cut.
 bool cut_hollow_charts(const ChartSurface& surface, std::span<const glm::vec2> plane,
                        float least_box, std::vector<Chart>& charts);
 

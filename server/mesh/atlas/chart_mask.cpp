@@ -6,8 +6,8 @@
 namespace strata::mesh {
 namespace {
 
-// Collects the texels of each row that a chart touches: those under its rim, and those between
-// crossings of the row's middle line where the rim winds around them.
+// Collects the texels of each row that a chart touches. These are the texels under its rim, and the
+// texels between two crossings of the row's center line if the rim winds around them.
 class Rows {
  public:
   Rows(int width, int height) : width_(width), rim_(height), crossings_(height) {}
@@ -38,7 +38,7 @@ class Rows {
     for (std::size_t y = 0; y < rim_.size(); ++y) {
       auto& runs = rim_[y];
       add_inner(crossings_[y], runs);
-      // Only rounding leaves a row untouched; the row counts as full.
+      // A row can be empty only because of rounding. It then counts as full.
       if (runs.empty()) runs.push_back({0, static_cast<std::int16_t>(width_)});
       std::sort(runs.begin(), runs.end(),
                 [](const auto& a, const auto& b) { return a.begin < b.begin; });
@@ -117,8 +117,8 @@ ChartShape make_shape(const Outline& outline, double density) {
     rows.add(a, b);
     columns.add({a.y, a.x}, {b.y, b.x});
   }
-  // A quarter turn maps (x, y) to (height - y, x): its rows are the columns, read from the top
-  // down.
+  // A quarter turn maps (x, y) to (height - y, x). The rows of the result are the columns of the
+  // source, read from top to bottom.
   const ChartMask upright = rows.mask(), transposed = columns.mask();
   shape.turned[0] = upright;
   shape.turned[1] = with_columns_reversed(transposed);

@@ -10,20 +10,20 @@
 
 namespace strata::mesh {
 
-// Texels between the rim of a chart's box and the chart: a texel counts as touched by everything
-// that is as near. Rounding, the steps of UVs and a GPU's grid move a point by less, so texels
-// outside a mask stay empty in every quarter turn.
+// The distance, in texels, between the border of a chart's box and the chart. A chart also touches
+// the texels within this distance. Rounding, the steps of UVs and the grid of a GPU move a point by
+// less. Texels outside a mask therefore stay empty in every quarter turn.
 constexpr double kNear = 1.0 / 256;
 
-// The texels that a chart touches, row by row as runs.
+// The texels that a chart touches, as runs in each row.
 struct ChartMask {
   struct Run {
     std::int16_t begin, end;
     bool operator==(const Run&) const = default;
   };
   int width = 0, height = 0;
-  std::vector<std::uint32_t> first_run;  // of each row, and the end
-  std::vector<Run> runs;                 // of a row: disjoint, from left to right
+  std::vector<std::uint32_t> first_run;  // one entry for each row and one for the end
+  std::vector<Run> runs;                 // in a row: disjoint, from left to right
 
   std::span<const Run> row(int y) const {
     return {runs.data() + first_run[y], runs.data() + first_run[y + 1]};
@@ -36,9 +36,9 @@ struct ChartMask {
   bool operator==(const ChartMask&) const = default;
 };
 
-// A chart at one density in its four quarter turns, counterclockwise.
+// The masks of a chart at one density in its four quarter turns (counterclockwise).
 struct ChartShape {
-  glm::ivec2 box{1};  // whole texels, before the turns; the outline begins at kNear
+  glm::ivec2 box{1};  // in whole texels, before the turns; the outline begins at kNear
   std::array<ChartMask, 4> turned;
 };
 ChartShape make_shape(const Outline& outline, double texels_per_unit);

@@ -18,12 +18,12 @@ namespace {
 
 constexpr std::uint32_t kNoChart = 0xffffffffu, kKept = 0xfffffffeu;
 constexpr std::size_t kWorthRegrowing = 16;  // faces
-// faces: smaller charts give their faces to neighbors where possible
+// number of faces; smaller charts give their faces to neighbors where possible
 constexpr std::size_t kTinyChart = 24;
 constexpr float kLikeTrend = 0.5f;
-// side of the window, in half sides of a chart: long faces extend beyond a chart
+// side of the window, in half sides of a chart; long faces extend beyond a chart
 constexpr double kWindow = 3;
-constexpr double kSeedPiece = 2048;  // texels: flat pieces at least this large seed charts first
+constexpr double kSeedPiece = 2048;  // in texels; flat pieces at least this large seed charts first
 
 void set_axis(Chart& chart, glm::vec3 axis) {
   chart.axis = axis;
@@ -55,7 +55,7 @@ class Grower {
     measure_pieces();
   }
 
-  // Keeps the charts of all faces but these.
+  // Keeps the charts of all faces except the given faces.
   void keep_all_but(std::span<const std::uint32_t> faces) {
     std::fill(chart_of_face_.begin(), chart_of_face_.end(), kKept);
     for (const auto face : faces) chart_of_face_[face] = kNoChart;
@@ -68,8 +68,8 @@ class Grower {
   std::vector<Chart> take() { return std::move(charts_); }
 
  private:
-  // Whether the faces of a flat piece are added together or singly; too_large: larger than the
-  // window in which charts grow.
+  // Specifies whether the faces of a flat piece are added together or one by one. A piece that is
+  // too_large is larger than the window in which charts grow.
   enum class PieceKind : std::uint8_t { loose, whole, too_large };
 
   void measure_pieces();
@@ -77,7 +77,7 @@ class Grower {
     const std::uint32_t piece = surface_.flat.piece_of(face);
     return piece == FlatPieces::kNone ? PieceKind::loose : piece_kinds_[piece];
   }
-  // The faces that are added together with this one, which is among them.
+  // Returns the faces that are added together with this face, including the face itself.
   std::span<const std::uint32_t> unit_of(const std::uint32_t& face) const {
     return kind_of(face) == PieceKind::loose ? std::span(&face, 1)
                                              : surface_.flat.faces_of(surface_.flat.piece_of(face));
@@ -105,7 +105,7 @@ class Grower {
     const auto p = texels_of(chart, face);
     return occupancy_.claim(p[0], p[1], p[2], overlap);
   }
-  // Claims all of the faces or none.
+  // Claims either all of the faces or none of them.
   bool claim(const Chart& chart, std::span<const std::uint32_t> faces, Occupancy::Overlap overlap) {
     if (faces.size() == 1) return claim(chart, faces.front(), overlap);
     if (overlap == Occupancy::Overlap::refuse)
@@ -127,10 +127,10 @@ class Grower {
   Occupancy occupancy_;
   std::vector<PieceKind> piece_kinds_;
   std::vector<std::uint32_t> chart_of_face_;
-  std::vector<std::uint32_t> queued_at_;  // number of the growth that last queued the face
+  std::vector<std::uint32_t> queued_at_;  // number of the last growth that queued the face
   std::uint32_t growth_ = 0;
   std::vector<Chart> charts_;
-  std::vector<std::uint32_t> front_;  // faces next to finished charts: the next seeds
+  std::vector<std::uint32_t> front_;  // faces next to finished charts, the next seeds
   std::size_t seed_pieces_ = 0;       // flat pieces that seed charts first
   std::size_t piece_cursor_ = 0, front_cursor_ = 0, scan_cursor_ = 0;
 };
@@ -170,7 +170,7 @@ void Grower::grow(std::uint32_t seed, glm::vec3 axis, std::uint32_t id, Chart& c
   while (!queue.empty()) {
     const std::uint32_t face = queue.top().second;
     queue.pop();
-    if (chart_of_face_[face] == id) continue;  // was added with its flat piece
+    if (chart_of_face_[face] == id) continue;  // the face was added with its flat piece
     const bool is_seed = face == seed;
     if (!is_seed && (glm::dot(surface_.trend_normals[face], axis) < smallest_cosine_ ||
                      !can_project(face, axis)))
@@ -257,7 +257,7 @@ bool Grower::grow_all(Progress* shown, const Progress& progress) {
   return true;
 }
 
-// The large neighboring chart on whose plane the unit has the largest footprint.
+// Returns the large neighboring chart on whose plane the unit has the largest footprint.
 std::uint32_t Grower::best_host(std::span<const std::uint32_t> unit) const {
   std::uint32_t best = kNoChart;
   float best_cosine = options_.smallest_footprint;
@@ -319,7 +319,7 @@ ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
     }
   });
   surface.flat = find_flat_pieces(mesh, surface.neighbours, surface.original_frames);
-  // Flat pieces have no noise; smoothing would round their edges off, and shrink a cube of twelve
+  // Flat pieces have no noise. Smoothing would round off their edges and shrink a cube of twelve
   // triangles to a ball.
   std::vector<std::uint8_t> stays;
   if (surface.flat.count() > 0) stays.assign(mesh.positions.size(), 0);
@@ -327,14 +327,14 @@ ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
     for (int k = 0; k < 3; ++k) stays[mesh.triangles[3 * std::size_t{face} + k]] = 1;
   surface.smoothed =
       laplacian_smoothed(mesh.triangles, *connectivity, mesh.positions, smoothing, stays);
-  connectivity.reset();  // charts are grown and laid out by `neighbours`, in a fifth of the memory
+  connectivity.reset();  // later steps use `neighbours`, which takes a fifth of the memory
   surface.smoothed_frames = face_frames(mesh.triangles, surface.smoothed);
   surface.trend_normals =
       averaged_normals(mesh.triangles, mesh.positions.size(), surface.smoothed_frames, 3);
   for (std::uint32_t piece = 0; piece < surface.flat.count(); ++piece)
     for (const auto face : surface.flat.faces_of(piece))
       surface.trend_normals[face] = surface.flat.normals[piece];
-  // Around the ends of long faces the mean is not meaningful.
+  // Around the ends of long faces the mean normal is not meaningful.
   for (std::size_t face = 0; face < mesh.triangle_count(); ++face)
     if (glm::dot(surface.trend_normals[face], surface.smoothed_frames.normals[face]) < kLikeTrend)
       surface.trend_normals[face] = surface.smoothed_frames.normals[face];

@@ -9,12 +9,12 @@
 namespace strata::mesh {
 namespace {
 
-// Distance from a plane, share of the largest side of the mesh: covers the rounding of text files
-// with few digits and of float positions.
+// The largest distance from the plane, as a share of the largest side of the mesh. It covers the
+// rounding of float positions and of text files with few digits.
 constexpr float kOffPlane = 1e-5f;
-constexpr float kFlatCosine = 0.99999f;    // 0.26°: between normals of faces of one piece
+constexpr float kFlatCosine = 0.99999f;    // 0.26°: between the normals of faces of one piece
 constexpr float kCreaseCosine = 0.99985f;  // 1°: to a face beyond the edge of the piece
-constexpr float kMaxSmoothEdge = 0.25f;    // share of a piece's edge that is no crease
+constexpr float kMaxSmoothEdge = 0.25f;    // largest share of a piece's edge that is not a crease
 
 class Finder {
  public:
@@ -24,7 +24,7 @@ class Finder {
   FlatPieces find() {
     std::vector<std::uint32_t> seeds = faces_with_a_flat_edge();
     if (seeds.empty()) return {};
-    // Large faces first: they have the most exact normals.
+    // Large faces come first, because they have the most exact normals.
     std::stable_sort(seeds.begin(), seeds.end(),
                      [&](auto a, auto b) { return frames_.areas[a] > frames_.areas[b]; });
     of_face_.assign(mesh_.triangle_count(), FlatPieces::kNone);
@@ -55,14 +55,14 @@ class Finder {
     return faces;
   }
 
-  // The faces around `seed` in its plane become a piece, if they end at creases.
+  // Makes a piece of the faces around `seed` in its plane if they end at creases.
   void collect(std::uint32_t seed) {
     const auto number = static_cast<std::uint32_t>(pieces_.size());
     Piece piece;
     piece.normal = frames_.normals[seed];
     const glm::vec3 origin = mesh_.corner(seed, 0);
     const auto lies_in_plane = [&](std::uint32_t face) {
-      // The normal of a sliver is inexact: its corners decide.
+      // The normal of a sliver is inexact, so only its corners are tested.
       const float cosine = glm::dot(frames_.normals[face], piece.normal);
       if (frames_.areas[face] > 0 && cosine < kFlatCosine) return false;
       for (int k = 0; k < 3; ++k)
@@ -85,7 +85,7 @@ class Finder {
     if (piece.faces.size() > 1 && ends_at_creases(piece, number)) {
       pieces_.push_back(std::move(piece));
     } else {
-      // Other seeds on a smooth surface would find almost the same faces.
+      // Other seeds on a smooth surface would lead to almost the same faces.
       for (const auto face : piece.faces) of_face_[face] = FlatPieces::kNone, was_tried_[face] = 1;
     }
   }

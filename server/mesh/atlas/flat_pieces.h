@@ -8,14 +8,15 @@
 
 namespace strata::mesh {
 
-// Connected faces that lie in one plane and end at creases or rims: the sides of a cube, the cap of
-// a cylinder. Faces of a curved surface are in no piece, even with small angles between them.
+// Connected faces that lie in one plane and end at creases or rims. Examples are the sides of a
+// cube and the cap of a cylinder. Faces of a curved surface are in no piece, even with small angles
+// between them.
 struct FlatPieces {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  // number of the piece of each face, or kNone; empty where there are no pieces
+  // number of the piece of each face, or kNone; empty if there are no pieces
   std::vector<std::uint32_t> of_face;
-  // those of piece i: faces[begin[i]] up to faces[begin[i + 1]]
+  // the faces of piece i are faces[begin[i]] up to faces[begin[i + 1]]
   std::vector<std::uint32_t> faces, begin;
   std::vector<glm::vec3> normals;  // of each piece
 
@@ -28,8 +29,8 @@ struct FlatPieces {
   }
 };
 
-// The pieces of at least two faces, the largest area first. `neighbours` is the result of
-// `face_neighbours`.
+// Returns the pieces of at least two faces, ordered by area, largest first. `neighbours` is the
+// result of `face_neighbours`.
 FlatPieces find_flat_pieces(const UnitMesh& mesh, std::span<const std::uint32_t> neighbours,
                             const FaceFrames& frames);
 

@@ -12,11 +12,11 @@ namespace {
 
 // faces with less than this share of their true area are repaired
 constexpr float kBadArea = 0.4f;
-constexpr float kGoodArea = 0.5f;  // target share of the repair
-constexpr int kRings = 4;          // of faces around a bad one that may move
+constexpr float kGoodArea = 0.5f;  // target share after the repair
+constexpr int kRings = 4;          // rings of faces around a bad face that may move
 constexpr int kMaxSweeps = 40;
 
-// Negative where the face is flipped.
+// Returns a negative area if the face is flipped.
 float plane_area(std::span<const glm::vec2> plane, std::uint32_t face) {
   const glm::vec2* p = &plane[3 * std::size_t{face}];
   const glm::vec2 ab = p[1] - p[0], ac = p[2] - p[0];
@@ -37,7 +37,7 @@ class Flattener {
 
  private:
   float area_of(std::uint32_t face) const { return plane_area(plane_, face); }
-  // Faces of the chart within kRings of a bad one, in the order of their rings.
+  // Returns the faces of the chart within kRings of a bad face, in the order of their rings.
   std::vector<std::uint32_t> around_bad_faces(std::uint32_t chart, float plane_per_surface);
   RelaxPatch make_patch(std::span<const std::uint32_t> faces, float plane_per_surface,
                         std::vector<std::uint32_t>& vertices) const;
@@ -45,7 +45,7 @@ class Flattener {
   const ChartSurface& surface_;
   std::span<const Chart> charts_;
   std::vector<std::uint32_t> chart_of_face_;
-  std::vector<std::uint8_t> ring_of_face_;  // in its patch; more than kRings: in no patch
+  std::vector<std::uint8_t> ring_of_face_;  // in the face's patch; > kRings: in no patch
   std::vector<glm::vec2>& plane_;
 };
 
@@ -72,7 +72,7 @@ std::vector<std::uint32_t> Flattener::around_bad_faces(std::uint32_t chart,
   return patch;
 }
 
-// `vertices`: vertex numbers of the mesh, one for each point of the patch.
+// `vertices` receives the vertex numbers in the mesh, one for each point of the patch.
 RelaxPatch Flattener::make_patch(std::span<const std::uint32_t> faces, float plane_per_surface,
                                  std::vector<std::uint32_t>& vertices) const {
   const auto& triangles = surface_.mesh.triangles;

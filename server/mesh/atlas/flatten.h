@@ -9,21 +9,22 @@
 
 namespace strata::mesh {
 
-// Sets where each corner lies in the plane of its chart, 3 a triangle, in units of the unit mesh,
-// for the charts from number `first` on. Charts are projected along their axes; where that folds or
-// squeezes triangles, the vertices around them are moved within the chart (its rim does not move).
-// Each chart is then scaled so that its area is that of its surface. The result does not depend on
-// the number of threads. When cancelled it ends early and does not update all corners.
+// Computes the position of each corner in the plane of its chart, 3 per triangle, in units of the
+// unit mesh. Charts before number `first` are not changed. Charts are projected along their axes.
+// If the projection folds or squeezes triangles, the vertices around them are moved within the
+// chart. The rim of the chart does not move. Each chart is then scaled to the area of its surface.
+// The result does not depend on the number of threads. When cancelled, the function ends early and
+// does not update all corners.
 void flatten(const ChartSurface& surface, std::span<const Chart> charts, std::size_t first,
              const Progress& progress, std::vector<glm::vec2>& plane, int threads = 2);
 
-// Triangles that are folded in the plane or have less than 1 / `most_stretch` of their area there,
-// and are no smaller than `least_area`.
+// Returns the triangles that are folded in the plane or keep less than 1 / `most_stretch` of their
+// area there. Triangles smaller than `least_area` are not included.
 std::vector<std::uint32_t> squeezed_faces(const ChartSurface& surface,
                                           std::span<const glm::vec2> plane, float most_stretch,
                                           float least_area);
 
-// The number of the chart of each triangle.
+// Returns the number of each triangle's chart.
 std::vector<std::uint32_t> chart_of_faces(std::span<const Chart> charts,
                                           std::size_t triangle_count);
 

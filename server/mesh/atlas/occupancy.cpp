@@ -30,7 +30,7 @@ bool Occupancy::is_free(glm::vec2 a, glm::vec2 b, glm::vec2 c) {
 bool Occupancy::claim(glm::vec2 a, glm::vec2 b, glm::vec2 c, Overlap overlap) {
   if (!holds(a, b, c)) {
     if (overlap == Overlap::refuse) return false;
-    // Far outside the window coordinates would overflow integers; texels outside are not recorded.
+    // Coordinates far outside the window would overflow integers. Texels outside are not recorded.
     const glm::vec2 limit(8.f * static_cast<float>(side_));
     a = glm::clamp(a, -limit, limit), b = glm::clamp(b, -limit, limit),
     c = glm::clamp(c, -limit, limit);

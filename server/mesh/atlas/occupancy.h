@@ -8,9 +8,9 @@
 
 namespace strata::mesh {
 
-// The texels that the faces of one growing chart cover, so that no two faces of it share a texel.
-// Chart coordinates are texels relative to the center of a square window of `side` texels; faces
-// that leave the window are refused.
+// The texels covered by the faces of one growing chart. With them, a chart can refuse faces that
+// share a texel. Chart coordinates are in texels relative to the center of a square window of
+// `side` texels. Faces that extend beyond the window are refused.
 class Occupancy {
  public:
   explicit Occupancy(int side) : side_(side), stamps_(static_cast<std::size_t>(side) * side, 0) {}
@@ -20,11 +20,11 @@ class Occupancy {
   // Clears all texels in constant time.
   void clear() { ++stamp_; }
 
-  // Whether the triangle lies in the window and all texels whose centers it covers are free.
+  // Returns true if the triangle lies in the window and all texels with centers inside it are free.
   bool is_free(glm::vec2 a, glm::vec2 b, glm::vec2 c);
 
-  // Occupies the texels whose centers the triangle covers; with Overlap::refuse only if all of them
-  // are free.
+  // Occupies the texels with centers inside the triangle. With Overlap::refuse it occupies them
+  // only if all of them are free.
   bool claim(glm::vec2 a, glm::vec2 b, glm::vec2 c, Overlap overlap = Overlap::refuse);
 
  private:

@@ -14,7 +14,7 @@ float turn_of(glm::vec2 a, glm::vec2 b, glm::vec2 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Corners of the convex hull, counterclockwise.
+// Returns the corners of the convex hull, counterclockwise.
 std::vector<glm::vec2> hull_of(std::vector<glm::vec2> points) {
   const auto before = [](glm::vec2 a, glm::vec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
   std::sort(points.begin(), points.end(), before);
@@ -33,8 +33,8 @@ std::vector<glm::vec2> hull_of(std::vector<glm::vec2> points) {
   return hull;
 }
 
-// Turns the outline so that its box has the least area: the box then lies on an edge of the convex
-// hull.
+// Rotates the outline so that its bounding box has the smallest area. One side of that box lies on
+// an edge of the convex hull.
 void turn(Outline& outline) {
   const auto hull = hull_of(outline.segments);
   float least = std::numeric_limits<float>::max();
@@ -52,7 +52,8 @@ void turn(Outline& outline) {
     turned.low = low, turned.size = high - low;
     if (const float area = turned.size.x * turned.size.y; area < least) least = area, best = turned;
   }
-  // Computed from the segments: rounding in the hull may leave points a little outside.
+  // The box is computed from the segments, because rounding in the hull may leave points slightly
+  // outside it.
   glm::vec2 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
   best.low = glm::vec2(0);
   for (auto& p : outline.segments) {

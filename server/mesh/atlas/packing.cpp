@@ -12,18 +12,18 @@
 namespace strata::mesh {
 namespace {
 
-// No single order packs every set of charts best: all orders are tried at one density, and the two
-// best at others. The more charts, the less the orders differ.
+// No single order packs every set of charts best, so several orders are tried. The orders differ
+// less with more charts, so fewer orders are then tried.
 enum Order : std::uint8_t { longer_side, box_area, half_perimeter, area, diagonal };
 constexpr std::array<std::uint8_t, 5> kOrders{longer_side, half_perimeter, box_area, diagonal,
                                               area};
 constexpr std::size_t kManyCharts = 1000, kSomeCharts = 200;
-// Two densities are tried at a time, with any number of threads: each round leaves a third of the
-// interval.
+// Two densities are tried at a time, independent of the number of threads. Each round reduces the
+// interval to a third.
 constexpr int kTogether = 2;
 constexpr int kRounds = 4, kRoundsOfMany = 3;
-constexpr double kLikelyFill = 0.78;  // of the atlas by charts with half their gaps
-// relative to the atlas: higher packings give no useful estimate
+constexpr double kLikelyFill = 0.78;  // share of the atlas filled by charts with half their gaps
+// relative to the atlas; higher packings give no useful estimate
 constexpr double kMaxHeight = 1.3;
 constexpr double kLessDense = 0.9, kMoreDense = 1.04;
 
@@ -47,10 +47,10 @@ std::vector<std::uint32_t> ordered(std::span<const ChartShape> shapes, std::uint
   return numbers;
 }
 
-// The row where the search for a chart's place begins. Nothing is free below the place of a chart
-// of the same shape. Below the places of the last charts of similar size (or of any size, if none
-// is similar) there is rarely free space; with many charts the search assumes no free space there,
-// because otherwise it would read the whole atlas for each chart.
+// The row where the search for a chart's position begins. Nothing is free below the position of an
+// earlier chart with the same shape. There is rarely free space below the positions of the last
+// charts of similar size, or of any size if no chart is similar. With many charts, the search
+// assumes no free space there. Otherwise it would read the whole atlas for each chart.
 class Floors {
  public:
   explicit Floors(std::size_t charts)
@@ -66,7 +66,7 @@ class Floors {
     if (like != of_size_.end()) return std::max(floor, least(like->second));
     return by_any_ ? std::max(floor, least(of_any_)) : floor;
   }
-  // Records a place, whether or not the chart was put there.
+  // Records a position, whether or not the chart was put there.
   void found(const ChartMask& mask, std::uint64_t shape, int y) {
     of_shape_[shape] = y;
     if (!by_size_) return;
@@ -96,7 +96,7 @@ class Floors {
   }
   const bool by_size_, by_any_;
   std::unordered_map<std::uint64_t, int> of_shape_;
-  // three values, so that one chart that is hard to place does not decide alone
+  // three values, so one chart that is hard to place does not decide alone
   std::unordered_map<std::uint64_t, std::array<int, 3>> of_size_;
   std::array<int, 32> of_any_;
 };
@@ -111,7 +111,7 @@ std::uint64_t fingerprint(const ChartMask& mask) {
   return hash;
 }
 
-// In texels: a margin of one remains on either side.
+// In texels. A margin of one texel remains on each side.
 int longest_box(int side) { return std::max(1, side - 2); }
 
 // The shapes of all charts at one density.
@@ -121,7 +121,7 @@ struct Shapes {
   std::vector<std::array<std::uint64_t, 4>> fingerprints;  // of each chart in its four turns
 };
 
-// Empty where a shape is larger than the atlas.
+// Returns nothing if a shape is larger than the atlas.
 std::optional<Shapes> make_shapes(std::span<const Outline> outlines, double density, int side) {
   Shapes shapes;
   shapes.texels_per_unit = density;
@@ -155,8 +155,8 @@ std::optional<Trial> place(const Shapes& shapes, int side, int most_height, int 
     const auto& prints = shapes.fingerprints[i];
     Canvas::Spot best;
     int best_turn = 0, best_top = most_height + 1;
-    // The lying turn first: the upright turn reaches the same height only from far lower, so little
-    // is left to search.
+    // The turn with a horizontal longer side is tried first. An upright turn reaches the same
+    // height only from a much lower position, so little is left to search.
     const int lying = shape.box.x >= shape.box.y ? 0 : 1;
     for (const int turn : {lying, lying + 2, 1 - lying, 3 - lying}) {
       // Small charts often have the same shape in opposite turns.
@@ -192,7 +192,8 @@ double doubled_area(const Outline& outline) {
   return std::max(area, 0.0);
 }
 
-// The density at which the charts, each with half a gap around it, cover `share` of the atlas.
+// Returns the density at which the charts, each with half a gap around it, cover `share` of the
+// atlas.
 double density_that_fills(std::span<const Outline> outlines, int side, int gap, double share) {
   double area = 0, rim = 0;
   for (const Outline& outline : outlines) {
@@ -206,7 +207,8 @@ double density_that_fills(std::span<const Outline> outlines, int side, int gap, 
   return a > 0 ? (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a) : -c / b;
 }
 
-// A little below the density at which the box of the longest chart would exceed `texels`.
+// Returns a density slightly below the one at which the box of the longest chart would exceed
+// `texels`.
 double density_of_longest(std::span<const Outline> outlines, int texels) {
   float largest = 0;
   for (const Outline& outline : outlines)

@@ -6,13 +6,13 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kAreaWeight = 4;  // of the area's distortion relative to the shape's
+constexpr double kAreaWeight = 4;  // weight of the area distortion relative to the shape distortion
 // height over base; the true shape of a thinner sliver is not meaningful
 constexpr double kMinQuality = 0.1;
 constexpr int kMaxHalvings = 6;
 
-// The map of a triangle from its true shape: the columns of the Jacobian are sums of its corners
-// with these factors.
+// The map of a triangle from its true shape. The columns of the Jacobian are sums of the triangle's
+// corners with these factors.
 struct Element {
   double first[3], second[3];
   double weight;
@@ -97,7 +97,8 @@ class Relaxer {
       visit(corners_[i] / 3, corners_[i] % 3);
   }
 
-  // Energy of the faces around a point; `epsilon` keeps it finite where some are folded.
+  // Returns the energy of the faces around a point. `epsilon` keeps it finite if some faces are
+  // folded.
   Energy energy(std::uint32_t v, double epsilon, bool with_gradient) const {
     Energy sum;
     for_each_corner(v, [&](std::uint32_t f, std::uint32_t k) {
@@ -143,7 +144,7 @@ class Relaxer {
   RelaxPatch& patch_;
   std::vector<glm::dvec2> points_;
   std::vector<Element> elements_;
-  std::vector<std::uint32_t> first_corner_, corners_;  // of each point: 3 * face + k
+  std::vector<std::uint32_t> first_corner_, corners_;  // per point; a corner is 3 * face + k
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ FaceFrames face_frames(std::span<const std::uint32_t> triangles,
                      ac = positions[triangles[3 * f + 2]] - a;
     const glm::dvec3 normal = glm::cross(ab, ac);
     const double length = glm::length(normal);
-    // Thinner than float positions can distinguish from a line.
+    // The face is too thin for float positions to distinguish it from a line.
     const double longest = std::max(glm::dot(ab, ab), glm::dot(ac, ac));
     if (length <= longest * 1e-7) continue;
     frames.normals[f] = glm::vec3(normal / length);

@@ -9,13 +9,13 @@
 
 namespace strata::mesh {
 
-// A mesh moved to the origin and scaled so that its largest side is 1, the input of the unwrap: so
-// models in millimeters, UTM meters and nanometers behave alike. Subtraction and scaling are
-// computed in double.
+// A mesh moved to the origin and scaled so that its largest side is 1. It is the input for
+// unwrapping, so models in millimeters, UTM meters and nanometers give equivalent results.
+// Subtraction and scaling are computed in double precision.
 struct UnitMesh {
   std::vector<glm::vec3> positions;
-  std::span<const std::uint32_t> triangles;  // of the source mesh, which must outlive this
-  double units_per_unit = 1;                 // file units per unit here
+  std::span<const std::uint32_t> triangles;  // of the source mesh, which must outlive this object
+  double units_per_unit = 1;                 // file units per unit of this mesh
 
   std::size_t triangle_count() const { return triangles.size() / 3; }
   glm::vec3 corner(std::uint32_t triangle, int k) const {
@@ -25,7 +25,7 @@ struct UnitMesh {
 
 UnitMesh to_unit_mesh(const TriangleMesh& mesh);
 
-// Normals and areas of faces for given positions. A degenerate face has area 0 and normal 0.
+// The normals and areas of faces for given positions. A degenerate face has area 0 and normal 0.
 struct FaceFrames {
   std::vector<glm::vec3> normals;
   std::vector<float> areas;
@@ -34,8 +34,8 @@ struct FaceFrames {
 FaceFrames face_frames(std::span<const std::uint32_t> triangles,
                        std::span<const glm::vec3> positions);
 
-// Face normals averaged over neighbors `rounds` times, weighted by area: the trend of the surface
-// without its noise.
+// Returns the face normals averaged over neighbors `rounds` times, weighted by area. They follow
+// the trend of the surface without its noise.
 std::vector<glm::vec3> averaged_normals(std::span<const std::uint32_t> triangles,
                                         std::size_t vertex_count, const FaceFrames& frames,
                                         int rounds);

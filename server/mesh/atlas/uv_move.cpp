@@ -20,7 +20,7 @@ namespace {
 constexpr int kGap = 4;            // texels between charts
 constexpr int kSmoothing = 0;      // a few faces have no noise, and smoothing would shrink them
 constexpr double kUvSteps = 8192;  // as in atlas.cpp
-// The attempts in order, until everything has a place.
+// The attempts in their order. The first attempt with room for all charts is used.
 struct Attempt {
   float scale;     // of the triangles that stay
   double density;  // of the moved triangles, relative to those that stay
@@ -33,7 +33,7 @@ constexpr std::array<Attempt, 7> kAttempts{{{1, 1},
                                             {0.75f, 0.75},
                                             {0.75f, 0.375}}};
 
-// The moved triangles as a separate mesh.
+// Returns the moved triangles as a separate mesh.
 TriangleMesh part_of(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
   TriangleMesh part;
   std::vector<std::uint32_t> known;
@@ -51,7 +51,7 @@ TriangleMesh part_of(const TriangleMesh& mesh, std::span<const std::uint32_t> tr
   return part;
 }
 
-// The texels that triangles touch with their centers or corners.
+// The texels whose centers lie in a triangle, and the texels that contain a corner.
 class Taken {
  public:
   explicit Taken(int side)
@@ -96,7 +96,7 @@ class Taken {
   std::vector<bool> taken_;
 };
 
-// Returns the lowest place of a chart in the first of its four turns that fits.
+// Returns the position of a chart with the lowest top in any of its four turns.
 std::optional<Placement> placed(Canvas& canvas, const ChartShape& shape, int side) {
   Canvas::Spot best;
   int best_turn = 0, best_top = side + 1;
@@ -146,7 +146,7 @@ std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh,
   for (const auto t : moved) moves[t] = true;
   const double side = resolution;
 
-  // Texels for each unit of length, as in the rest.
+  // Texels per unit of length, as for the triangles that stay.
   double uv_area = 0, area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     if (moves[t]) continue;

@@ -13,14 +13,15 @@ namespace strata::mesh {
 
 struct MovedUvs {
   std::vector<glm::vec2> corner_uvs;
-  // scale of the coordinates that stay, less than 1 where the texture had no free room
+  // scale of the coordinates that stay; less than 1 if the texture had no free space
   float scale = 1;
 };
 
-// Unfolds the triangles `moved` (ascending, each with area) and places them, at the scale of the
-// rest, on texels that the rest leaves free at `resolution`; without enough room, at a smaller
-// scale; and then next to the rest, which is made smaller. `corner_uvs` of the rest lie in [0,1]².
-// Empty where nothing fits, or when cancelled.
+// Unfolds the triangles `moved` (ascending, each with area). Places them on texels that the other
+// triangles leave free at `resolution`, at the scale of the other triangles. If there is not enough
+// room, uses a smaller scale for the moved triangles. If this is not enough, also scales the other
+// triangles down. `corner_uvs` of the other triangles lie in [0,1]². The result is empty when
+// cancelled, or if no attempt fits.
 std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh,
                                        std::span<const glm::vec2> corner_uvs,
                                        std::span<const std::uint32_t> moved, int resolution,

@@ -17,12 +17,13 @@ const glm::dvec3 kSize(105, 99, 91);
 struct Ring {
   Stretch stretch;
   double t;
-  int columns;              // 1: a pole
-  std::uint32_t first = 0;  // of its vertices
+  int columns;              // 1 at a pole
+  std::uint32_t first = 0;  // index of its first vertex
 };
 
-// Rings from the middle of the underside over the rim to the middle of the floor. Towards the poles
-// each halving of the radius halves the number of columns, so that triangles stay well-shaped.
+// Returns the rings from the center of the underside over the rim to the center of the inside
+// floor. Toward the poles, the number of columns halves whenever the radius halves, so triangles
+// stay well-shaped.
 std::vector<Ring> make_rings(double detail) {
   const double scale = std::sqrt(detail);
   const int columns = 32 * std::max(2, static_cast<int>(std::lround(480 * scale / 32)));
@@ -34,7 +35,8 @@ std::vector<Ring> make_rings(double detail) {
     return count;
   };
   std::vector<Ring> rings;
-  // `with_end`: whether the ring at t = 1 belongs to this stretch or is the first of the next.
+  // `with_end` is true if the ring at t = 1 belongs to this stretch. Otherwise this ring is the
+  // first ring of the next stretch.
   const auto add = [&](Stretch stretch, int rows, bool with_end) {
     const int count = std::max(4, static_cast<int>(std::lround(rows * scale)));
     for (int i = 0; i < count + (with_end ? 1 : 0); ++i) {
@@ -81,8 +83,8 @@ class RingMesh {
     mesh_.triangles.insert(mesh_.triangles.end(), {a, b, c});
   }
 
-  // `a` precedes `b` on the way from the underside to the floor; seen from outside it is the lower
-  // one.
+  // `a` precedes `b` on the way from the underside to the floor. Seen from outside, `a` is the
+  // lower ring.
   void stitch(const Ring& a, const Ring& b) {
     const int fewer = std::min(a.columns, b.columns);
     if (a.columns == 1) {
@@ -123,7 +125,7 @@ class RingMesh {
   TriangleMesh mesh_;
 };
 
-// Places the pot on z = 0 with its axis near the origin, at its stated size.
+// Puts the pot on z = 0 with its axis near the origin and scales it to its stated size.
 void scale_to_size(TriangleMesh& mesh) {
   glm::dvec3 low = mesh.positions[0], high = low;
   for (const glm::dvec3& p : mesh.positions) {
@@ -137,8 +139,8 @@ void scale_to_size(TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh make_demo_pot(double detail) {
-  // The number of columns must at most double or halve from one ring to the next, which a coarser
-  // pot would violate.
+  // The number of columns may at most double or halve from one ring to the next. A coarser pot
+  // would violate this limit.
   std::vector<Ring> rings = make_rings(std::clamp(detail, 0.02, 100.0));
   for (std::size_t i = 2; i + 1 < rings.size(); ++i) {
     rings[i].columns =

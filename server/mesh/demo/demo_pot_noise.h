@@ -6,7 +6,7 @@
 
 namespace strata::mesh {
 
-// Smooth value noise in [-1,1] from integer hashes, the same on every machine.
+// Smooth value noise in [-1,1] from integer hashes. It is the same on every machine.
 inline double lattice_noise(int x, int y, int z) {
   std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^
                     static_cast<std::uint32_t>(y) * 0xd8163841u ^

@@ -13,10 +13,10 @@ namespace strata::mesh {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSplitHeight = 50;  // rings below are level; rings above follow the broken rim
+constexpr double kSplitHeight = 50;  // rings below are level, rings above follow the broken rim
 constexpr double kHeight = 91;
 
-// Profiles, (distance from the axis, height).
+// Profiles as (distance from the axis, height).
 constexpr glm::dvec2 kOuterLower[] = {
     {0, 2.0},    {12, 1.9},  {22, 1.6},  {25.5, 0.4}, {28.5, 0.0}, {30.6, 1.6},         {30.2, 4.5},
     {33.0, 9.5}, {39.0, 18}, {44.6, 27}, {48.6, 36},  {50.4, 44},  {50.3, kSplitHeight}};
@@ -38,7 +38,7 @@ glm::dvec2 catmull_rom(std::span<const glm::dvec2> points, double u) {
                 f * f * f * (3.0 * p1 - p0 - 3.0 * p2 + p3));
 }
 
-// A profile by its length, or by its height where the height increases along it.
+// A profile that is sampled by length, or by height if the height increases along it.
 class Profile {
  public:
   explicit Profile(std::span<const glm::dvec2> points) {
@@ -63,7 +63,7 @@ class Profile {
     const glm::dvec2 a = *(above - 1), b = *above;
     return glm::mix(a, b, (z - a.y) / (b.y - a.y));
   }
-  // Unit normal that points away from the axis for an upward outer profile.
+  // Returns a unit normal. For an upward outer profile it points away from the axis.
   glm::dvec2 normal(double t) const {
     return turned(at(std::min(1.0, t + 0.004)) - at(std::max(0.0, t - 0.004)));
   }
@@ -104,7 +104,8 @@ double window(double z, double low, double high, double soft) {
   return glm::smoothstep(low - soft, low + soft, z) *
          (1 - glm::smoothstep(high - soft, high + soft, z));
 }
-// Distance of `angle` from the nearest of `count` equal steps, as an arc on radius `radius`.
+// Returns the distance of `angle` from the nearest of `count` equal steps, as an arc length on a
+// circle with the given radius.
 double arc_in_cell(double angle, int count, double radius) {
   const double cells = angle / (2 * kPi) * count;
   return (cells - std::floor(cells) - 0.5) * 2 * kPi / count * radius;
@@ -112,13 +113,13 @@ double arc_in_cell(double angle, int count, double radius) {
 
 struct Surface {
   double relief = 0;  // mm outward
-  double paint = 0;   // 0…1: dark slip
-  double ochre = 0;   // 0…1: red slip
-  double cream = 0;   // 0…1: light ground
-  double recess = 0;  // 0…1: where dirt collects
+  double paint = 0;   // 0…1, dark slip
+  double ochre = 0;   // 0…1, red slip
+  double cream = 0;   // 0…1, light ground
+  double recess = 0;  // 0…1, amount of dirt
 };
 
-// A rope around the pot: slanted strands on a round ridge.
+// Adds a rope around the pot: slanted strands on a round ridge.
 void add_rope(Surface& s, double angle, double z, double center, double width, double height) {
   const double ridge = std::sqrt(std::max(0.0, 1 - (z - center) * (z - center) / (width * width)));
   const double strands = std::sin(52 * angle + (z - center) * 1.5);
@@ -128,10 +129,10 @@ void add_rope(Surface& s, double angle, double z, double center, double width, d
   s.recess = std::max(s.recess, ridge * glm::smoothstep(0.3, 0.95, -strands) * 0.8);
 }
 
-// Tongues that rise from the foot like the petals of a bud.
+// Adds tongues that rise from the foot like the petals of a bud.
 void add_tongues(Surface& s, double angle, double z) {
   constexpr int kCount = 22;
-  const double height = (z - 7.0) / 19.0;  // 0 foot, 1 tips
+  const double height = (z - 7.0) / 19.0;  // 0 at the foot, 1 at the tips
   if (height < -0.1 || height > 1.15) return;
   const double across = arc_in_cell(angle, kCount, 1.0) / (kPi / kCount);  // -1…1 in the cell
   const double half =
@@ -148,7 +149,7 @@ void add_tongues(Surface& s, double angle, double z) {
                                   (1 - glm::smoothstep(0.66, 0.78, dome)) * 0.8);
 }
 
-// The frieze: a chain of spirals, each running into the next, with bosses in the gaps.
+// Adds the frieze: a chain of connected spirals with bosses in the gaps.
 void add_spirals(Surface& s, double angle, double z) {
   constexpr int kCount = 13;
   constexpr double kRadius = 50, kCenter = 40.6, kPitch = 4.3, kOuter = 7.4;
@@ -159,8 +160,8 @@ void add_spirals(Surface& s, double angle, double z) {
   const double coil = r / kPitch - turn;
   double distance = std::abs(coil - std::round(coil)) * kPitch;
   if (r > kOuter) distance = std::max(distance, (r - kOuter) + 0.4);
-  // The bar from the foot of one spiral, across the edge of the cell, up to the crest above the
-  // next.
+  // The bar runs from the foot of one spiral, across the edge of the cell, up to the crest above
+  // the next spiral.
   const double cell = kPi / kCount * kRadius;
   const double wave =
       kOuter *
@@ -183,12 +184,12 @@ void add_spirals(Surface& s, double angle, double z) {
       std::max(s.recess, field * (1 - glm::smoothstep(0.0, 1.3, std::abs(distance - 1.5))) * 0.55);
 }
 
-// Incised zigzags on the shoulder, every second triangle filled with red.
+// Adds incised zigzags on the shoulder. Every second triangle is filled with red.
 void add_chevrons(Surface& s, double angle, double z) {
   const double field = window(z, 57.6, 68.2, 0.25);
   if (field <= 0) return;
   constexpr int kCount = 24;
-  // 0 middle of a tooth, 1 its side
+  // 0 in the middle of a tooth, 1 at its side
   const double x = std::abs(arc_in_cell(angle, kCount, 1.0)) / (kPi / kCount);
   const double y = (z - 58.4) / 9.0;
   for (int line = 0; line < 3; ++line) {
@@ -214,7 +215,7 @@ Surface outer_surface(double angle, double z) {
     s.recess = std::max(
         s.recess, 0.8 * std::max(bump(z - center - 1.25, 0.45), bump(z - center + 1.25, 0.45)));
   }
-  // The painted neck with leaves left unpainted, and the bead of the lip.
+  // The painted neck with unpainted leaves, and the bead of the lip.
   const double neck = window(z, 77.0, 86.4, 0.3);
   const double leaf_x = arc_in_cell(angle, 26, 33.0), leaf_y = (z - 81.6) / 4.0;
   const double leaf = glm::smoothstep(-0.15, 0.15, 1 - leaf_y * leaf_y - std::abs(leaf_x) / 1.6);
@@ -230,8 +231,8 @@ struct Break {
   double broken;  // 0 intact lip … 1 fracture
 };
 
-// The rim around the pot: the lip is intact at the back and broken in front, where one sherd is
-// missing down to the shoulder.
+// Returns the rim at an angle around the pot. The lip is intact at the back and broken in front,
+// where one sherd is missing down to the shoulder.
 Break rim_at(double angle) {
   struct Knot {
     double degrees, height;
@@ -255,7 +256,8 @@ Break rim_at(double angle) {
   return {std::min(kHeight, height + broken * jag), broken};
 }
 
-// The irregularities of a hand-made form: not quite round, leaning a little, with finger marks.
+// Adds the irregularities of a hand-made shape. The pot is not quite round, leans slightly, and has
+// finger marks.
 glm::dvec3 wobbled(double radius, double z, double angle) {
   const double h = z / kHeight;
   const double round = 1 + 0.022 * std::cos(2 * (angle - 0.3)) +
@@ -295,7 +297,7 @@ std::uint32_t outer_color(const Surface& s, const glm::dvec3& p) {
   color = glm::mix(color, kPaint * (1 + 0.3 * wear), s.paint * slip_share * (0.7 + 0.3 * chipped));
   const double dirt = s.recess * (0.62 + 0.35 * fractal_noise(p * 0.3 + 5.0, 2));
   color = glm::mix(color, kDirt, std::clamp(dirt, 0.0, 0.85));
-  // A soot mark from the last fire, low on one side.
+  // A soot mark from the last fire, near the bottom on one side.
   const double soot = bump(glm::distance(p, glm::dvec3(-38, 30, 20)), 24) *
                       (0.75 + 0.8 * fractal_noise(p * 0.12, 3));
   return pack(glm::mix(color, kSoot, std::clamp(soot, 0.0, 0.75)));
@@ -309,7 +311,7 @@ std::uint32_t inner_color(const glm::dvec3& p) {
   return pack(glm::mix(color, glm::dvec3(150, 132, 112), 0.6 * deposit));
 }
 
-// Fired briefly: the core is gray between two red margins.
+// The pot was fired briefly, so the core is gray between two red margins.
 std::uint32_t fracture_color(double t, double broken, const glm::dvec3& p) {
   const double core = window(t, 0.28, 0.72, 0.12);
   glm::dvec3 color =

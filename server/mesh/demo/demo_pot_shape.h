@@ -5,12 +5,12 @@
 
 namespace strata::mesh {
 
-// The form of the demo pot without its mesh: position and color of its surface. Lengths in mm,
-// angles in radians, +z up, before the final scaling to the stated size.
+// The shape of the demo pot without its mesh: the position and color of its surface. Lengths are in
+// mm, angles in radians, and +z is up. The final scaling to the stated size is not applied.
 class DemoPotShape {
  public:
-  // The surface from the middle of the underside to the middle of the inside floor, in five
-  // stretches. `t` is 0…1 in each.
+  // The surface from the center of the underside to the center of the inside floor, in five
+  // stretches. `t` runs from 0 to 1 in each stretch.
   enum class Stretch { underside_and_belly, shoulder_and_neck, rim, inside_upper, inside_lower };
 
   struct Point {
@@ -19,8 +19,8 @@ class DemoPotShape {
   };
   static Point at(Stretch stretch, double t, double angle);
 
-  // Distance from the axis before relief and wobble; used to choose the number of columns of a
-  // ring.
+  // Returns the distance from the axis before relief and wobble. It determines the number of
+  // columns of a ring.
   static double radius(Stretch stretch, double t);
 };
 

@@ -11,33 +11,34 @@
 
 namespace strata::mesh {
 
-// Collects polygons as triangles for all formats. Texture coordinates are kept for all corners or
-// for none; triangles without them have no textured material.
+// Converts the polygons of all formats to triangles. Texture coordinates are kept either for all
+// corners or for no corner. Triangles without texture coordinates get no textured material.
 class FaceBuilder {
  public:
   FaceBuilder(TriangleMesh& mesh, std::size_t max_triangles)
       : mesh_(mesh), max_triangles_(max_triangles) {}
 
   struct Corner {
-    std::uint32_t position = 0;  // in range: checked by the caller
+    std::uint32_t position = 0;  // in range; the caller checks it
     glm::vec2 uv{0};
   };
 
-  // Reserves memory for the triangles of this many faces.
+  // Reserves memory for this number of triangles.
   void reserve(std::size_t faces) { mesh_.triangles.reserve(3 * std::min(faces, max_triangles_)); }
 
-  // Readers call this before they store the corners of a face with more than kMaxPolygonCorners.
+  // Readers call this function before they store the corners of a face with more than
+  // kMaxPolygonCorners corners.
   static tl::unexpected<Error> too_many_corners(const std::string& place) {
     return refuse_file("The face at " + place + " has more than " +
                        std::to_string(kMaxPolygonCorners) +
                        " corners. Triangulate the mesh before importing it.");
   }
 
-  // Sets the material of the triangles that follow. The mesh already has its materials and their
-  // textures.
+  // Sets the material of the triangles added after this call. The mesh already has its materials
+  // and their textures.
   void use_material(std::uint16_t material) { material_ = material; }
 
-  // `corners`: at most kMaxPolygonCorners. Refuses triangles beyond the limit.
+  // `corners` has at most kMaxPolygonCorners entries. Refuses triangles beyond the limit.
   Result<void> add(const std::vector<Corner>& corners, bool has_uv) {
     assert(corners.size() <= kMaxPolygonCorners);
     if (corners.size() < 3) {
@@ -75,7 +76,7 @@ class FaceBuilder {
         mesh_.corner_uvs.insert(mesh_.corner_uvs.end(), 3, glm::vec2(0));
       return {};
     }
-    // The first triangle with coordinates: the triangles before it get no coordinates.
+    // This is the first triangle with coordinates. The triangles before it get zeros.
     if (mesh_.corner_uvs.empty()) {
       mesh_.corner_uvs.reserve(mesh_.triangles.capacity());
       mesh_.corner_uvs.resize(mesh_.triangles.size() - 3, glm::vec2(0));

@@ -10,7 +10,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr std::size_t kHead = 256 * 1024;  // of a file, the part searched for comments
+constexpr std::size_t kHead = 256 * 1024;  // the part of a file that is searched for comments
 constexpr std::size_t kStlHeader = 80;
 
 bool is_blank_or_control(char c) { return static_cast<unsigned char>(c) <= ' '; }
@@ -30,7 +30,8 @@ class Comments {
   std::vector<std::string> list_;
 };
 
-// Calls `use` for the lines of the head of a file, with any line endings, until it returns false.
+// Calls `use` for each line of the head of a file until `use` returns false. Lines may have any
+// line endings.
 template <class Use>
 void each_line(std::string_view head, Use&& use) {
   while (!head.empty()) {
@@ -50,7 +51,7 @@ void read_ply(std::string_view head, Comments& comments) {
   });
 }
 
-// Comments after the first element describe groups.
+// Comments after the first element describe groups and are not read.
 void read_obj(std::string_view head, Comments& comments) {
   each_line(head, [&](std::string_view line) {
     if (line.starts_with('#'))
@@ -64,7 +65,8 @@ void read_stl(std::string_view head, Comments& comments) {
   comments.add(is_text ? head.substr(0, head.find_first_of("\r\n")) : head.substr(0, kStlHeader));
 }
 
-// The words of a text, in lower case: letters and digits, with a hyphen before them.
+// Returns the words of a text in lower case. A word consists of letters and digits. A hyphen before
+// the word is kept.
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words(1);
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
@@ -81,7 +83,7 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-// Removes a hyphen that joins two words: it is no sign.
+// Removes a hyphen that joins two words, because it is not a minus sign.
 std::string unsigned_word(const std::string& word) {
   return word.starts_with('-') ? word.substr(1) : word;
 }
@@ -117,7 +119,7 @@ constexpr UnitName kUnitNames[] = {{"mm", Unit::mm},
                                    {"km", {}},
                                    {"yards", {}}};
 
-// Words allowed between "unit" and its name.
+// Returns true for words allowed between "unit" and the name of the unit.
 bool is_filler(std::string_view word) {
   for (const std::string_view filler :
        {"is", "are", "of", "length", "lengths", "measure", "measurement", "name"})

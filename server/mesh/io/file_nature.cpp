@@ -16,7 +16,7 @@ struct Nature {
   InputKind kind = InputKind::companion;
 };
 
-// A failed download is most often the web page that links to the file.
+// A failed download is usually the web page that links to the file.
 constexpr std::string_view kUnpack = "Unpack it and import its files.",
                            kFetch = "Download the mesh itself.",
                            kExport = "Export the mesh as PLY, OBJ, STL or glTF.";

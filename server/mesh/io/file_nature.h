@@ -9,9 +9,10 @@
 
 namespace strata::mesh {
 
-// For a file that could not be read as `kind`: its format by its first bytes and advice, as
-// sentences for a person. Recognizes archives, pictures, web pages in place of a download, and
-// meshes with the ending of another format. Nothing for an unknown format, or for `kind` itself.
+// Describes a file that could not be read as `kind`. Returns its format, as determined from its
+// first bytes, and advice for the user, as sentences. Recognizes archives, images, web pages saved
+// instead of a download, and meshes with the extension of another format. Returns nothing for an
+// unknown format or for `kind` itself.
 std::optional<std::string> other_nature(std::span<const std::uint8_t> bytes, InputKind kind);
 
 }  // namespace strata::mesh

@@ -27,7 +27,7 @@ std::string ending(std::string_view filename) {
   return dot == std::string_view::npos || dot == 0 ? std::string() : to_lower(name.substr(dot));
 }
 
-// The number of equal parts of two paths, counted from their ends.
+// Returns the number of equal components of two paths, counted from their ends.
 int common_parts(std::string_view a, std::string_view b) {
   int parts = 0;
   while (!a.empty() && !b.empty()) {
@@ -46,13 +46,13 @@ std::vector<std::string> names_of(std::span<const InputFiles::Entry> entries) {
   return names;
 }
 
-// The folder of an upload has space; a user's folder may be read-only.
+// The folder of an upload has free space. A user's folder may be read-only.
 std::filesystem::path scratch_beside(const std::filesystem::path& file) {
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   return ::access(folder.c_str(), W_OK) == 0 ? folder : std::filesystem::temp_directory_path();
 }
 
-// Lists the names with their folders: scans in different folders often have the same name.
+// Lists the names with their folders, because scans in different folders often have the same name.
 std::string listed(std::span<const std::string> filenames, std::span<const std::size_t> which) {
   std::string list;
   for (const std::size_t i : which.first(std::min<std::size_t>(which.size(), 5)))
@@ -143,7 +143,7 @@ Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesys
 const InputFiles::Entry* InputFiles::find(std::string_view reference) const {
   const Entry* best = nullptr;
   int most = 0;
-  // The name of a referenced file may have been damaged by its encoding.
+  // The name of a referenced file may have been damaged by a wrong encoding.
   const std::string target = mended_utf8(reference);
   for (const Entry& entry : entries_) {
     const int common = common_parts(mended_utf8(entry.name), target);

@@ -21,7 +21,7 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
     }
   }();
   if (!loaded) {
-    // For a file of another format, the parser's message does not help the user.
+    // The parser's message does not help the user with a file of another format.
     if (const auto other = other_nature(bytes, kind);
         other && loaded.error().code == ErrorCode::invalid)
       return refuse_file(*other);
@@ -45,7 +45,7 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
 
 }  // namespace
 
-// Takes ownership of the files, so that they are unmapped before `repair` needs the memory.
+// Takes ownership of the files and unmaps them before `repair` needs the memory.
 Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOptions& options) {
   auto loaded = STRATA_TRY([&] {
     const InputFiles opened = std::move(files);

@@ -8,9 +8,9 @@
 
 namespace strata::mesh {
 
-// The steps of `load_mesh`, for its own files only. The parsers return triangles whose indices are
-// in range, in file order, unwelded, with notes on ignored content; `repair` converts them to the
-// form that `load_mesh` promises.
+// The steps of `load_mesh`, for use by its own files only. The parsers return unwelded triangles in
+// file order with indices in range, and note ignored content. `repair` converts the triangles to
+// the result that `load_mesh` promises.
 Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress,
                              std::size_t max_triangles = kMaxTriangles);
 Result<LoadedMesh> parse_obj(const InputFiles& files, Progress& progress,
@@ -21,15 +21,15 @@ Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress,
                               std::size_t max_triangles = kMaxTriangles);
 Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& options = {});
 
-// Parsers report progress up to this share of the whole, `repair` from there on.
+// Parsers report progress up to this share of the whole. `repair` reports the rest.
 constexpr double kParsedShare = 0.6;
 
-// invalid, with the common title of all faults in a mesh file.
+// Returns the error `invalid` with the common title of all faults in a mesh file.
 inline tl::unexpected<Error> refuse_file(std::string detail) {
   return fail(ErrorCode::invalid, "Mesh file refused", std::move(detail), "file");
 }
 
-// Adds a line to the report when there is something to report.
+// Adds a line to the report if `count` is positive.
 inline void note(std::vector<Repair>& repairs, std::string what, std::uint64_t count) {
   if (count > 0) repairs.push_back({std::move(what), count});
 }

@@ -15,10 +15,10 @@ namespace {
 constexpr std::uint64_t kLinesBetweenReports = 65536;
 constexpr std::size_t kMaxNumbers = 8;
 constexpr std::size_t kMaxLibraries = 100, kMaxNames = 10000;
-constexpr int kTextureToFind = 0;  // of a UDIM material until its tiles are known
+constexpr int kTextureToFind = 0;  // for a UDIM material until its tiles are known
 
-// Three passes: counts, points, then faces, so that a face may use points that follow it and
-// polygons can be split at once.
+// Reads counts, points and faces in three passes. A face can therefore use points that follow it in
+// the file, and polygons can be split while they are read.
 class ObjReader {
  public:
   ObjReader(const InputFiles& files, Progress& progress, std::size_t max_triangles)
@@ -48,7 +48,7 @@ class ObjReader {
   }
 
  private:
-  // Sizes the arrays, so that their growth by doubling does not exceed the memory limit.
+  // Reserves memory for the arrays, because growth by doubling could exceed the memory limit.
   Result<void> count_lines() {
     ObjLines lines(bytes_);
     std::string_view line;
@@ -85,8 +85,8 @@ class ObjReader {
     return line;
   }
 
-  // A library's name may contain blanks, or one line may name several. Where none is named, the
-  // only uploaded .mtl is used.
+  // The name of a library may contain blanks, and one line may name several libraries. If no
+  // library is named, the only uploaded .mtl file is used.
   std::vector<const InputFiles::Entry*> find_libraries() {
     std::vector<const InputFiles::Entry*> found;
     for (const std::string& library : libraries_) {
@@ -118,7 +118,7 @@ class ObjReader {
         Material material{.name = printable(mtl.name), .color = mtl.color};
         if (mtl.clamp) material.wrap_u = material.wrap_v = Wrap::clamp;
         if (!mtl.texture.empty()) {
-          material.color = glm::vec4(1);  // Kd is often not meaningful with a picture
+          material.color = glm::vec4(1);  // Kd is often not meaningful together with an image
           material.texture =
               UdimTiles::is_pattern(mtl.texture) ? kTextureToFind : shelf_.of_file(mtl.texture);
         }
@@ -219,9 +219,9 @@ class ObjReader {
     return {};
   }
 
-  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last one before the face. A
-  // face with missing texture coordinates or normals is read as if it did not name them: some
-  // writers always write these numbers.
+  // Reads v, v/vt, v//vn or v/vt/vn. The numbers count from 1, or backwards from the last element
+  // before the face. If texture coordinates or normals are missing, the face is read as if it did
+  // not refer to them. Some writers always write these numbers.
   Result<FaceBuilder::Corner> read_corner(const ObjLines& lines, std::string_view word,
                                           bool& has_uv) {
     const std::size_t slash = word.find('/');
@@ -245,7 +245,7 @@ class ObjReader {
       if (second != std::string_view::npos) normal_word = uv_word.substr(second + 1);
       uv_word = uv_word.substr(0, second);
     }
-    // Normals are not used, and not checked further.
+    // Normals are not used, so they are not checked further.
     if (!normal_word.empty() &&
         !(parse_integer(normal_word, index) && resolve(index, normals_so_far_, normals_)))
       missing_normal_ = true;
@@ -313,7 +313,7 @@ class ObjReader {
   std::uint64_t uvs_so_far_ = 0;
   std::uint64_t normals_ = 0, normals_so_far_ = 0;
   std::uint64_t without_named_uv_ = 0, without_named_normal_ = 0;
-  bool missing_uv_ = false, missing_normal_ = false;  // of the face that is being read
+  bool missing_uv_ = false, missing_normal_ = false;  // for the current face
   std::uint64_t colored_ = 0;
   std::uint64_t ignored_ = 0;
 
@@ -323,7 +323,7 @@ class ObjReader {
   TextureLoader shelf_;
   std::vector<std::string> libraries_;
   std::map<std::string, std::uint16_t, std::less<>> material_of_name_, undefined_;
-  std::vector<std::string> references_;  // a material's picture as named in the MTL
+  std::vector<std::string> references_;  // image of each material, as named in the MTL
   std::vector<UvTransform> uv_transforms_;
   UvTransform uv_transform_;
 };

@@ -31,7 +31,7 @@ class PlyReader {
 
   Result<LoadedMesh> read() {
     for (const PlyElement& element : header_.elements) {
-      // Triangles are made after their vertices, wherever both are in the file.
+      // Triangles are created after their vertices, independent of their order in the file.
       const bool of_triangles = element.name == "face" || element.name == "tristrips";
       if (of_triangles && !has_vertices_) put_off_.push_back({&element, source_});
       STRATA_TRY(element.name == "vertex"        ? read_vertices(element)
@@ -115,7 +115,7 @@ class PlyReader {
       return refuse_file("The element \"face\" has no list \"vertex_indices\".");
     }
     const PlyProperty& index_list = element.properties[*indices];
-    // A triangle takes at least the bytes of its list of three.
+    // A triangle has at least the bytes of a list with three indices.
     const std::uint64_t least =
         source_.rest() /
         (1 + 3 * (header_.encoding == PlyEncoding::ascii ? 2 : bytes_of(index_list.type)));
@@ -184,7 +184,7 @@ class PlyReader {
   bool read_uv_list(const PlyProperty& list) {
     std::int64_t count = 0;
     if (!read_count(list, count)) return false;
-    // Longer than for any face: its coordinates cannot be assigned to corners.
+    // The list is too long for any face, so its coordinates cannot be assigned to corners.
     if (static_cast<std::uint64_t>(count) > 2 * kMaxPolygonCorners) {
       return source_.skip(list.type, static_cast<std::uint64_t>(count));
     }
@@ -196,8 +196,8 @@ class PlyReader {
     return true;
   }
 
-  // Strips end at a negative index; every second triangle of a strip has the opposite winding.
-  // Triangles with a repeated corner only join strips and are no fault.
+  // A negative index ends a strip. Every second triangle of a strip has the opposite winding.
+  // Triangles with a repeated corner only connect strips and are not a fault.
   Result<void> read_strips(const PlyElement& element) {
     const auto indices = element.find({"vertex_indices", "vertex_index"});
     if (!indices || !element.properties[*indices].count_type) {
@@ -313,7 +313,7 @@ class PlyReader {
   std::vector<glm::vec2> vertex_uvs_;
   std::vector<float> uv_list_;
   PlyFaceColors face_colors_;
-  std::vector<std::pair<const PlyElement*, Source>> put_off_;  // and the offset of its data
+  std::vector<std::pair<const PlyElement*, Source>> put_off_;  // with the start of their data
 };
 
 }  // namespace

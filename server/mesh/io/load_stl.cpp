@@ -15,14 +15,15 @@ constexpr std::size_t kHeaderBytes = 80, kTriangleBytes = 50;
 constexpr std::uint64_t kTrianglesBetweenReports = 65536;
 constexpr std::size_t kSample = 65536;
 
-// Every triangle has its own three points; `repair` joins equal ones.
+// Every triangle has its own three points. `repair` joins equal points.
 class StlReader {
  public:
   StlReader(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles)
       : bytes_(bytes), plain_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
 
-  // Many binary files begin with "solid", as text does, and text may begin with anything. A file
-  // with exactly the size of a binary file is binary; otherwise bytes that no text contains decide.
+  // Many binary files begin with "solid", as text files do, and text files may begin with any text.
+  // A file with exactly the size of a binary file is binary. Otherwise it is binary if it contains
+  // bytes that do not occur in text.
   Result<LoadedMesh> read() {
     const auto count = binary_count();
     const std::uint64_t room = count ? (bytes_.size() - kHeaderBytes - 4) / kTriangleBytes : 0;
@@ -42,14 +43,14 @@ class StlReader {
     return count;
   }
 
-  // Text may be in any encoding; the count of a binary file, or its coordinates, have bytes of 0.
+  // Text may have any encoding. In a binary file, the count or the coordinates contain zero bytes.
   bool is_all_text() const {
     const std::string_view sample = text_.substr(0, kSample);
     return std::none_of(sample.begin(), sample.end(), [](char c) {
       return static_cast<unsigned char>(c) < 32 && !is_blank(c) && c != kEndOfDosFile;
     });
   }
-  // Some writers pad a name with zeros.
+  // Some writers pad a name with zeros, so words are searched for instead.
   bool has_words_of_text() const {
     bool facet = false;
     std::string_view rest = text_.substr(0, kSample);
@@ -90,7 +91,7 @@ class StlReader {
   }
 
   // solid NAME { facet normal x y z  outer loop  vertex x y z ×3  endloop  endfacet } endsolid, in
-  // letters of any case: only the vertices are used.
+  // upper or lower case. Only the vertices are used.
   Result<void> read_text() {
     std::vector<glm::dvec3> loop;
     std::string_view rest = text_;
@@ -171,7 +172,7 @@ class StlReader {
     rest.remove_prefix(std::min(rest.find_first_of("\r\n"), rest.size()));
   }
 
-  // Lines end at LF, CRLF, or CR alone.
+  // Lines end with LF, CRLF or a single CR.
   std::string place(std::string_view rest) const {
     const auto read = text_.substr(0, text_.size() - rest.size());
     std::uint64_t line = 1;

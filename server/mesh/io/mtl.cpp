@@ -13,7 +13,7 @@
 namespace strata::mesh {
 namespace {
 
-// Removes up to `most` numbers from the front of `line`. Returns how many there were.
+// Removes up to `most` numbers from the front of `line` and returns their count.
 int take_numbers(std::string_view& line, std::array<double, 3>& numbers, int most) {
   int count = 0;
   while (count < most) {
@@ -32,7 +32,8 @@ void take_pair(std::string_view& line, glm::vec2& pair) {
   if (count > 1) pair.y = static_cast<float>(numbers[1]);
 }
 
-// map_Kd [options] file name: the name is the rest of the line after the last option, with blanks.
+// Reads map_Kd [options] file name. The name is the rest of the line after the last option and may
+// contain blanks.
 void read_map(std::string_view line, MtlMaterial& material) {
   static constexpr std::pair<std::string_view, int> kOptions[] = {
       {"-blendu", 1}, {"-blendv", 1},  {"-boost", 1}, {"-mm", 2}, {"-texres", 1},

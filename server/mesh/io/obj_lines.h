@@ -10,8 +10,8 @@
 
 namespace strata::mesh {
 
-// The logical lines of an OBJ, which end at LF, CRLF or CR: a line that ends with a backslash
-// continues in the next. Comments are not removed here.
+// The logical lines of an OBJ. Lines end with LF, CRLF or CR. A line that ends with a backslash
+// continues on the next line. Comments are not removed here.
 class ObjLines {
  public:
   explicit ObjLines(std::span<const std::uint8_t> bytes)
@@ -47,8 +47,8 @@ class ObjLines {
   }
 
  private:
-  // Lines end at LF, CRLF, or CR alone. The position of the next LF is kept, so that a file with CR
-  // only is not searched for LF at each line.
+  // Lines end with LF, CRLF or a single CR. The position of the next LF is stored. A file with CR
+  // only is therefore not searched for LF at each line.
   std::string_view physical_line() {
     const char* start = at_;
     if (start >= newline_) {
@@ -70,14 +70,15 @@ class ObjLines {
   const char* at_;
   const char* begin_;
   const char* end_;
-  // the next LF, or end_; searched again once at_ has reached it
+  // the next LF, or end_; searched again when at_ has reached it
   const char* newline_ = begin_;
   std::uint64_t line_number_ = 1;
   std::uint64_t lines_of_last_ = 0;
   std::string joined_;
 };
 
-// Removes the next word from the front of `line`; empty at its end or at a comment.
+// Removes the next word from the front of `line`. Returns an empty word at the end of the line or
+// at a comment.
 inline std::string_view next_word(std::string_view& line) {
   std::size_t start = 0;
   while (start < line.size() && is_blank(line[start])) ++start;

@@ -21,7 +21,7 @@ void append_utf8(std::uint32_t code, std::vector<std::uint8_t>& out) {
   put(0x80 | (code & 63));
 }
 
-// RFC 2781. Half of a surrogate pair becomes U+FFFD, as does an odd byte at the end.
+// Follows RFC 2781. Half of a surrogate pair or an odd byte at the end becomes U+FFFD.
 std::vector<std::uint8_t> utf8_of_utf16(std::span<const std::uint8_t> bytes, bool big_endian) {
   const auto unit = [&](std::size_t i) {
     return static_cast<std::uint32_t>(big_endian ? bytes[i] << 8 | bytes[i + 1]

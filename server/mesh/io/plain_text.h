@@ -7,9 +7,9 @@
 
 namespace strata::mesh {
 
-// The text of a file in the form that the readers of text formats expect: without a byte order
-// mark, and converted to UTF-8 where that mark says UTF-16. Any other text is unchanged. The result
-// is valid as long as this object and `bytes` are.
+// The text of a file as the readers of text formats expect it: without a byte order mark. If the
+// mark indicates UTF-16, the text is converted to UTF-8. Any other text is unchanged. The result is
+// valid during the lifetime of this object and of `bytes`.
 class PlainText {
  public:
   explicit PlainText(std::span<const std::uint8_t> bytes);
@@ -23,7 +23,7 @@ class PlainText {
   std::span<const std::uint8_t> bytes_;
 };
 
-// The size of a UTF-8 byte order mark at the beginning: 0 or 3.
+// Returns the size of a UTF-8 byte order mark at the beginning, 0 or 3.
 std::size_t utf8_mark(std::span<const std::uint8_t> bytes);
 
 }  // namespace strata::mesh

@@ -11,8 +11,8 @@
 
 namespace strata::mesh {
 
-// Positions of the color channels among the properties of a PLY element; −1: the channel is
-// missing.
+// The positions of the color channels among the properties of a PLY element. −1 means that the
+// channel is missing.
 struct PlyColorProperties {
   std::array<int, 4> rgba{-1, -1, -1, -1};
   bool present() const { return rgba[0] >= 0; }
@@ -33,13 +33,14 @@ inline PlyColorProperties find_ply_colors(const PlyElement& element) {
   return colors;
 }
 
-// Integer colors as 0…255; real ones are unchanged.
+// Converts integer colors to 0…255. Real colors are unchanged.
 inline double to_byte_scale(PlyType type, double value) {
   return type == PlyType::u16 ? value / 257.0 : value;
 }
 inline bool is_real(PlyType type) { return type == PlyType::f32 || type == PlyType::f64; }
 
-// Colors of faces whose vertices have no color: a vertex gets the mean of the faces around it.
+// The colors of faces, for vertices without colors. A vertex gets the mean color of the surrounding
+// faces.
 class PlyFaceColors {
  public:
   void begin(std::size_t vertices) { sums_.resize(vertices); }

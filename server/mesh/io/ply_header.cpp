@@ -47,7 +47,7 @@ std::vector<std::string_view> split(std::string_view line) {
   return words;
 }
 
-// A piece of the file for a message: short, and always printable.
+// Returns a short and printable piece of the file for a message.
 std::string shown(std::string_view text) {
   std::string result = "\"";
   for (char c : text.substr(0, 60)) result += c >= ' ' && c < 127 ? c : '?';
@@ -79,8 +79,9 @@ class HeaderReader {
   }
 
  private:
-  // All lines end as the first one does: in old Macintosh files with CR alone, where a byte LF
-  // after "end_header" CR is already data. The CR of a CRLF counts as a blank.
+  // All lines have the same ending as the first line. In old Macintosh files this is a single CR,
+  // and an LF byte after "end_header" CR already belongs to the data. The CR of a CRLF counts as a
+  // blank.
   bool next_line(std::string_view& line) {
     if (position_ >= text_.size() || position_ > kMaxHeader) return false;
     const std::string_view rest = text_.substr(position_, kMaxHeader);
@@ -172,7 +173,7 @@ class HeaderReader {
     return {};
   }
 
-  // A header may declare any count; nothing is allocated for a count that the file cannot hold.
+  // A header may declare any count. No memory is allocated for a count that the file cannot hold.
   Result<PlyHeader> finish() {
     if (!has_format_) return refuse_file("The PLY header has no \"format\" line.");
     header_.data_offset = position_;
@@ -226,7 +227,7 @@ std::uint64_t PlyElement::least_bytes(bool ascii) const {
 std::uint64_t PlyHeader::element_count() const {
   std::uint64_t sum = 0;
   for (const PlyElement& element : elements)
-    if (!element.properties.empty()) sum += element.count;  // each takes bytes that the file has
+    if (!element.properties.empty()) sum += element.count;  // each element takes bytes of the file
   return sum;
 }
 

@@ -18,8 +18,8 @@ static_assert(std::endian::native == std::endian::little);
 
 enum class PlyFault { none, end_of_file, not_a_number };
 
-// Reads values one after the other, from binary or ascii data. Each read returns false at a fault
-// and then does not advance.
+// Reads values one by one from binary or ASCII data. If a value cannot be read, the function
+// returns false and does not advance.
 class PlyBinarySource {
  public:
   PlyBinarySource(std::span<const std::uint8_t> bytes, std::size_t offset, bool big_endian)
@@ -67,7 +67,7 @@ class PlyBinarySource {
     return true;
   }
 
-  // Whether the data can still hold `count` items of a list.
+  // Returns true if the remaining data can hold `count` items of a list.
   bool holds(PlyType type, std::uint64_t count) const {
     return count <= rest() / static_cast<std::uint64_t>(bytes_of(type));
   }
@@ -108,9 +108,9 @@ class PlyBinarySource {
   PlyFault fault_ = PlyFault::none;
 };
 
-// Ascii values are separated by blanks, not by lines: some writers fold long lists. If there are
-// exactly as many lines as elements, the rest of a line after an element's last value is skipped:
-// MeshLab writes more words than the header has properties.
+// ASCII values are separated by blanks, not by lines, because some writers fold long lists. If
+// there are exactly as many lines as elements, the rest of a line after an element's last value is
+// skipped. MeshLab writes more words than the header has properties.
 class PlyAsciiSource {
  public:
   PlyAsciiSource(std::span<const std::uint8_t> bytes, const PlyHeader& header)
@@ -129,7 +129,7 @@ class PlyAsciiSource {
     const std::string_view word = next_word();
     if (word.empty()) return false;
     if (parse_integer(word, result)) return true;
-    double number = 0;  // some files have "3.0"
+    double number = 0;  // some files contain "3.0"
     if (!parse_number(word, number) || !(std::abs(number) <= 9e15) || number != std::floor(number))
       return refuse(word);
     result = static_cast<std::int64_t>(number);
@@ -145,14 +145,14 @@ class PlyAsciiSource {
 
   bool holds(PlyType, std::uint64_t count) const { return count <= (rest() + 1) / 2; }
 
-  // Call this after all values of an element with properties are read.
+  // Call this function after reading all values of an element with properties.
   void end_element() {
     if (!lines_hold_elements_) return;
     bool surplus = false;
     for (; at_ < text_.size() && !is_line_end(text_[at_]); ++at_) surplus |= !is_blank(text_[at_]);
     surplus_elements_ += surplus;
   }
-  // elements with more words than the header declares
+  // Returns the number of elements with more words than the header declares.
   std::uint64_t surplus_elements() const { return surplus_elements_; }
 
   std::size_t offset() const { return at_; }

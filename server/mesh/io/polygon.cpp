@@ -6,12 +6,12 @@
 namespace strata::mesh {
 namespace {
 
-// Twice the signed area of a, b, c.
+// Returns twice the signed area of the triangle a, b, c.
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Projects along the axis in which the polygon is thinnest, so that it appears counterclockwise.
+// Projects the polygon along the axis in which it is thinnest. The result is counterclockwise.
 std::vector<glm::dvec2> flatten(std::span<const glm::dvec3> corners) {
   glm::dvec3 area_vector(0);
   const glm::dvec3 base = corners[0];
@@ -34,7 +34,7 @@ std::vector<glm::dvec2> flatten(std::span<const glm::dvec3> corners) {
 
 bool is_convex(const std::vector<glm::dvec2>& flat) {
   const std::size_t n = flat.size();
-  double winding = 0;  // a star also turns left everywhere, but winds around twice
+  double winding = 0;  // a star also turns left everywhere, but its winding is twice as large
   for (std::size_t i = 0; i < n; ++i) {
     const glm::dvec2 &a = flat[i], &b = flat[(i + 1) % n], &c = flat[(i + 2) % n];
     const double area = turn(a, b, c);
@@ -76,7 +76,8 @@ void triangulate_polygon(std::span<const glm::dvec3> corners,
   std::size_t at = 0, tried = 0;
   while (loop.size() > 3) {
     at %= loop.size();
-    // Without an ear (the outline crosses itself, or is flat) the next corner is cut off anyway.
+    // If there is no ear because the outline crosses itself or is flat, the next corner is cut off
+    // anyway.
     if (tried < loop.size() && !is_ear(flat, loop, at)) {
       ++at;
       ++tried;

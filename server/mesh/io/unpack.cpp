@@ -26,7 +26,7 @@ struct CloseEntry {
   void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
 
-// A file without a name, which the system deletes after its last use.
+// A file without a name. The system deletes it after its last use.
 class ScratchFile {
  public:
   static Result<ScratchFile> make(const std::filesystem::path& folder) {
@@ -67,7 +67,7 @@ class ScratchFile {
   int descriptor_ = -1;
 };
 
-// Folders, and files that macOS adds.
+// Returns true for folders and for files added by macOS.
 bool is_hidden(std::string_view name) {
   if (name.starts_with("__MACOSX/") || name.ends_with('/')) return true;
   return name.substr(name.find_last_of("/\\") + 1).starts_with('.');

@@ -11,17 +11,18 @@
 namespace strata::mesh {
 
 constexpr std::uint64_t kMaxArchiveEntries = 10'000;
-// Limit for the unpacked size of an archive: a multiple of its size, and a minimum for small ones.
-// Scans in text formats compress ten to one.
+// The limit for the unpacked size of an archive is kMaxUnpackGain times its size plus
+// kUnpackAlways, which allows for small archives. Scans in text formats compress about ten to one.
 constexpr std::uint64_t kMaxUnpackGain = 100, kUnpackAlways = 16u << 20;
 
-// Meshes, materials, buffers and pictures.
+// Returns true for meshes, materials, buffers and images.
 bool is_scan_file(std::string_view name);
 
-// Unpacks the files of a zip whose names `accepts` accepts, as unnamed files in `scratch` that are
-// deleted with their mappings. Other files, and those that macOS adds, are skipped. Names in the
-// archive are never used as paths. Refused (invalid): no zip, damaged, encrypted, too many entries,
-// unpacking to more than stated; `storage_full` where the disk is full; `cancelled` when cancelled.
+// Unpacks the files of a zip with names that `accepts` accepts. They become unnamed files in
+// `scratch` and are deleted with their mappings. Other files and files added by macOS are skipped.
+// Names in the archive are never used as paths. Fails with `invalid` if the file is not a zip, is
+// damaged or encrypted, or exceeds the limits above. Fails with `storage_full` if the disk is full
+// and with `cancelled` when cancelled.
 Result<std::vector<InputFiles::Entry>> unpack_archive(
     std::span<const std::uint8_t> zip, const std::filesystem::path& scratch, Progress& progress,
     const std::function<bool(std::string_view)>& accepts = is_scan_file);

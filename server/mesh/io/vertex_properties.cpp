@@ -16,7 +16,7 @@
 namespace strata::mesh {
 namespace {
 
-// Properties with a defined meaning for a mesh.
+// The properties with a defined meaning for a mesh.
 constexpr std::array<std::string_view, 24> kKnown{"x",
                                                   "y",
                                                   "z",
@@ -102,7 +102,7 @@ Result<VertexProperty> read(Source source, const PlyHeader& header, const std::s
 std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beginning) {
   const auto plain = beginning.subspan(utf8_mark(beginning));
   std::string lines(plain.begin(), plain.end());
-  std::replace(lines.begin(), lines.end(), '\r', '\n');  // lines may end at CR alone
+  std::replace(lines.begin(), lines.end(), '\r', '\n');  // lines may end with a single CR
   std::istringstream text(std::move(lines));
   std::string line;
   if (!std::getline(text, line) || !line.starts_with("ply")) return {};

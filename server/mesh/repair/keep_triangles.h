@@ -18,7 +18,7 @@ inline void resize_triangles(TriangleMesh& mesh, std::size_t count) {
   if (!mesh.triangle_materials.empty()) mesh.triangle_materials.resize(count);
 }
 
-// Keeps the triangles for which keep(number) holds, in their order.
+// Keeps the triangles for which keep(number) returns true, in their order.
 template <class Keep>
 void keep_triangles(TriangleMesh& mesh, Keep&& keep) {
   std::size_t kept_triangles = 0;

@@ -14,10 +14,11 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-// Share of its longest edge: a corner this near to the edge is there by rounding of float.
+// As a share of the longest edge. A corner this close to the edge is off the edge only because of
+// float rounding.
 constexpr double kSliverHeight = 1e-5;
 constexpr std::size_t kMaxShells = 64;  // only the largest shells may contain hollows
-constexpr std::size_t kMaxSides = 64;   // of a repaired edge; all sides of others are cut
+constexpr std::size_t kMaxSides = 64;   // of a repaired edge; other edges are cut on all sides
 
 std::uint32_t next_corner(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
@@ -63,7 +64,8 @@ class Manifold {
     return mesh_.positions[mesh_.triangles[corner]];
   }
 
-  // Whether the triangle has no area and this side is its longest, up to rounding.
+  // Returns true if the triangle has no area and this side is its longest side, except for
+  // rounding.
   bool is_sliver_along(std::uint32_t corner) const {
     const glm::dvec3 along = point(next_corner(corner)) - point(corner),
                      to = point(corner_before(corner)) - point(corner);
@@ -108,7 +110,7 @@ class Manifold {
     std::vector<HalfEdge> sides;
   };
 
-  // Whether the side is of a fin, which is free at its other sides: fins are joined last.
+  // Returns true if the side belongs to a fin with two free other sides. Fins are joined last.
   bool is_loose(const HalfEdge& side) const {
     const std::uint32_t other = next_corner(side.corner);
     return mate_[other] == kNone && mate_[next_corner(other)] == kNone;
@@ -136,7 +138,8 @@ class Manifold {
       if (mate_[pair.a] == kNone && mate_[pair.b] == kNone) join(pair.a, pair.b);
   }
 
-  // Flatter is larger: −1 where the triangles lie on each other, 1 where they are in one plane.
+  // Returns a larger value for flatter pairs: −1 if the triangles lie on each other, 1 if they lie
+  // in one plane.
   double flatness(std::uint32_t low, const HalfEdge& a, const HalfEdge& b) const {
     const glm::dvec3 from = mesh_.positions[low], axis = mesh_.positions[a.other_end] - from;
     const auto away = [&](const HalfEdge& side) {
@@ -153,13 +156,14 @@ class Manifold {
     mate_[b] = a;
   }
 
-  // Whether the triangles on both sides have the same winding: their sides then have opposite
-  // directions.
+  // Returns true if the triangles on both sides have the same winding. Their sides then have
+  // opposite directions.
   bool agree(std::uint32_t corner) const {
     return mesh_.triangles[corner] == mesh_.triangles[next_corner(mate_[corner])];
   }
 
-  // Spreads an orientation from the first triangle of each piece; the minority is reversed.
+  // Spreads an orientation from the first triangle of each piece. The triangles of the minority are
+  // reversed.
   void orient() {
     const std::size_t count = mesh_.triangle_count();
     is_turned_.assign(count, false);
@@ -206,7 +210,7 @@ class Manifold {
 
   struct Shell {
     std::vector<std::uint32_t> triangles;  // empty if oriented outward
-    double volume = 0;                     // six times, signed
+    double volume = 0;                     // six times the signed volume
     glm::dvec3 low{INFINITY}, high{-INFINITY};
     bool holds(const Shell& other) const {
       return glm::all(glm::lessThan(low, other.low)) &&
@@ -248,14 +252,14 @@ class Manifold {
     }
   }
 
-  // The corner of the triangle on the other side of `side` that has the vertex `vertex`.
+  // Returns the corner at `vertex` of the triangle on the other side of `side`.
   std::uint32_t across(std::uint32_t side, std::uint32_t vertex) const {
     const std::uint32_t mate = mate_[side];
     if (mate == kNone) return kNone;
     return mesh_.triangles[mate] == vertex ? mate : next_corner(mate);
   }
 
-  // Groups the corners of a vertex that are connected through joined sides; each group after the
+  // Groups the corners of a vertex that are connected through joined sides. Each group after the
   // first gets its own vertex.
   void split_fans() {
     struct Moved {
@@ -288,13 +292,13 @@ class Manifold {
       is_cut[vertex] = true;
       moved.push_back({copy_vertex(vertex), fan});
     }
-    // At the end only: `across` depends on the old vertices.
+    // The vertices are changed at the end only, because `across` depends on the old vertices.
     for (const Moved& move : moved)
       for (const std::uint32_t corner : move.corners) mesh_.triangles[corner] = move.vertex;
   }
 
-  // A cut edge may still share both of its ends: then the triangles that are not joined there get
-  // their own copy of the lower vertex. Returns whether there were any.
+  // Triangles at a cut edge may still share both of its vertices. The triangles that are not joined
+  // at the edge then get their own copy of the lower vertex. Returns true if such triangles exist.
   bool detach_what_still_touches() {
     std::vector<std::uint32_t> corners;
     for_each_edge(
@@ -302,7 +306,7 @@ class Manifold {
         [&](std::uint32_t low, std::span<const HalfEdge> sides) {
           if (sides.size() < 2 || (sides.size() == 2 && mate_[sides[0].corner] == sides[1].corner))
             return;
-          std::uint32_t stays = sides[0].corner;  // as does the side it is joined to
+          std::uint32_t stays = sides[0].corner;  // the side joined to this side also stays
           for (const HalfEdge& side : sides)
             if (mate_[side.corner] != kNone) stays = side.corner;
           for (const HalfEdge& side : sides)
@@ -327,7 +331,7 @@ class Manifold {
     return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
   }
 
-  // Swaps corners b and c, and with them the sides a-b and c-a.
+  // Swaps the corners b and c, and also the sides a-b and c-a.
   void turn_triangles() {
     if (turned_ + turned_pieces_ == 0) return;
     for (std::uint32_t& mate : mate_)
@@ -343,7 +347,7 @@ class Manifold {
 
   TriangleMesh& mesh_;
   std::vector<Repair>& repairs_;
-  // for each side of a triangle, by its first corner: the side it is joined to
+  // for each side of a triangle, by its first corner: the side joined to it
   std::vector<std::uint32_t> mate_;
   std::vector<bool> is_turned_;
   std::uint64_t slivers_ = 0, crowded_edges_ = 0, turned_ = 0, turned_pieces_ = 0,

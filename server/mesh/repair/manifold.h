@@ -4,19 +4,20 @@
 
 namespace strata::mesh {
 
-// Orients the triangles so that neighbors agree, and cuts the surface where it is not manifold.
-// `loaded.mesh` must be welded, with indices in range, and no triangle may repeat a corner or
-// another triangle. The changes are noted.
+// Orients the triangles consistently with their neighbors and cuts the surface where it is not
+// manifold. `loaded.mesh` must be welded and have its indices in range. No triangle may repeat a
+// corner or another triangle. The changes are noted.
 //
-// - At an edge of more than two triangles those two stay joined that agree in direction, are not
-//   loose fins and are flattest to each other, and so on; slivers without area that lie on an edge
-//   of two others are dropped first.
-// - Pieces of the surface follow their majority. Closed ones are turned outward (by signed volume),
-//   unless they are hollows: inside the box of a larger closed one and oriented inward by the file.
-// - Where a piece cannot be oriented consistently (a Möbius strip) it is cut.
-// - Then each vertex whose triangles do not form one fan is copied for each fan.
+// - At an edge with more than two triangles, the triangles are joined in pairs that agree in
+//   direction. Pairs without loose fins come first, and flatter pairs come before less flat pairs.
+//   Slivers without area on an edge of two other triangles are dropped beforehand.
+// - Pieces of the surface follow the orientation of their majority. Closed pieces are turned
+//   outward, as determined by their signed volume, unless they are hollows. A hollow is inside the
+//   box of a larger closed piece, and the file orients it inward.
+// - A piece that cannot be oriented consistently, such as a Möbius strip, is cut.
+// - Finally, a vertex with triangles in several fans is copied for each fan.
 //
-// Refused when cancelled. Progress is reported from `from` to `to`.
+// Fails when cancelled. Progress is reported from `from` to `to`.
 Result<void> make_manifold(LoadedMesh& loaded, Progress& progress, double from, double to);
 
 }  // namespace strata::mesh

@@ -14,7 +14,7 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-// beyond this value squares and cubes of lengths exceed the range of float
+// squares and cubes of larger lengths exceed the range of float
 constexpr double kMaxCoordinate = 1e15;
 constexpr std::string_view kWelded = "welded vertices";
 constexpr double kFarAway = 1e5;  // in multiples of the mesh's size
@@ -66,7 +66,7 @@ std::array<std::uint32_t, 3> sorted_corners(const std::uint32_t* t) {
   return key;
 }
 
-// Where most triangles have no area because single precision is too coarse, the remaining ones do
+// If most triangles have no area because single precision is too coarse, the remaining triangles do
 // not show the scanned object.
 Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_area,
                               std::uint64_t triangles) {
@@ -85,7 +85,7 @@ Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_ar
       "precision. Export it with double precision, or near the origin.");
 }
 
-// Keeps triangles that have area and are the first with their three corners, in any winding.
+// Keeps triangles that have an area and are the first with their three corners, in any winding.
 Result<void> drop_triangles(LoadedMesh& loaded) {
   TriangleMesh& mesh = loaded.mesh;
   const std::size_t triangles = mesh.triangle_count();
@@ -105,8 +105,8 @@ Result<void> drop_triangles(LoadedMesh& loaded) {
     }
     const auto key = sorted_corners(t);
     const std::uint64_t hash = mix_hash(mix_hash(mix_hash(0, key[0]), key[1]), key[2]);
-    // Writes the triangle to the place where it will stay if it is kept, so that the table can
-    // compare with it.
+    // Writes the triangle to its final position even before it is kept, because the table compares
+    // triangles there.
     std::copy(t, t + 3, mesh.triangles.begin() + 3 * std::ptrdiff_t{kept_triangles});
     const std::uint32_t found =
         table.find_or_insert(hash, kept_triangles, [&](std::uint32_t other) {
@@ -134,7 +134,7 @@ std::uint64_t count_not_finite(const TriangleMesh& mesh) {
   return count;
 }
 
-// Moves the used vertices together, in order.
+// Moves the used vertices to the front, in their order.
 void drop_unused(TriangleMesh& mesh) {
   const std::vector<bool> used = used_vertices(mesh);
   std::vector<std::uint32_t> moved(mesh.positions.size());
@@ -180,7 +180,7 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
   STRATA_TRY(drop_triangles(loaded));
   STRATA_TRY(make_manifold(loaded, progress, 0.75, 0.95));
   progress.report(0.95, "Dropping unused vertices");
-  // no triangle uses them
+  // no triangle uses these vertices
   const std::uint64_t not_finite = count_not_finite(mesh), before = mesh.positions.size();
   drop_unused(mesh);
   note(loaded.repairs, "dropped unused vertices",

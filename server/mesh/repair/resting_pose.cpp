@@ -15,27 +15,27 @@
 namespace strata::mesh {
 namespace {
 
-// Share of each direction, in the order of kUpDirections, before the shape is considered.
+// The prior share of each direction, independent of the shape, in the order of kUpDirections.
 constexpr std::array<double, 6> kPrior{0.10, 0.28, 0.32, 0.08, 0.10, 0.12};
 constexpr double kAnyPose = 0.005;    // share of a direction in which the object does not rest
 constexpr double kTilt_degrees = 30;  // a face of the hull counts for an axis up to this angle
-// of the diagonal: points nearer to the ground than this rest on it
+// as a share of the diagonal; points closer to the ground rest on it
 constexpr double kContact = 0.008;
-// share of the ways to drop the object: rarer poses are skipped
+// as a share of the ways to drop the object; rarer poses are skipped
 constexpr double kUnlikely = 0.004;
 constexpr int kMaxPoses = 40;
-// cosine of the slope up to which surface counts as lying on the ground
+// cosine of the largest slope of a surface that lies on the ground
 constexpr double kLevel = 0.85;
-constexpr int kColumns = 128;               // a side, for the points of the hull
-constexpr int kCells = 48;                  // a side, for hollows
-constexpr double kTouching = 0.04;          // of the height: the part that counts as a rim
+constexpr int kColumns = 128;               // per side, for the points of the hull
+constexpr int kCells = 48;                  // per side, for hollows
+constexpr double kTouching = 0.04;          // share of the height that counts as a rim
 constexpr double kRound = 2.5;              // weight of a round outline
 constexpr double kHollow = 6;               // weight of hollows
 constexpr double kSheet = 0.5, kFront = 3;  // limit for a sheet, and the weight of its front
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-// Andrew's monotone chain; counterclockwise.
+// Uses Andrew's monotone chain. The result is counterclockwise.
 std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
   std::ranges::sort(
       points, [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
@@ -68,12 +68,12 @@ bool is_inside(std::span<const glm::dvec2> convex, const glm::dvec2& point) {
   return true;
 }
 
-// A mesh whose diagonal is 1 and whose center (of its surface) is the origin.
+// A mesh scaled to a diagonal of 1, with the center of its surface at the origin.
 struct Shape {
   std::vector<glm::dvec3> points;
   std::span<const std::uint32_t> triangles;
   glm::dvec3 low{0}, high{0};
-  // mean of the normals by area: of length 1 for a flat sheet, 0 for a closed mesh
+  // mean of the normals by area, with length 1 for a flat sheet and 0 for a closed mesh
   glm::dvec3 facing{0};
 };
 
@@ -109,8 +109,8 @@ std::optional<Shape> shape_of(const TriangleMesh& mesh) {
   return shape;
 }
 
-// The two farthest points of each column along each axis: the points of the hull, up to the width
-// of a column.
+// Returns the two outermost points of each column along each axis. These are the points of the hull
+// with the precision of a column's width.
 std::vector<glm::dvec3> outer_points(const Shape& shape) {
   std::vector<glm::dvec3> outer;
   const glm::dvec3 size = glm::max(shape.high - shape.low, glm::dvec3(1e-12));
@@ -146,7 +146,7 @@ struct HullFacet {
   std::array<int, 3> beyond;
 };
 
-// Triangles of the convex hull; empty for points in one plane.
+// Returns the triangles of the convex hull. The result is empty for points in one plane.
 std::vector<HullFacet> hull_of(std::vector<glm::dvec3> points) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere{std::fopen("/dev/null", "w"),
                                                                 &std::fclose};
@@ -179,7 +179,7 @@ std::vector<HullFacet> hull_of(std::vector<glm::dvec3> points) {
   return facets;
 }
 
-// As seen from the origin (Van Oosterom and Strackee, 1983).
+// Returns the solid angle seen from the origin (Van Oosterom and Strackee, 1983).
 double solid_angle(const HullFacet& facet) {
   const auto& [a, b, c] = facet.corners;
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
@@ -188,11 +188,12 @@ double solid_angle(const HullFacet& facet) {
   return 2 * std::abs(std::atan2(glm::dot(a, glm::cross(b, c)), below));
 }
 
-// The facet to which the object rolls from this one: the same facet if it rests on it.
+// Returns the facet to which the object rolls from this facet, or this facet if the object rests on
+// it.
 int next_of(const std::vector<HullFacet>& facets, int at) {
   const HullFacet& facet = facets[static_cast<std::size_t>(at)];
   const auto& [a, b, c] = facet.corners;
-  // of the origin, which is the center of mass
+  // the projection of the origin, which is the center of mass
   const glm::dvec3 foot = glm::dot(a, facet.normal) * facet.normal;
   const glm::dvec3 across = glm::cross(b - a, c - a);
   const std::array<double, 3> weights{glm::dot(glm::cross(c - b, foot - b), across),
@@ -206,9 +207,9 @@ int next_of(const std::vector<HullFacet>& facets, int at) {
   return height(facets[static_cast<std::size_t>(next)]) < height(facet) ? next : at;
 }
 
-// Breadth of the support, 0…1: the part of the outline between the contact points, and the part
-// that lies on the ground. A bust on its back has three contact points; upright it rests on its
-// whole base.
+// Returns the breadth of the support, 0…1. It combines the share of the outline between the contact
+// points with the share that lies on the ground. A bust on its back has three contact points.
+// Upright it rests on its whole base.
 double support_share(const Shape& shape, const std::vector<glm::dvec3>& corners,
                      const HullFacet& facet) {
   const glm::dvec3 side = glm::normalize(facet.corners[1] - facet.corners[0]),
@@ -252,8 +253,8 @@ std::array<double, 6> poses_of(const Shape& shape) {
   std::vector<glm::dvec3> corners;
   for (const HullFacet& facet : facets)
     corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
-  // Each facet costs a pass over all triangles: only the most likely ones are examined, and of
-  // those only the ones that have an axis up.
+  // Each facet takes a pass over all triangles. Only the most likely facets are examined, and of
+  // these only the facets with an axis pointing up.
   std::vector<std::size_t> order(facets.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, std::greater(), [&](std::size_t i) { return likely[i]; });
@@ -274,7 +275,7 @@ std::array<double, 6> poses_of(const Shape& shape) {
   return poses;
 }
 
-// The outline and the heights of the object along an axis, from both ends.
+// The outline and the heights of the object along an axis, seen from both ends.
 class Silhouette {
  public:
   Silhouette(const Shape& shape, int axis)
@@ -304,13 +305,14 @@ class Silhouette {
     }
   }
 
-  // Depth of the surface below its highest places, in the area that these enclose, and the size of
-  // this area. A surface seen from its back is not a hollow: the scan has a hole there, where the
-  // object was standing.
+  // Returns the mean depth of the surface below its highest points. Only the area enclosed by these
+  // points counts, so a larger area gives a larger result. A surface seen from its back is not a
+  // hollow, because the scan has a hole there where the object was standing.
   double hollow_above() const { return hollow(+1); }
   double hollow_below() const { return hollow(-1); }
 
-  // 0…1: how likely it was made on a wheel or a lathe, by its outline. 0 for a square.
+  // Returns the likelihood (0…1) of production on a wheel or a lathe, judged by the outline. A
+  // square gives 0.
   double roundness() const {
     int both = 0, either = 0;
     for (int y = 0; y < kCells; ++y)
@@ -328,7 +330,7 @@ class Silhouette {
  private:
   struct Cell {
     double lowest = 0, highest = 0;
-    // of the lowest and the highest point
+    // for the lowest and the highest point
     bool is_covered = false, faces_down = false, faces_up = false;
   };
 

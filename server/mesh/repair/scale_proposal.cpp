@@ -10,7 +10,7 @@
 namespace strata::mesh {
 namespace {
 
-// Usual objects of heritage scans, by the longest side, with their approximate share.
+// Usual objects of heritage scans, with the range of the longest side and an approximate share.
 struct SizeClass {
   double from_m, to_m;
   double share;
@@ -22,16 +22,16 @@ constexpr SizeClass kSizes[] = {
     {3, 60, 0.12},        // rooms, façades, buildings, trenches
     {60, 20000, 0.08},    // sites and terrain
 };
-constexpr double kAnySize = 1e-3;  // for each factor of ten, outside of these sizes
+constexpr double kAnySize = 1e-3;  // per factor of ten outside of these sizes
 
-// Structured light and laser scanners use millimeters, photogrammetry meters.
+// Structured light and laser scanners use millimeters, and photogrammetry uses meters.
 struct UnitShare {
   Unit unit;
   double share;
 };
 constexpr UnitShare kUnits[] = {{Unit::mm, 0.45}, {Unit::m, 0.45}, {Unit::cm, 0.10}};
 
-// Likelihood of a size, for each factor of ten.
+// Returns the likelihood of a size per factor of ten.
 double plausibility(double size_m) {
   for (const SizeClass& size : kSizes)
     if (size_m >= size.from_m && size_m < size.to_m)
@@ -52,7 +52,7 @@ Box box_of(const TriangleMesh& mesh) {
   return box;
 }
 
-// Whether these are map coordinates: scans of objects do not have their origin so far away.
+// Returns true for map coordinates. Scans of objects do not have their origin so far away.
 bool is_surveyed(const Box& box) {
   constexpr double kFar = 10'000, kFarForItsSize = 5;
   const double away = glm::length((box.low + box.high) / 2.0);
@@ -77,7 +77,7 @@ void propose_by_size(const Box& box, ScaleProposal& proposal) {
 }  // namespace
 
 ScaleProposal propose_scale(const LoadedMesh& loaded, const std::string& crs) {
-  constexpr double kSurveyed = 0.95;  // certainty that map coordinates give
+  constexpr double kSurveyed = 0.95;  // confidence for map coordinates
   ScaleProposal proposal;
   const auto unit = stated_unit(loaded.comments);
   const auto up = stated_up(loaded.comments);

@@ -42,7 +42,7 @@ UvFaults no_faults(const TriangleMesh& mesh) {
   return faults;
 }
 
-// Reports why too many triangles cannot stay: their most frequent fault.
+// Reports the most frequent fault as the reason why too many triangles cannot stay.
 Result<Atlas> refuse_faults(const TriangleMesh& mesh, const UvFaults& faults) {
   int worst = 1;
   for (int fault = 2; fault < kUvFaults; ++fault)
@@ -75,7 +75,7 @@ void note_moved(const UvFaults& faults, float scale, std::vector<Repair>& repair
 // Moves the triangles that cannot stay.
 Result<void> move_faults(const TriangleMesh& mesh, UvFaults& faults, int lowest_resolution,
                          Progress& progress, Atlas& atlas) {
-  // Triangles without area need no place.
+  // Triangles without area need no texels.
   for (std::size_t t = 0; t < faults.of_triangle.size(); ++t) {
     if (faults.of_triangle[t] == UvFault::none || has_surface(mesh, t)) continue;
     --faults.count[static_cast<std::size_t>(faults.of_triangle[t])];
@@ -106,8 +106,7 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
   UvFaults faults = find_single_faults(mesh, mesh.corner_uvs);
   const double surface = surface_area(mesh);
   const auto too_many = [&] { return faults.area > kMaxMoved * surface; };
-  // A small area may stay without a place; moving it would mean that the texture's bytes cannot be
-  // kept.
+  // A small area may stay without texels. If it were moved, the texture's bytes could not be kept.
   const bool only_without_area = faults.count[static_cast<int>(UvFault::not_finite)] == 0 &&
                                  faults.count[static_cast<int>(UvFault::outside)] == 0;
   if (only_without_area && faults.area <= kMaxAreaWithoutUv * surface) faults = no_faults(mesh);

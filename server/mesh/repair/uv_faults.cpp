@@ -9,7 +9,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr float kRoundingOutside = 1.f / 65536;  // some writers round 1 up to a little more
+constexpr float kRoundingOutside = 1.f / 65536;  // some writers round 1 up slightly
 
 double surface_of(const TriangleMesh& mesh, std::size_t t) {
   const auto a = mesh.positions[mesh.triangles[3 * t]];

@@ -9,7 +9,7 @@
 namespace strata::mesh {
 namespace {
 
-// `find(i)` returns the vertex that replaces i, which may be i.
+// `find(i)` returns the vertex that replaces vertex i. This may be i itself.
 template <class Find>
 std::uint64_t redirect(TriangleMesh& mesh, const std::vector<bool>& used, Find&& find) {
   std::vector<std::uint32_t> representative(mesh.positions.size());
@@ -46,11 +46,11 @@ std::uint64_t weld_equal(TriangleMesh& mesh, const std::vector<bool>& used) {
 }
 
 std::uint64_t weld_near(TriangleMesh& mesh, const std::vector<bool>& used, double distance) {
-  // Cells as wide as the distance: vertices within the distance are in the same cell or in one of
-  // the 26 around it.
+  // The cells are as wide as the distance. Vertices within the distance are therefore in the same
+  // cell or in one of the 26 surrounding cells.
   const auto cell_of = [&](double coordinate) { return std::floor(coordinate / distance); };
   const auto hash = [](const glm::dvec3& cell) {
-    const glm::dvec3 plain = cell + 0.0;  // −0 is 0
+    const glm::dvec3 plain = cell + 0.0;  // −0 becomes 0
     return hash_of(std::bit_cast<std::uint64_t>(plain.x), std::bit_cast<std::uint64_t>(plain.y),
                    std::bit_cast<std::uint64_t>(plain.z));
   };

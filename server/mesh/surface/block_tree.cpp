@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kChildren = BlockTree::kChildren;
 constexpr int kBins = 16;        // along a block's longest axis
-constexpr int kMaxCuts = 2;      // one after the other: at most four parts a block
+constexpr int kMaxCuts = 2;      // consecutive cuts, so at most four parts per block
 constexpr int kSerialDepth = 3;  // number of halvings before threads are used
 
 struct Box {
@@ -31,8 +31,8 @@ Box box_of(const glm::vec3* positions, std::uint64_t texels) {
   return box;
 }
 
-// The texels below the widest gap along the box's longest axis, if that is wide enough; otherwise
-// all.
+// Returns the texels below the widest gap along the box's longest axis if this gap is wide enough.
+// Otherwise returns all texels.
 std::uint64_t below_gap(const glm::vec3* positions, std::uint64_t texels, float least_gap) {
   const Box box = box_of(positions, texels);
   const int axis = longest_axis(box.high - box.low);
@@ -76,8 +76,8 @@ struct Range {
   std::size_t size() const { return last - first; }
 };
 
-// Halves a range across the longest axis of its centers, at a whole number of subtrees, so that
-// eight neighbors in the final order are a node's children.
+// Halves a range across the longest axis of its centers, at a whole number of subtrees. In the
+// final order, eight neighbors are then the children of a node.
 std::size_t halve(std::vector<BoundedPart>& parts, Range range) {
   std::size_t subtree = 1;
   while (subtree * kChildren < range.size()) subtree *= kChildren;

@@ -16,7 +16,7 @@ std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometr
         const std::uint32_t from = connectivity.from(side), to = connectivity.to(side);
         edges.push_back({std::min(from, to), std::max(from, to)});
       }
-  // Removes edges with open sides of several triangles: the mesh does not end there.
+  // Removes edges with open sides of several triangles, because the mesh does not end there.
   auto sorted = edges;
   std::ranges::sort(sorted);
   std::erase_if(
@@ -27,7 +27,7 @@ std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometr
 BoundaryDistance::BoundaryDistance(const Geometry& geometry) {
   const auto edges = boundary_edges(geometry);
   if (edges.empty()) return;
-  // The triangles follow a curve through space, and so do their edges: the search tree needs no
+  // The triangles follow a curve through space, and their edges do too. The search tree needs no
   // other order.
   auto rims = std::make_shared<Geometry>();
   rims->origin = geometry.origin;

@@ -15,7 +15,7 @@ std::vector<BoundaryLoop> boundary_loops(const Connectivity& connectivity) {
   for (std::uint32_t triangle = 0; triangle < connectivity.n_faces(); ++triangle)
     for (const auto side : connectivity.sides_of(triangle)) {
       if (!connectivity.is_open(side) || seen[edge_number(connectivity, side)]) continue;
-      // OpenMesh's boundary half-edges run opposite to the triangles.
+      // OpenMesh's boundary half-edges run opposite to the direction of the triangles.
       BoundaryLoop& loop = loops.emplace_back();
       const OpenMesh::HalfedgeHandle first = connectivity.opposite_halfedge_handle(side);
       auto rim = first;

@@ -8,8 +8,8 @@
 namespace strata::mesh {
 namespace {
 
-// A loop that returns to a vertex encloses a hole that touches the rim there: it becomes a separate
-// ring.
+// A loop that returns to a vertex encloses a hole that touches the rim there. The hole becomes a
+// separate ring.
 void add_rings(const Connectivity& connectivity, const BoundaryLoop& loop, ChartRims& rims) {
   std::vector<std::uint32_t> path;
   std::unordered_map<std::uint32_t, std::size_t> place_in_path;

@@ -7,13 +7,14 @@
 
 namespace strata::mesh {
 
-// The rims of a chart of a model's atlas: closed rings of vertices, each once, in the direction of
-// the triangles. They enclose the chart.
+// The rims of a chart in a model's atlas. They enclose the chart. A rim is a closed ring of
+// vertices in the direction of the triangles, and each vertex occurs once.
 struct ChartRims {
   std::vector<std::vector<std::uint32_t>> rings;
 };
 
-// The rims of every chart, in the order of their first triangles. See Connectivity for the memory.
+// Returns the rims of every chart, in the order of their first triangles. See Connectivity for the
+// memory.
 std::vector<ChartRims> find_chart_rims(const Geometry& geometry);
 
 }  // namespace strata::mesh

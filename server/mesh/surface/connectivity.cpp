@@ -19,7 +19,8 @@ Handle numbered(std::uint32_t number) {
 }  // namespace
 
 Connectivity::Connectivity(std::span<const std::uint32_t> triangles, std::size_t vertex_count) {
-  // By the first corner of each side: the corner of the opposite side, and later its half-edge.
+  // Indexed by the first corner of each side. Stores the corner of the opposite side, and later the
+  // half-edge of the side.
   constexpr std::uint32_t kOpen = 0xffffffffu;
   std::vector<std::uint32_t> sides(triangles.size(), kOpen);
   std::size_t edge_count = triangles.size();
@@ -30,7 +31,7 @@ Connectivity::Connectivity(std::span<const std::uint32_t> triangles, std::size_t
     --edge_count;
   });
   resize(vertex_count, edge_count, triangles.size() / 3);
-  // Edges in the order of the triangles, so that neighboring faces are near each other in memory.
+  // Edges are in the order of the triangles, so neighboring faces are near each other in memory.
   std::uint32_t next_edge = 0;
   for (std::uint32_t first = 0; first < triangles.size(); first += 3) {
     const auto face = numbered<FaceHandle>(first / 3);
@@ -52,7 +53,7 @@ Connectivity::Connectivity(std::span<const std::uint32_t> triangles, std::size_t
     set_halfedge_handle(face, around[0]);
   }
   // The rim continues where the fan of triangles around a vertex ends. OpenMesh requires that a
-  // vertex on a rim refers to the half-edge that leaves it along the rim.
+  // vertex on a rim refers to the half-edge that leaves the vertex along the rim.
   for (std::uint32_t i = 0; i < n_halfedges(); ++i) {
     const auto rim = numbered<HalfedgeHandle>(i);
     if (!is_boundary(rim)) continue;

@@ -8,15 +8,15 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::size_t kStep = 4;
-// A level is kept if it has at most this share of the triangles of the one before,
+// A level is kept only if it has at most this share of the triangles of the previous level.
 constexpr double kWorthwhile = 0.7;
-// and at least this share of the area: simplification of unconnected triangles leaves only holes.
+// A level is kept only if it has at least this share of the area. Simplification of unconnected
+// triangles only leaves holes.
 constexpr double kMinArea = 0.9;
-// Share of the model's extent. The triangle count determines a level; this limit is not meant to
-// stop it.
+// As a share of the model's extent. The triangle count should determine a level, not this limit.
 constexpr float kMaxError = 0.05f;
 
-// Target triangle counts, the finest first.
+// Returns the target triangle counts, beginning with the finest level.
 std::vector<std::size_t> level_sizes(std::size_t triangles) {
   std::vector<std::size_t> sizes;
   for (std::size_t size = kCoarsestLevelTriangles; 2 * size <= triangles; size *= kStep)
@@ -25,7 +25,7 @@ std::vector<std::size_t> level_sizes(std::size_t triangles) {
   return sizes;
 }
 
-// A geometry of the vertices that `indices` use, numbered by first use.
+// Returns a geometry of the vertices that `indices` use, numbered by first use.
 Geometry compact(const Geometry& source, const std::vector<std::uint32_t>& indices) {
   constexpr std::uint32_t kNone = 0xffffffffu;
   Geometry result;

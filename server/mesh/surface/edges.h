@@ -7,7 +7,7 @@
 
 namespace strata::mesh {
 
-// One side of a triangle: from corner k to corner k + 1.
+// One side of a triangle, from corner k to corner k + 1.
 struct HalfEdge {
   std::uint32_t other_end;  // the larger of its two vertices
   std::uint32_t corner : 31;
@@ -17,16 +17,17 @@ struct HalfEdge {
 };
 static_assert(sizeof(HalfEdge) == 8);
 
-// Calls visit(smaller vertex, half-edges) for every edge of the mesh, in ascending order of its
-// vertices, with all sides of triangles that lie on it in ascending order of corners. At most 2³¹ -
-// 1 corners; needs 8 bytes for each.
+// Calls visit(smaller vertex, half-edges) for every edge of the mesh, in ascending order of the
+// edge's vertices. The half-edges are all sides of triangles on the edge, in ascending order of
+// corners. Supports at most 2³¹ - 1 corners and needs 8 bytes per corner.
 template <class Visit>
 void for_each_edge(std::span<const std::uint32_t> triangles, std::size_t vertex_count,
                    Visit&& visit) {
   const auto next_in_triangle = [](std::size_t corner) {
     return corner % 3 == 2 ? corner - 2 : corner + 1;
   };
-  // Bucketed by their smaller vertex: a counting sort, then tiny sorts.
+  // The half-edges are grouped by their smaller vertex with a counting sort. The small groups are
+  // then sorted.
   std::vector<std::uint32_t> begin(vertex_count + 1, 0);
   for (std::size_t c = 0; c < triangles.size(); ++c)
     ++begin[std::min(triangles[c], triangles[next_in_triangle(c)])];
@@ -42,7 +43,7 @@ void for_each_edge(std::span<const std::uint32_t> triangles, std::size_t vertex_
     half_edges[begin[std::min(from, to)]++] = {
         std::max(from, to), static_cast<std::uint32_t>(c) & 0x7fffffffu, from < to ? 1u : 0u};
   }
-  // The cursor of a vertex is now at the end of its bucket, which is where the next one begins.
+  // The cursor of a vertex is now at the end of its group, where the next group begins.
   for (std::size_t v = 0; v < vertex_count; ++v) {
     const auto first = half_edges.begin() + (v == 0 ? 0 : begin[v - 1]),
                last = half_edges.begin() + begin[v];

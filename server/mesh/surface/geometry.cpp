@@ -13,11 +13,12 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint32_t kStoneGrey = 0xffcfd3d6u;
-// An alpha of the file is not used: the byte holds the openness (analysis/vertex_openness.h).
+// The alpha of the file is not used, because this byte stores the openness
+// (analysis/vertex_openness.h).
 constexpr std::uint32_t kOpen = 0xff000000u;
 constexpr double kRoundOriginAbove = 16;
 
-// Spreads the low 21 bits of `value` so that two zero bits are between them.
+// Spreads the low 21 bits of `value` with two zero bits between neighboring bits.
 std::uint64_t spread_bits(std::uint64_t value) {
   value &= 0x1fffff;
   value = (value | value << 32) & 0x1f00000000ffffULL;
@@ -30,7 +31,8 @@ std::uint64_t spread_bits(std::uint64_t value) {
 constexpr int kCurveBits = 21;  // of each coordinate
 constexpr std::uint32_t kCurveEnd = (1u << kCurveBits) - 1;
 
-// The index of a cell on the Hilbert curve (Skilling 2004, "Programming the Hilbert curve").
+// Returns the index of a cell on the Hilbert curve (Skilling 2004, "Programming the Hilbert
+// curve").
 std::uint64_t hilbert_code(std::array<std::uint32_t, 3> cell) {
   for (std::uint32_t bit = 1u << (kCurveBits - 1); bit > 1; bit >>= 1) {
     const std::uint32_t below = bit - 1;
@@ -49,9 +51,9 @@ std::uint64_t hilbert_code(std::array<std::uint32_t, 3> cell) {
          spread_bits(cell[2] ^ turn);
 }
 
-// Triangle numbers along a Hilbert curve through their centroids: neighbors on the surface are near
-// each other, and a run of triangles is compact, as the curve never jumps. This order is good for
-// the caches of the GPU, clusters for culling, compression and the search tree.
+// Returns the triangle numbers in the order of a Hilbert curve through the centroids. Neighbors on
+// the surface are near each other. A run of triangles is compact, because the curve never jumps.
+// This order is good for GPU caches, culling clusters, compression and the search tree.
 std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dvec3& low,
                                          const glm::dvec3& extent) {
   struct Entry {
@@ -87,7 +89,8 @@ std::uint32_t pack_normal(const glm::dvec3& sum) {
   return snorm10(normal.x) | snorm10(normal.y) << 10 | snorm10(normal.z) << 20;
 }
 
-// Area-weighted normals of the mesh's positions: the length of the cross product is twice the area.
+// Returns the area-weighted normals of the mesh's positions. The length of the cross product is
+// twice the area.
 std::vector<std::uint32_t> position_normals(const TriangleMesh& mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
   for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
@@ -140,7 +143,7 @@ class VertexSplitter {
   Geometry& geometry_;
   std::vector<std::uint32_t> normals_;
   CornerWelder welder_;
-  std::vector<std::uint32_t> position_of_;  // new number of a mesh position
+  std::vector<std::uint32_t> position_of_;  // new number of each mesh position
 };
 
 }  // namespace

@@ -11,32 +11,33 @@
 
 namespace strata::mesh {
 
-// One vertex in the layout of the GPU; 32 bytes. Positions are in model space: world minus
+// A vertex in the GPU layout, 32 bytes. Positions are in model space: world minus
 // `Geometry::origin`, in file units.
 struct Vertex {
   glm::vec3 position;
   std::uint32_t normal;  // snorm 10:10:10:2 (GL_INT_2_10_10_10_REV), unit length
   glm::vec2 uv;
-  // red in the low byte; a stone gray where the scan has none; highest: analysis/vertex_openness.h
+  // red in the low byte; stone gray if the scan has no color; highest byte: openness
   std::uint32_t color;
-  std::uint32_t position_index;  // of the welded position: vertices split at seams share it
+  std::uint32_t position_index;  // of the welded position, shared by vertices split at seams
 };
 static_assert(sizeof(Vertex) == 32);
 
-// Box of a run of triangles, model space.
+// The box of a run of triangles, in model space.
 struct ClusterBox {
   glm::vec3 min{0}, max{0};
 };
 
-// An imported model: the immutable input of rendering, of the surface map and of the search tree.
+// An imported model. It is the immutable input for rendering, for the surface map and for the
+// search tree.
 struct Geometry {
-  // center of the box, rounded to whole units where the box is larger than 16
+  // center of the box, rounded to whole units if the box is larger than 16
   glm::dvec3 origin{0};
-  std::vector<glm::dvec3> positions;   // world, double, welded
-  std::vector<Vertex> vertices;        // corners with equal position and uv share a vertex
-  std::vector<std::uint32_t> indices;  // 3 a triangle, in an order that keeps neighbors together
-  glm::vec3 box_min{0}, box_max{0};    // model space
-  // for each kTrianglesPerCluster triangles in their order; the last has fewer
+  std::vector<glm::dvec3> positions;   // in world coordinates, double, welded
+  std::vector<Vertex> vertices;        // corners with the same position and UV share a vertex
+  std::vector<std::uint32_t> indices;  // 3 per triangle, in an order that keeps neighbors together
+  glm::vec3 box_min{0}, box_max{0};    // in model space
+  // one for each run of kTrianglesPerCluster triangles; the last run has fewer
   std::vector<ClusterBox> clusters;
 
   static constexpr std::size_t kTrianglesPerCluster = 1024;
@@ -52,7 +53,7 @@ Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas);
 
 double surface_area(const Geometry& geometry);  // unit²
 
-// Stored form (zstd, versioned); decoding checks every bound and index.
+// The stored form is versioned and compressed with zstd. Decoding checks every bound and index.
 std::vector<std::uint8_t> encode_geometry(const Geometry& geometry);
 Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes);
 

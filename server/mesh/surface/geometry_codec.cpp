@@ -8,20 +8,20 @@
 
 #include "mesh/surface/geometry.h"
 
-// Stored form, little-endian:
+// The stored form, little-endian:
 //   "SGEO" · version u8 · zstd frame (with content size and checksum) of
 //   u64 positions, vertices, indices · f64 origin[3] · planes(positions x, y, z as u64) ·
 //   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32)
-// "planes" is a column of integers, each replaced by its zigzag difference to the one before,
-// stored byte plane by byte plane: neighbors in the order along the curve differ little, so the
-// high planes are nearly all zero. Vertex positions and the box are computed from the rest and not
-// stored.
+// "planes" is a column of integers. Each integer is replaced by its zigzag difference from the
+// previous one. The differences are stored byte plane by byte plane. Neighbors on the curve differ
+// little, so the high planes are almost entirely zero. Vertex positions and the box are computed
+// from the other data and not stored.
 
 namespace strata::mesh {
 namespace {
 
 constexpr char kMagic[4] = {'S', 'G', 'E', 'O'};
-// In version 1 the highest byte of a color was an alpha of the file, which nothing used.
+// In version 1 the highest byte of a color was the alpha of the file, which was not used.
 constexpr std::uint8_t kVersion = 2, kVersionWithoutOpenness = 1;
 constexpr std::uint32_t kOpen = 0xff000000u;
 constexpr int kLevel = 1;
@@ -43,7 +43,7 @@ Bits unzigzag(Bits code) {
   return static_cast<Bits>((code >> 1) ^ (Bits{0} - (code & 1)));
 }
 
-// Writes `count` values of `value(i)` as planes at `out` and moves `out` past them.
+// Writes `count` values of `value(i)` as planes to `out` and moves `out` past them.
 template <class Bits, class Value>
 void write_planes(std::uint8_t*& out, std::size_t count, Value value) {
   Bits before = 0;
@@ -172,7 +172,7 @@ std::vector<std::uint8_t> encode_geometry(const Geometry& geometry) {
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
   const std::size_t size = ZSTD_compress2(context.get(), result.data() + prefix,
                                           result.size() - prefix, content.data(), content.size());
-  if (ZSTD_isError(size)) throw std::bad_alloc();  // the target is large: only memory can fail
+  if (ZSTD_isError(size)) throw std::bad_alloc();  // the target is large, so only memory can fail
   result.resize(prefix + size);
   result.shrink_to_fit();
   return result;
@@ -189,8 +189,8 @@ Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
   }
   const std::span<const std::uint8_t> frame = bytes.subspan(prefix);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
-  // Geometry never compresses a thousandfold; a larger size means damage, and nothing is allocated
-  // for it.
+  // Geometry never compresses by a factor of 1000. A larger size indicates damage, and no memory is
+  // allocated for it.
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN ||
       size / 1000 > frame.size() + 65536) {
     return damaged("its size is wrong");

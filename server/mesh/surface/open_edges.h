@@ -5,7 +5,7 @@
 
 namespace strata::mesh {
 
-// Measures where the surface ends, in file units: the loops of `boundary_loops`. For time and
+// Measures the loops of `boundary_loops`, where the surface ends, in file units. For time and
 // memory see Connectivity.
 OpenEdges measure_open_edges(const Geometry& geometry);
 

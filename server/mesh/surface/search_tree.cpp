@@ -8,10 +8,10 @@
 #include <vector>
 
 // A tree of boxes over the triangles in the order of the geometry. That order follows a Hilbert
-// curve, so runs of it have compact boxes without any sorting: a million triangles take some tens
-// of milliseconds, and any other order would only be slower, never wrong. Each node has eight
-// children, whose boxes are stored together, so that vectors of the CPU test them at once.
-// Triangles are computed in double.
+// curve, so runs of triangles have compact boxes without sorting. A million triangles take a few
+// tens of milliseconds. Any other order would be slower but still correct. Each node has eight
+// children. Their boxes are stored together, so vector instructions test several boxes at the same
+// time. Triangles are computed in double precision.
 
 namespace strata::mesh {
 namespace {
@@ -20,7 +20,7 @@ constexpr std::size_t kLeafTriangles = 2;
 constexpr std::size_t kWidth = 8;
 constexpr std::size_t kMaxLevels = 12;  // 8^12 leaves
 
-// The boxes of a node's children; the boxes of missing children are empty.
+// The boxes of a node's children. The boxes of missing children are empty.
 struct Boxes {
   Boxes() {
     for (auto& side : low) side.fill(std::numeric_limits<float>::infinity());
@@ -37,7 +37,8 @@ struct Boxes {
 template <class Key>
 using Keys = std::array<Key, kWidth>;
 
-// Several boxes at once. Compilers do not vectorize this automatically: they keep branches.
+// Vectors that process several boxes at the same time. Compilers do not vectorize this code
+// automatically, because they keep branches.
 template <class Number>
 struct LanesOf {
   typedef Number Type __attribute__((vector_size(16)));
@@ -52,8 +53,8 @@ Lanes load(const Number* from) {
   return lanes;
 }
 
-// At most the squared distances of the boxes: the margin exceeds the rounding of the floats, and of
-// a limit that they are compared with.
+// Returns lower bounds of the squared distances of the boxes. The margin exceeds the rounding error
+// of the floats and of the limit that they are compared with.
 Keys<float> squared_distances(const Boxes& boxes, const glm::vec3& p) {
   constexpr std::size_t kLanes = sizeof(Floats) / sizeof(float);
   Keys<float> keys;
@@ -75,9 +76,9 @@ Keys<float> squared_distances(const Boxes& boxes, const glm::vec3& p) {
   return keys;
 }
 
-// Weights of the corners at the point of triangle a, b, c that is nearest to p (Ericson, Real-Time
-// Collision Detection, 5.1.5). Uses differences of products only where the denominators cannot
-// vanish; for a triangle without area the nearest point is on its edges.
+// Returns the weights of the corners at the point of triangle a, b, c that is nearest to p
+// (Ericson, Real-Time Collision Detection, 5.1.5). Uses differences of products only where the
+// denominators cannot vanish. For a triangle without area, the nearest point is on its edges.
 glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                            const glm::dvec3& c) {
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -97,9 +98,9 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return {1 - vb / sum - vc / sum, vb / sum, vc / sum};
 }
 
-// A ray prepared for the watertight test of Woop, Benthin and Wald (2013): the axis along which it
-// is longest becomes z, and the others are sheared. Edges shared by two triangles give the same
-// numbers with opposite sign, so no ray passes between them.
+// A ray prepared for the watertight test of Woop, Benthin and Wald (2013). The axis of the ray's
+// longest component becomes z, and the other axes are sheared. Edges shared by two triangles give
+// the same numbers with opposite signs, so no ray passes between the triangles.
 struct PreparedRay {
   PreparedRay(const glm::dvec3& from, const glm::dvec3& along)
       : origin(from), direction(along + 0.0), inverse(1.0 / direction) {
@@ -111,8 +112,8 @@ struct PreparedRay {
     shear = glm::dvec3(direction[kx], direction[ky], 1.0) / direction[kz];
   }
 
-  // Entry distances of the boxes, or infinity. The factor covers the rounding of the three
-  // divisions.
+  // Returns the entry distances of the boxes, or infinity. The factor covers the rounding of the
+  // three divisions.
   Keys<double> enter(const Boxes& boxes, double limit) const {
     constexpr std::size_t kLanes = sizeof(Doubles) / sizeof(double);
     Keys<double> keys;
@@ -120,12 +121,13 @@ struct PreparedRay {
       Doubles near{}, far = Doubles{} + limit;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double at = (&origin.x)[axis], scale = (&inverse.x)[axis];
-        // From the side that the ray enters first.
+        // `first` is the side that the ray enters first.
         const float* first = &(scale < 0 ? boxes.high : boxes.low)[axis][begin];
         const float* last = &(scale < 0 ? boxes.low : boxes.high)[axis][begin];
         const Doubles t0 = (Doubles{first[0], first[1]} - at) * scale,
                       t1 = (Doubles{last[0], last[1]} - at) * scale;
-        // 0 × infinity: the ray runs inside the face of the box, which bounds nothing.
+        // 0 × infinity means that the ray lies in the face of the box. The face is then not a
+        // bound.
         near = t0 > near ? t0 : near;
         far = t1 < far ? t1 : far;
       }
@@ -136,7 +138,7 @@ struct PreparedRay {
     return keys;
   }
 
-  // Distance to the triangle, in front of the origin; fills `weights`.
+  // Returns the distance to the triangle in front of the origin and sets `weights`.
   std::optional<double> hit(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                             glm::dvec3& weights) const {
     const glm::dvec3 pa = a - origin, pb = b - origin, pc = c - origin;
@@ -195,15 +197,15 @@ struct SearchTree::Impl {
             geometry->vertices[i[2]].position};
   }
 
-  // Visits the triangles of leaves in the order of their keys while these are at most `limit`,
-  // which `visit` may lower. `keys_of` returns the keys of a node's children: distances, infinity
-  // to skip.
+  // Visits the triangles of leaves in the order of the leaves' keys, up to the key `limit`. `visit`
+  // may lower the limit. `keys_of` returns the keys of a node's children. A key is a distance, or
+  // infinity to skip the child.
   template <class Key, class KeysOf, class Visit>
   void search(double& limit, KeysOf keys_of, Visit visit) const {
     struct Entry {
       Key key;
       std::uint32_t index;
-      std::uint32_t level;  // of nodes, 1 is the lowest; 0: a leaf
+      std::uint32_t level;  // level of nodes, beginning with 1 for the lowest; 0: a leaf
     };
     if (levels.empty()) return;
     std::array<Entry, kMaxLevels * kWidth> stack;
@@ -223,8 +225,8 @@ struct SearchTree::Impl {
       const std::size_t below = entry.level == 1 ? leaves : levels[entry.level - 2].size();
       const std::size_t first_child = std::size_t{entry.index} * kWidth;
       const std::size_t first = depth, children = std::min(kWidth, below - first_child);
-      // The CPU cannot predict which are near: branches would take longer than the tests of the
-      // boxes.
+      // The CPU cannot predict which children are near. Branches would therefore take longer than
+      // the box tests.
       std::array<std::uint8_t, kWidth> near{};
       std::size_t count = 0;
       for (std::size_t child = 0; child < children; ++child) {
@@ -233,7 +235,7 @@ struct SearchTree::Impl {
       }
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t child = near[i];
-        // The nearest is on top of the stack.
+        // The nearest child is on top of the stack.
         std::size_t place = depth++;
         for (; place > first && stack[place - 1].key < keys[child]; --place)
           stack[place] = stack[place - 1];
@@ -271,7 +273,7 @@ struct SearchTree::Impl {
     const Vertex &a = geometry->vertices[i[0]], &b = geometry->vertices[i[1]],
                  &c = geometry->vertices[i[2]];
     const auto [pa, pb, pc] = corners(triangle);
-    // World positions give the orientation of triangles that are flat in float.
+    // World positions give the orientation of triangles that have no area in float.
     const glm::dvec3& base = geometry->positions[a.position_index];
     const glm::dvec3 cross = glm::cross(geometry->positions[b.position_index] - base,
                                         geometry->positions[c.position_index] - base);
@@ -288,7 +290,7 @@ struct SearchTree::Impl {
 
   std::shared_ptr<const Geometry> geometry;
   std::size_t leaves = 0;
-  std::vector<std::vector<Boxes>> levels;  // the lowest nodes, whose children are leaves, first
+  std::vector<std::vector<Boxes>> levels;  // lowest nodes first; their children are leaves
 };
 
 SearchTree::SearchTree(std::shared_ptr<const Geometry> geometry)

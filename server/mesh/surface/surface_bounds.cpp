@@ -8,11 +8,11 @@
 namespace strata::mesh {
 namespace {
 
-// Share of the model's diagonal: allows for the rounding of code that unpacks positions in float.
+// As a share of the model's diagonal. Allows for rounding in code that unpacks positions as floats.
 constexpr float kSlack = 1e-6f;
 
-// Texels of a block that are more than this many mean texels apart, with none between, belong to
-// different parts.
+// Texels of a block belong to different parts if they are farther apart than this number of mean
+// texel widths, with no texel between them.
 constexpr double kMinGap_texels = 4;
 
 float slack_of(const Geometry& geometry) {
@@ -44,9 +44,10 @@ void SurfaceBake::box_slots(int band) {
   });
 }
 
-// A surface texel whose position gutter texels of other blocks use is moved to the coarsest of
-// their grids: then each block can hold the same position. (Powers of two: a point of a coarse grid
-// is a point of every finer one.) In one order, on one thread.
+// Gutter texels of other blocks may use the position of a surface texel. The surface texel is then
+// moved to the coarsest of their grids, so each block can store the same position. Steps are powers
+// of two, so a point of a coarse grid is also a point of every finer grid. The texels are moved in
+// a fixed order on one thread.
 void SurfaceBake::share_grids() {
   for (const auto& band : borrowed_)
     for (const Borrowed& borrowed : band) {
@@ -70,7 +71,7 @@ void SurfaceBake::pack_slots(int band) {
     const glm::vec3* positions = position_.get() + std::size_t{slot} * 64;
     auto& packed_box = map_.packed_box[slot];
     Box& box = box_of_slot_[slot];
-    // Moved positions may begin the box a little earlier; its step does not change.
+    // Moved positions may shift the beginning of the box slightly. Its step does not change.
     for (std::uint64_t rest = owned; rest != 0; rest &= rest - 1) {
       const glm::vec3 position = positions[std::countr_zero(rest)];
       box.low = glm::min(box.low, position), box.high = glm::max(box.high, position);
@@ -89,7 +90,7 @@ void SurfaceBake::pack_slots(int band) {
 }
 
 BlockTree::Part SurfaceBake::part_of(std::uint32_t slot) const {
-  constexpr std::uint32_t kBlocks = kTileSize / kBlockSize;  // a side
+  constexpr std::uint32_t kBlocks = kTileSize / kBlockSize;  // per side
   const std::uint32_t block = map_.block_of_slot[slot],
                       per_side = static_cast<std::uint32_t>(map_.blocks_per_side);
   const std::uint32_t x = block % per_side, y = block / per_side;

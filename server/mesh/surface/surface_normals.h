@@ -9,10 +9,11 @@
 
 namespace strata::mesh {
 
-// Normals of a mesh as a smooth surface: at each welded position the mean of the faces around it
-// weighted by their angle there (the pseudo-normal of Bærentzen and Aanæs, which also distinguishes
-// inside from outside), interpolated over triangles. A triangle at more than 40° to that mean is at
-// a real edge and keeps its own normal there. Immutable; thread-safe.
+// The normals of a mesh as a smooth surface. At each welded position the normal is the mean of the
+// surrounding faces, weighted by their angle there. This pseudo-normal of Bærentzen and Aanæs also
+// distinguishes inside from outside. The normals are interpolated over triangles. A triangle at
+// more than 40° to the mean is at a real edge and keeps its own normal there. Immutable and
+// thread-safe.
 class SurfaceNormals {
  public:
   explicit SurfaceNormals(std::shared_ptr<const Geometry> geometry);

@@ -7,15 +7,15 @@
 
 namespace strata::mesh {
 
-// Pieces of a parametrization: triangles are in the same island if a chain of corners with equal
-// position and UV joins them.
+// The pieces of a parametrization. Triangles are in the same island if they are connected by a
+// chain of corners with the same position and UV.
 struct UvIslands {
   std::vector<std::uint32_t> of_triangle;  // numbered from 0 in the order of their first triangle
   std::uint32_t count = 0;
 };
 
-// Numbers corners from 0 by first use: two corners have the same number exactly if their position
-// and UV are equal.
+// Numbers corners from 0 by first use. Two corners have the same number only if they have the same
+// position and UV.
 class CornerWelder {
  public:
   explicit CornerWelder(std::size_t position_count) : first_(position_count, kEnd) {}
@@ -37,10 +37,10 @@ class CornerWelder {
   std::vector<Vertex> vertices_;
 };
 
-// `indices`: 3 a triangle, equal exactly where position and UV are equal.
+// `indices` has 3 entries per triangle. Entries are equal if and only if position and UV are equal.
 UvIslands find_islands(std::span<const std::uint32_t> indices, std::size_t vertex_count);
 
-// Computes such indices by a CornerWelder. Returns the number of distinct ones.
+// Computes such indices with a CornerWelder. Returns the number of distinct indices.
 std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner,
                          std::span<const glm::vec2> uv_of_corner, std::size_t position_count,
                          std::vector<std::uint32_t>& indices);

@@ -7,7 +7,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr int kMaxCells = 4096;     // a side
+constexpr int kMaxCells = 4096;     // per side
 constexpr double kRounding = 1e-6;  // margin of a triangle's box, in texture coordinates
 
 struct Nearest {
@@ -15,7 +15,7 @@ struct Nearest {
   glm::dvec3 weights;
 };
 
-// The point of a triangle nearest to `p`.
+// Returns the point of a triangle that is nearest to `p`.
 Nearest nearest_in(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
   const double twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   if (twice != 0) {

@@ -9,15 +9,16 @@
 
 namespace strata::mesh {
 
-// Finds the position of texture coordinates on the surface, to the precision of the mesh: a surface
-// map has only the centers of texels. Keeps a grid of the triangles, some 20 bytes each; `geometry`
-// must outlive it.
+// Finds the position of texture coordinates on the surface with the precision of the mesh. A
+// surface map has only the centers of texels. Stores a grid of the triangles with about 20 bytes
+// per triangle. `geometry` must outlive this object.
 class UvLookup {
  public:
   explicit UvLookup(const Geometry& geometry);
 
-  // The position in model space, in double, on the triangle that contains the coordinates, or on
-  // the nearest one in their cell of the grid; nothing if the cell is empty.
+  // Returns the position in model space, in double precision. It is on the triangle that contains
+  // the coordinates, or on the nearest triangle in their cell of the grid. Returns nothing if the
+  // cell is empty.
   std::optional<glm::dvec3> place_at(glm::dvec2 uv) const;
 
  private:
@@ -26,8 +27,8 @@ class UvLookup {
   void for_each_cell(std::size_t triangle, Visit&& visit) const;
 
   const Geometry& geometry_;
-  int side_;                          // cells
-  std::vector<std::uint32_t> first_;  // for each cell, and the end
+  int side_;                          // number of cells
+  std::vector<std::uint32_t> first_;  // one entry for each cell and one for the end
   std::vector<std::uint32_t> triangles_;
 };
 

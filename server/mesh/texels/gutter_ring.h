@@ -4,14 +4,15 @@
 
 namespace strata::mesh {
 
-constexpr int kGutterRing = 2;  // width of the gutter around an island in texels
+constexpr int kGutterRing = 2;  // width in texels of the gutter around an island
 
 struct TexelOffset {
   int x, y;
 };
 
-// The 24 neighbors within the ring, nearest first; among equals the lower, then the left one. A
-// gutter texel follows the first of them that is a surface texel.
+// The 24 neighbors within the ring, nearest first. Of equally near neighbors, the lower comes
+// first, then the left. A gutter texel follows the first neighbor in this order that is a surface
+// texel.
 constexpr std::array<TexelOffset, 24> gutter_ring_offsets() {
   std::array<TexelOffset, 24> offsets{};
   int count = 0;

@@ -9,18 +9,18 @@
 
 namespace strata::mesh {
 
-// Positions in a box as 21 + 21 + 22 bits; the largest value of each is not used, so that all ones
-// is not a position.
+// The largest values of positions in a box as 21 + 21 + 22 bits. The largest value of each
+// component is not used, so a value with all bits set is not a position.
 constexpr std::uint32_t kMaxPackedX = (1u << 21) - 2, kMaxPackedY = (1u << 21) - 2,
                         kMaxPackedZ = (1u << 22) - 2;
 
-// The smallest power of two for which `largest` steps cover `low`…`high` and that is no finer than
-// floats there.
+// Returns the smallest power of two for which `largest` steps cover `low`…`high`. It is not finer
+// than floats in this range.
 inline float packed_step(float low, float high, std::uint32_t largest) {
   const double farthest = std::max(std::abs(double{low}), std::abs(double{high}));
   int exponent = farthest > 0 ? std::ilogb(farthest) - 23 : -126;
-  // Two steps are reserved: the box begins on a whole step, and positions may be moved by less than
-  // one.
+  // Two steps are reserved because the box begins on a whole step and positions may be moved by
+  // less than one step.
   const double extent = double{high} - double{low};
   if (extent > 0) exponent = std::max(exponent, std::ilogb(extent / (largest - 2.0)) + 1);
   return static_cast<float>(std::ldexp(1.0, std::max(exponent, -126)));

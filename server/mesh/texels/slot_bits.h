@@ -10,10 +10,10 @@
 
 namespace strata::mesh {
 
-// Conversions between the slots of a surface map, with a bit for each of their 64 texels, and the
-// tiles of its layers.
+// Conversions between the slots of a surface map, with one bit for each of their 64 texels, and the
+// tiles of the layers.
 
-// The slot of a block; kNoSlot where the block is empty or outside the map.
+// Returns the slot of a block, or kNoSlot if the block is empty or outside the map.
 inline std::uint32_t slot_at(const SurfaceMap& map, int block_x, int block_y) {
   if (block_x < 0 || block_y < 0 || block_x >= map.blocks_per_side ||
       block_y >= map.blocks_per_side)
@@ -21,7 +21,7 @@ inline std::uint32_t slot_at(const SurfaceMap& map, int block_x, int block_y) {
   return map.slot_of_block[static_cast<std::size_t>(block_y) * map.blocks_per_side + block_x];
 }
 
-// Position of a tile's texel in the map; the slot may be kNoSlot.
+// The position of a tile's texel in the map. The slot may be kNoSlot.
 struct SlotTexel {
   std::uint32_t slot;
   int texel;  // y * 8 + x
@@ -47,7 +47,7 @@ TileMask gather_tile_bits(const SurfaceMap& map, TileAddress tile, BitsOf&& bits
   return mask;
 }
 
-// Calls visit(gutter, owner) for every gutter texel and the surface texel it follows.
+// Calls visit(gutter, owner) for every gutter texel and the surface texel that it follows.
 template <class Visit>
 void for_each_gutter_texel(const SurfaceMap& map, Visit&& visit) {
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
@@ -74,8 +74,8 @@ void for_each_gutter_texel(const SurfaceMap& map, Visit&& visit) {
   }
 }
 
-// Given a bit for each surface texel, a word a slot: gutter texels get the bit of the surface texel
-// they follow.
+// `bits_of_slot` has one word per slot and one bit per surface texel. Sets the bit of each gutter
+// texel to the bit of the surface texel that it follows.
 void spread_to_gutter(const SurfaceMap& map, std::span<std::uint64_t> bits_of_slot);
 
 }  // namespace strata::mesh

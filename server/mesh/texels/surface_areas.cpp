@@ -38,10 +38,11 @@ void SurfaceBake::credit_areas(int band) {
   }
 }
 
-// The surface texel that is credited with area on a texel without an island, or of another one: the
-// nearest of its own island within the ring; without one (a tip too thin to cover centers) the
-// nearest that the triangle covers; for a triangle that covers none the one that contains its
-// centroid, which is always a surface texel.
+// Returns the surface texel that is credited with area on a texel without an island or of another
+// island. This is the nearest texel of the triangle's own island within the ring. If there is no
+// such texel, because a tip is too thin to cover centers, it is the nearest texel covered by the
+// triangle. For a triangle that covers no texel, it is the texel that contains its centroid. That
+// texel is always a surface texel.
 glm::ivec2 SurfaceBake::heir_of(const Leftover& leftover) const {
   const int x = static_cast<int>(leftover.texel % resolution_),
             y = static_cast<int>(leftover.texel / resolution_);

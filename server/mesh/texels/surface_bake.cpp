@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMaxBands = 32;
 
-// also for NaN
+// also handles NaN
 double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.0) : 0.0; }
 
 }  // namespace
@@ -35,7 +35,7 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
   islands_ = find_islands(geometry.indices, geometry.vertices.size());
   triangle_area_.resize(geometry.triangle_count());
   for (std::uint32_t t = 0; t < triangle_area_.size(); ++t) {
-    // Computed from the world's doubles: model space is float.
+    // Computed from the double coordinates of the world, because model space uses float.
     const auto at = [&](int k) {
       return geometry.positions[geometry.vertices[vertex(t, k)].position_index];
     };
@@ -63,7 +63,8 @@ Buckets SurfaceBake::triangles_by_band() const {
           [&](std::uint32_t t) {
             const int a = snapped_[vertex(t, 0)].y, b = snapped_[vertex(t, 1)].y,
                       c = snapped_[vertex(t, 2)].y;
-            // One subtexel wider, as areas are clipped at the exact coordinates.
+            // The range is one subtexel wider on each side, because areas are clipped at the exact
+            // coordinates.
             const int low = std::clamp((std::min({a, b, c}) - 1) >> 8, 0, resolution_ - 1);
             const int high = std::clamp((std::max({a, b, c}) + 1) >> 8, 0, resolution_ - 1);
             return std::pair{band_of_row[low], band_of_row[high]};
@@ -125,7 +126,7 @@ void SurfaceBake::mark_surface(int band) {
       }
       return true;
     });
-  // Triangles between the centers own the texel of their centroid, if no other triangle owns it.
+  // Triangles between texel centers own the texel of their centroid if no other triangle owns it.
   auto& claims = claims_[band];
   for (const std::uint32_t t : triangles_of_band_[band]) {
     if (triangle_area_[t] <= 0) continue;
@@ -155,7 +156,8 @@ void SurfaceBake::mark_surface(int band) {
 void SurfaceBake::mark_gutter(int band) {
   for (int by = first_block_row(band); by < first_block_row(band + 1); ++by)
     for (int bx = 0; bx < map_.blocks_per_side; ++bx) {
-      // The block with 2 texels around it: rows of 12 bits; bit 2 is the block's first column.
+      // The block with 2 texels on each side, as rows of 12 bits. Bit 2 is the block's first
+      // column.
       std::array<std::uint32_t, 12> rows{};
       std::uint64_t any = 0;
       for (int dy = -1; dy <= 1; ++dy)
@@ -192,7 +194,7 @@ void SurfaceBake::assign_slots(int threads) {
     map_.gutter_texels += std::popcount(gutter);
   }
   const std::size_t slots = map_.block_of_slot.size();
-  // The first access to new memory costs as much as the baking itself: it uses all threads.
+  // The first access to new memory takes as long as the baking itself, so all threads share it.
   parallel_for(threads, 2, [&](int half) {
     if (half == 0)
       owner_.assign(slots * 64, kNobody);
@@ -214,7 +216,7 @@ void SurfaceBake::assign_slots(int threads) {
 
 namespace {
 
-// Surface positions over a triangle as a function of texel coordinates, in model space.
+// The surface positions in a triangle as a function of texel coordinates, in model space.
 class PositionPlane {
  public:
   PositionPlane(const std::array<glm::dvec2, 3>& uv, const std::array<glm::dvec3, 3>& corners)
@@ -230,7 +232,7 @@ class PositionPlane {
     weight_2_ = glm::dvec2(-e1.y, e1.x) / twice;
   }
 
-  // The weights of the second and third corner at (x, y); negative ones are set to 0.
+  // Returns the weights of the second and third corner at (x, y). Negative weights are set to 0.
   glm::dvec2 weights(double x, double y) const {
     if (is_line_) return glm::dvec2(1.0 / 3.0);
     const glm::dvec2 d(x - origin_.x, y - origin_.y);
@@ -252,7 +254,7 @@ class PositionPlane {
     return part(b.x) | part(b.y) << 16;
   }
 
-  // The point of the triangle with these weights.
+  // Returns the point of the triangle with these weights.
   glm::dvec3 at(double x, double y) const {
     const glm::dvec2 b = weights(x, y);
     return base_ + b.x * along_1_ + b.y * along_2_;
@@ -288,8 +290,8 @@ void SurfaceBake::place_surface(int band) {
   std::vector<std::uint32_t> shared;
   for (const std::uint32_t t : triangles_of_band_[band]) {
     const CoverageRaster raster = raster_of(t);
-    // Most triangles of a dense scan cover little; the plane is computed when the first texel needs
-    // it.
+    // Most triangles of a dense scan cover few texels. The plane is computed only when the first
+    // texel needs it.
     std::optional<PositionPlane> plane;
     raster.for_each_span(0, resolution_, y_low, y_high, [&](int y, int x0, int x1) {
       if (!plane) plane = plane_of(t);

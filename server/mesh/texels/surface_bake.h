@@ -14,13 +14,13 @@
 
 namespace strata::mesh {
 
-// The data kept of each texel: its position and area, or its triangle and its place there.
+// The data stored for each texel: its position and area, or its triangle and its position in it.
 enum class BakeFor { map, owners };
 
-// The steps of baking a surface map. Work is divided into horizontal bands of the atlas, always the
-// same ones, so that the result does not depend on the assignment to threads. Within a band
-// triangles are in ascending order. For owners the steps end with place_gutter, and the map's
-// positions and areas stay empty.
+// The steps of baking a surface map. Work is divided into fixed horizontal bands of the atlas, so
+// the result does not depend on the assignment to threads. Within a band, triangles are in
+// ascending order. For BakeFor::owners the steps end with place_gutter, and the positions and areas
+// of the map stay empty.
 class SurfaceBake {
  public:
   SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map,
@@ -28,7 +28,7 @@ class SurfaceBake {
 
   int band_count() const { return band_count_; }
 
-  void mark_surface(int band);     // which texels are surface, into masks of all blocks
+  void mark_surface(int band);     // marks surface texels in the masks of all blocks
   void mark_gutter(int band);      // after mark_surface of all bands
   void assign_slots(int threads);  // after mark_gutter of all bands
   void place_surface(int band);    // owners and positions of surface texels
@@ -41,13 +41,14 @@ class SurfaceBake {
   void bound_tiles();              // after pack_slots of all bands
   void plant_tree(int threads);    // after pack_slots of all bands
 
-  // The results of place_surface and place_gutter for painting by triangle: 64 a slot, of surface
-  // texels only. Weights are of the second corner and << 16 of the third, in 1/65535. Call these
-  // once, at the end.
+  // The results of place_surface and place_gutter for painting by triangle. They have 64 entries
+  // per slot and are defined for surface texels only. Weights store the second corner in the low 16
+  // bits and the third corner in the high 16 bits, in units of 1/65535. Call these functions once,
+  // at the end.
   std::vector<std::uint32_t> take_owners() { return std::move(owner_); }
   std::vector<std::uint32_t> take_weights() { return std::move(weights_); }
   struct Borrowed {
-    // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
+    // a gutter texel with the position of a surface texel; both index the per-slot arrays
     std::uint32_t gutter, owner;
   };
   const std::vector<Borrowed>& borrowed_in(int band) const { return borrowed_[band]; }
@@ -59,7 +60,7 @@ class SurfaceBake {
   struct Claim {
     std::uint32_t texel, triangle;
   };
-  struct Leftover {  // area on a texel that its own island does not own
+  struct Leftover {  // area on a texel that the triangle's island does not own
     std::uint32_t texel, triangle;
     float area;
   };
@@ -76,7 +77,7 @@ class SurfaceBake {
   template <class Visit>
   void for_each_slot(int band, Visit visit);
 
-  BlockTree::Part part_of(std::uint32_t slot) const;  // as if the block were one
+  BlockTree::Part part_of(std::uint32_t slot) const;  // treats the block as one part
   std::uint64_t block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const;
   bool is_surface(int x, int y) const;
   // index into the per-slot arrays; the block must have a slot
@@ -99,9 +100,9 @@ class SurfaceBake {
   std::vector<std::vector<Borrowed>> borrowed_;
   std::vector<std::vector<Leftover>> leftovers_;
   std::vector<std::uint64_t> overlaps_of_band_;
-  std::vector<std::uint32_t> owner_;    // 64 a slot
-  std::vector<std::uint32_t> weights_;  // 64 a slot, for owners only
-  // 64 a slot, until they are packed; undefined where a texel is neither surface nor gutter
+  std::vector<std::uint32_t> owner_;    // 64 per slot
+  std::vector<std::uint32_t> weights_;  // 64 per slot, for BakeFor::owners only
+  // 64 per slot, until they are packed; undefined for texels that are neither surface nor gutter
   std::unique_ptr<glm::vec3[]> position_;
   struct Box {
     glm::vec3 low{INFINITY}, high{-INFINITY};

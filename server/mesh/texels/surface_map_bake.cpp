@@ -20,7 +20,7 @@ Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Pr
   progress.report(0, "Locating texels on the surface");
   SurfaceBake bake(geometry, resolution, map);
   using Step = void (SurfaceBake::*)(int);
-  // Cancelled work is incomplete: the map is discarded.
+  // Cancelled work is incomplete, so the map is discarded.
   const auto run = [&](Step step, double fraction_after) {
     if (progress.cancelled()) return;
     parallel_for(threads, bake.band_count(), [&](int band) {

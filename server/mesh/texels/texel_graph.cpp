@@ -65,7 +65,7 @@ class Builder {
     }
   }
 
-  // A texel of a thin triangle, and its position along the triangle.
+  // A texel of a thin triangle and its position along the triangle.
   struct Along {
     double at;
     std::uint32_t texel;
@@ -74,13 +74,13 @@ class Builder {
     }
   };
 
-  // `scratch`: reused memory, for speed.
+  // `scratch` is memory that is reused for speed.
   void link_triangle(std::uint32_t triangle, std::vector<TexelGraph::Link>& links,
                      std::vector<std::uint32_t>& at_open_edge, std::vector<Along>& scratch) const {
     for (int k = 0; k < 3; ++k) link_edge(triangle, k, links, at_open_edge);
     // In a triangle thinner than two texels, a texel may touch neither another texel nor a sample
-    // of the edges. So samples on the way to the centroid are added, which are the only ones of a
-    // triangle between the centers.
+    // of the edges. Samples on the line to the centroid are therefore added. They are the only
+    // samples of a triangle between texel centers.
     const glm::dvec2 a = uv(triangle, 0), b = uv(triangle, 1), c = uv(triangle, 2);
     const double twice_area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
     glm::dvec2 side = b - a;
@@ -126,7 +126,7 @@ class Builder {
     return a != kNoTexel && b != kNoTexel && island_of_texel_[a] == island_of_texel_[b];
   }
 
-  // The island's texel at a point, or the nearest one within the ring.
+  // Returns the island's texel at a point, or the nearest texel of the island within the ring.
   std::uint32_t resolve(const glm::dvec2& point, std::uint32_t island) const {
     const int x = std::clamp(static_cast<int>(point.x), 0, map_.resolution - 1),
               y = std::clamp(static_cast<int>(point.y), 0, map_.resolution - 1);
@@ -139,13 +139,13 @@ class Builder {
     return kNoTexel;
   }
 
-  // Links along an edge, and across it where it is a seam.
+  // Links texels along an edge, and also across it if the edge is a seam.
   void link_edge(std::uint32_t triangle, int k, std::vector<TexelGraph::Link>& links,
                  std::vector<std::uint32_t>& at_open_edge) const {
     const std::uint32_t other = neighbours_[3 * std::size_t{triangle} + k];
     if (other != kNoTriangle && other < triangle) return;  // the other triangle has linked it
     const int next = (k + 1) % 3;
-    int other_from = 0, other_to = 0;  // the corners of `other` at this one's k and next
+    int other_from = 0, other_to = 0;  // corners of `other` at corners k and next
     bool seam = false;
     if (other != kNoTriangle) {
       while (other_to < 2 && (position(other, other_to) != position(triangle, next) ||
@@ -160,7 +160,7 @@ class Builder {
     if (seam) b0 = uv(other, other_from), b1 = uv(other, other_to);
     const double length = std::max(glm::length(a1 - a0), glm::length(b1 - b0));
     const int steps = std::max(1, static_cast<int>(std::ceil(length * kSamplesPerTexel)));
-    // The texels of a sliver may be far apart: a gap does not end the chain.
+    // The texels of a sliver may be far apart, so a gap does not end the chain.
     std::uint32_t last_a = kNoTexel, last_b = kNoTexel;
     bool sides_joined = false;
     for (int i = 0; i <= steps; ++i) {
@@ -175,14 +175,14 @@ class Builder {
       join(a, b, links);
       sides_joined = true;
     }
-    // For a seam where each side has texels only at the gaps of the other.
+    // Joins the two sides of a seam if each side has texels only at the gaps of the other side.
     if (seam && !sides_joined) join(last_a, last_b, links);
   }
 
-  // Links each texel to the nearest of those a little before it: no link passes over another texel
-  // of the triangle.
+  // Links each texel to the nearest of a few preceding texels. No link therefore passes over
+  // another texel of the triangle.
   void link_along(std::vector<Along>& texels, std::vector<TexelGraph::Link>& links) const {
-    // more than a triangle of this width has within two texels of its length
+    // more texels than a triangle of this width has within two texels of its length
     constexpr std::size_t kBefore = 8;
     std::sort(texels.begin(), texels.end());
     for (std::size_t i = 1; i < texels.size(); ++i) {
@@ -205,7 +205,7 @@ class Builder {
     last = texel;
   }
 
-  // Links two texels that the surface joins, if the atlas does not show it already.
+  // Links two texels that are connected on the surface unless the atlas already shows this.
   void join(std::uint32_t a, std::uint32_t b, std::vector<TexelGraph::Link>& links) const {
     if (a == kNoTexel || b == kNoTexel || a == b || shown_by_atlas(a, b)) return;
     const TexelGraph::Link link{a, b};
@@ -252,7 +252,7 @@ Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap&
   if (!owners) return tl::unexpected(owners.error());
   progress.report(0.5, kJoining);
   const Builder builder(geometry, map, *owners);
-  owners = TexelOwners{};  // frees the memory
+  owners = TexelOwners{};  // releases the memory
 
   TexelGraph graph;
   const std::size_t slots = map.block_of_slot.size();

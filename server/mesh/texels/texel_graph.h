@@ -11,39 +11,40 @@
 
 namespace strata::mesh {
 
-// Which surface texels of a map touch each other on the surface: the four neighbors of a texel in
-// the atlas if they belong to the same island, and links where the atlas does not show it. Links
-// are made along the mesh's edges: across seams, from one side's texels to the other's, and within
-// an island where it is thinner than a texel. Texels are numbered as in the arrays of the map: 64 *
-// slot + y * 8 + x.
+// The connections between the surface texels of a map. A texel is connected to its four neighbors
+// in the atlas if they belong to the same island. Links connect other texels that touch each other
+// on the surface. Links are made along the mesh's edges. They run across seams, from the texels of
+// one side to the texels of the other. They also run within an island that is thinner than a texel.
+// Texels are numbered as in the arrays of the map: 64 * slot + y * 8 + x.
 //
-// A gap within an island that is narrower than a texel does not separate its sides; an island
-// without a surface texel joins nothing.
+// A gap within an island that is narrower than a texel does not separate its sides. An island
+// without a surface texel connects nothing.
 struct TexelGraph {
   std::vector<std::uint64_t> to_right,
-      // a slot: bits of the texels that are joined to their right, upper neighbor
+      // per slot: bits of the texels that are connected to their right or upper neighbor
       to_upper;
-  std::vector<std::uint64_t> has_links;     // a slot: bits of the texels that begin a link
-  std::vector<std::uint64_t> at_open_edge;  // a slot: bits of the texels where the mesh ends
+  std::vector<std::uint64_t> has_links;     // per slot: bits of the texels with a link
+  std::vector<std::uint64_t> at_open_edge;  // per slot: bits of the texels at which the mesh ends
   using Link = std::pair<std::uint32_t, std::uint32_t>;
-  std::vector<Link> links;  // ascending; each is listed in both directions
+  std::vector<Link> links;  // ascending, each listed in both directions
 
   std::span<const Link> links_of(std::uint32_t texel) const;
   std::size_t bytes() const;
 };
 
-// `map` is of this geometry. Refused when cancelled.
+// `map` belongs to this geometry. Fails when cancelled.
 Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap& map,
                                      Progress& progress, int threads = 2);
 
-// The surface texel at a texture coordinate, or the one that the gutter there follows; nothing if
-// the atlas is empty there.
+// Returns the surface texel at a texture coordinate, or the surface texel followed by the gutter
+// texel there. Returns nothing if the atlas is empty there.
 std::optional<std::uint32_t> surface_texel_at(const SurfaceMap& map, glm::vec2 uv);
 
 enum class Way { right, upper, left, lower };
 constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
 
-// The texel next to another one in the atlas, if both are joined; otherwise kNoNeighbour.
+// Returns the texel next to another texel in the atlas if both are connected. Otherwise returns
+// kNoNeighbour.
 inline std::uint32_t neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel,
                                Way way) {
   const std::uint32_t slot = texel / 64, i = texel % 64, block = map.block_of_slot[slot];
@@ -75,7 +76,7 @@ inline std::uint32_t neighbour(const SurfaceMap& map, const TexelGraph& graph, s
   return kNoNeighbour;
 }
 
-// Calls visit(neighbor) for each texel joined to `texel`.
+// Calls visit(neighbor) for each texel connected to `texel`.
 template <class Visit>
 void for_each_neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel,
                         Visit&& visit) {

@@ -13,7 +13,7 @@ namespace {
 constexpr int kBlocksPerTileSide = kTileSize / kBlockSize;
 constexpr const char* kLocating = "Locating texels on the surface";
 
-// Collects the values computed for the texels of all slots as tiles.
+// Collects the values computed for the texels of all slots into tiles.
 class TileSorter {
  public:
   TileSorter(const TexelOwners& owners, ValueType type) : owners_(owners), type_(type) {

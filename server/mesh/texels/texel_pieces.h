@@ -8,20 +8,20 @@
 
 namespace strata::mesh {
 
-// The exact area of a triangle within each texel of the grid: signed areas to the right of its
-// edges, summed along rows.
+// Computes the exact area of a triangle within each texel of the grid. Signed areas to the right of
+// the triangle's edges are summed along rows.
 class TexelPieces {
  public:
-  // Corners in texels, not negative.
+  // The corners are in texels and not negative.
   void set(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
     corners_ = {a, b, c};
     const double twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     area_ = std::abs(twice) / 2;
-    sign_ = twice < 0 ? 1 : -1;  // an upward edge has its inside on the left when counterclockwise
+    sign_ = twice < 0 ? 1 : -1;  // counterclockwise: the inside is left of upward edges
     low_ = glm::min(a, glm::min(b, c));
     high_ = glm::max(a, glm::max(b, c));
     const glm::dvec2 extent = high_ - low_;
-    // Pieces of thinner triangles would be rounding noise.
+    // The pieces of thinner triangles would be rounding noise.
     is_line_ = area_ <= 1e-9 * glm::dot(extent, extent);
   }
 
@@ -35,8 +35,8 @@ class TexelPieces {
     return std::max(first_column(), static_cast<int>(std::ceil(high_.x)) - 1);
   }
 
-  // Calls visit(x, y, area) for each texel of rows [y_low, y_high) that contains a piece, row by
-  // row.
+  // Calls visit(x, y, area) for each texel in the rows [y_low, y_high) that contains a piece, row
+  // by row.
   template <class Visit>
   void for_each(int y_low, int y_high, Visit&& visit) {
     const int x0 = first_column(), columns = last_column() - x0 + 1;
@@ -62,7 +62,7 @@ class TexelPieces {
   }
 
  private:
-  // Adds the area to the right of the edge's part within row y: after a running sum each column
+  // Adds the area to the right of the edge's part within row y. After a running sum, each column
   // holds its signed area.
   void add_edge(glm::dvec2 from, glm::dvec2 to, int y, int x0, int columns) {
     const double direction = from.y < to.y ? 1 : -1;
@@ -98,7 +98,7 @@ class TexelPieces {
   glm::dvec2 low_{0}, high_{0};
   double area_ = 0, sign_ = 1;
   bool is_line_ = true;
-  int row_first_ = 0, row_last_ = -1;  // columns in which the row's sums change
+  int row_first_ = 0, row_last_ = -1;  // columns in which the sums of the row change
   std::vector<double> sums_;
 };
 

@@ -9,14 +9,14 @@
 
 namespace strata::mesh {
 
-// The texel centers that a triangle covers, as in OpenGL implementations: vertices snapped to 1/256
-// texel, integer edge functions, and a center on an edge belongs to the triangle whose left or
-// lower side that edge is. So the texels of two triangles that share an edge are disjoint, and no
-// texel between them is lost.
+// The texel centers that a triangle covers, as in OpenGL implementations. Vertices are snapped to
+// 1/256 texel, and edge functions use integers. A center on an edge belongs to the triangle that
+// has this edge on its left or lower side. The texels of two triangles that share an edge are
+// therefore disjoint, and no texel between them is lost.
 constexpr int kSubtexels = 256;
 
-// A point of the texture in 1/256 texel; resolution 16384 needs 22 bits, and products of two fit in
-// 64.
+// A point of the texture in units of 1/256 texel. Resolution 16384 needs 22 bits, and the product
+// of two coordinates fits in 64 bits.
 using SnappedPoint = glm::ivec2;
 
 inline SnappedPoint snap_to_subtexels(double x_texels, double y_texels) {
@@ -26,7 +26,7 @@ inline SnappedPoint snap_to_subtexels(double x_texels, double y_texels) {
 
 class CoverageRaster {
  public:
-  // Either orientation; a triangle without area covers nothing.
+  // The triangle may have either orientation. A triangle without area covers nothing.
   CoverageRaster(SnappedPoint a, SnappedPoint b, SnappedPoint c) {
     twice_area_ = cross(a, b, c);
     if (twice_area_ == 0) return;
@@ -39,7 +39,7 @@ class CoverageRaster {
       Edge& edge = edges_[k];
       edge.step_x = -dy * kSubtexels;
       edge.step_y = dx * kSubtexels;
-      // Value at the center of texel (0, 0); inside is ≥ 0.
+      // The value at the center of texel (0, 0). Values inside are ≥ 0.
       edge.at_origin = dx * (kSubtexels / 2 - from.y) - dy * (kSubtexels / 2 - from.x) -
                        (owns_its_points ? 0 : 1);
     }
@@ -49,11 +49,10 @@ class CoverageRaster {
     y_last_ = last_centre(std::max({a.y, b.y, c.y}));
   }
 
-  std::int64_t twice_area() const { return twice_area_; }  // in (1/256 texel)², signed as given
+  std::int64_t twice_area() const { return twice_area_; }  // in (1/256 texel)², signed
 
-  // Calls visit(y, x_begin, x_end) for each row of the window [x_low, x_high) × [y_low, y_high)
-  // that has covered texels, upward; stops when visit returns false. Returns whether it reached the
-  // end.
+  // Calls visit(y, x_begin, x_end) for each row with covered texels in the window [x_low, x_high) ×
+  // [y_low, y_high), upward. Stops when visit returns false. Returns true if it reached the end.
   template <class Visit>
   bool for_each_span(int x_low, int x_high, int y_low, int y_high, Visit&& visit) const {
     if (twice_area_ == 0) return true;

@@ -17,14 +17,14 @@ namespace strata::mesh {
 namespace {
 
 constexpr int kMinBaseColor = 256, kPlainColors = 2048;
-// sides are powers of two up to this value, then multiples
+// sides are powers of two up to kMaxPower, and multiples of kSideStep above
 constexpr int kMaxPower = 2048, kSideStep = 1024;
 constexpr int kGutterRing = 8, kRingsPerSide = 1024;
 constexpr int kJpegQuality = 92;
-constexpr double kRounding = 1 - 1e-3;    // of a side, below which the next larger one is used
-constexpr double kMaxMinification = 1.5;  // limit for mixing four texels
-constexpr double kLost = 0.02;        // share of a texture's pixels: smaller losses are rounding
-constexpr double kBytesPerTexel = 6;  // the picture, its coarser levels and the encoded result
+constexpr double kRounding = 1 - 1e-3;    // tolerance before the next larger side is used
+constexpr double kMaxMinification = 1.5;  // limit for interpolating between four texels
+constexpr double kLost = 0.02;        // share of a texture's pixels; smaller losses are rounding
+constexpr double kBytesPerTexel = 6;  // for the image, its coarser levels and the encoded result
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + " × " + std::to_string(height);
@@ -54,7 +54,7 @@ class Baker {
         auto baked = bake(shares);
         if (!baked || *baked) return baked;
       }
-      // No texture could be read: the mesh is treated as if it had none.
+      // No texture could be read, so the mesh is treated like a mesh without textures.
       look_at_materials();
     }
     if (mesh_.materials.empty() || !several_colors_) {
@@ -85,7 +85,8 @@ class Baker {
 
   static bool is_white(const glm::vec4& color) { return glm::vec3(color) == glm::vec3(1); }
 
-  // The texture whose pixels need no change, or −1. Moved triangles may have no texture.
+  // Returns the texture with pixels that need no change, or −1. Moved triangles may have no
+  // texture.
   int only_texture() const {
     if (atlas_.report.source != "file" || atlas_.kept_scale < 1 || several_colors_ ||
         !is_white(first_color_))
@@ -104,7 +105,7 @@ class Baker {
     return texture;
   }
 
-  // One color for all triangles: it is applied to the vertices.
+  // All triangles have one color, which is applied to the vertices.
   void color_vertices() {
     if (is_white(first_color_) || (!mesh_.vertex_colors.empty() && !mesh_.colors_tint_materials))
       return;
@@ -133,7 +134,7 @@ class Baker {
     return memory_->reserve(static_cast<std::uint64_t>(bytes), "the textures of an import");
   }
 
-  // Nothing: it cannot be read, which is noted.
+  // Returns nothing if the texture cannot be read, and notes this.
   Result<std::optional<BaseColor>> as_it_is(int index) {
     Texture& texture = mesh_.textures[index];
     progress_.report(0, "Checking the texture");
@@ -197,7 +198,7 @@ class Baker {
     return shares;
   }
 
-  // Reserves memory for the largest picture that fits, up to the one that keeps all pixels.
+  // Reserves memory for the largest image that fits, up to the size that keeps all pixels.
   Result<MemoryLedger::Share> reserve_picture(const std::vector<Share>& shares, int& side) {
     double source = 0;
     for (const Share& share : shares)
@@ -208,10 +209,10 @@ class Baker {
     }
   }
 
-  // Nothing if there were textures and none could be read.
+  // Returns nothing if the mesh has textures but no texture can be read.
   Result<std::optional<BaseColor>> bake(std::vector<Share> shares) {
     const std::size_t textures = mesh_.textures.size();
-    // Triangles by their textures; those without a texture are first.
+    // Triangles are grouped by texture. Triangles without a texture come first.
     const auto place_of = [&](std::uint32_t t) { return material_of(t).texture + 1; };
     const Buckets by_texture(static_cast<int>(textures) + 1,
                              static_cast<std::uint32_t>(mesh_.triangle_count()),
@@ -259,7 +260,7 @@ class Baker {
     return static_cast<int>(std::ceil(needed / kSideStep)) * kSideStep;
   }
 
-  // Notes the original and the kept size, if pixels were lost.
+  // Notes the original size and the kept size if pixels were lost.
   void note_lost_pixels(const std::vector<Share>& shares, int side) {
     double used = 0, retained = 0;
     std::uint64_t smaller = 0;
@@ -294,7 +295,7 @@ class Baker {
          smaller);
   }
 
-  // Decodes to the resolution of the atlas at most. An empty picture if it cannot be decoded.
+  // Decodes a texture to at most the resolution of the atlas. Returns an empty image on failure.
   Picture decoded(Texture& texture, const Share& share, int side) {
     auto picture = decode_picture(texture.bytes);
     if (!picture) note_unreadable(texture, picture.error());

@@ -8,7 +8,7 @@
 
 namespace strata::mesh {
 
-// Conversion tables between stored color values and linear light, 0…65535.
+// Conversion tables between stored color values and linear light in 0…65535.
 struct ColorTables {
   std::array<std::uint16_t, 256> linear;
   std::array<std::uint8_t, 65536> srgb;

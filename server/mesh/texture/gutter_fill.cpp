@@ -23,7 +23,7 @@ void for_each_empty_beside(Picture& picture, std::uint32_t at, Visit visit) {
   }
 }
 
-// Ring by ring: only the pixels filled last have empty neighbors.
+// Fills ring by ring. Only the pixels filled last have empty neighbors.
 void grow_rings(Picture& picture, int ring) {
   std::vector<std::uint32_t> last, next;
   const auto count = static_cast<std::uint32_t>(picture.rgba.size() / 4);

@@ -4,10 +4,10 @@
 
 namespace strata::mesh {
 
-// Gives the pixels whose alpha is 0 a color and makes the picture opaque, so that neither filtering
-// nor the coarser levels of a texture bleed. Up to `ring` pixels around filled ones get the color
-// of a nearest filled pixel; the rest gets the mean of its surroundings, coarser with the distance.
-// A picture without any filled pixel becomes black.
+// Gives a color to the pixels with alpha 0 and makes the image opaque. Neither filtering nor the
+// coarser levels of a texture then bleed. Up to `ring` pixels around filled pixels get the color of
+// a nearest filled pixel. All other pixels get the mean of their surroundings, which becomes
+// coarser with the distance. An image without any filled pixel becomes black.
 void fill_gutter(Picture& picture, int ring);
 
 }  // namespace strata::mesh

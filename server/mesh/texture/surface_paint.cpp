@@ -41,8 +41,8 @@ const Material& SurfacePaint::material_of(std::size_t triangle) const {
   return material == kNoMaterial ? plain : mesh_.materials[material];
 }
 
-// Calls put(x, y, weights of the corners, mark) for each texel of rows [row_begin, row_end), y
-// upward.
+// Calls put(x, y, weights of the corners, mark) for each texel in the rows [row_begin, row_end). y
+// points upward.
 template <class Put>
 void SurfacePaint::raster(std::uint32_t t, glm::ivec2 size, int row_begin, int row_end,
                           Put put) const {
@@ -71,8 +71,8 @@ void SurfacePaint::raster(std::uint32_t t, glm::ivec2 size, int row_begin, int r
     return true;
   });
   if (covers) return;
-  // Too thin for any texel center: uses the texel that contains its middle, unless another triangle
-  // has it.
+  // The triangle is too thin for any texel center. It uses the texel that contains its centroid
+  // unless another triangle owns this texel.
   const glm::dvec2 middle = (a + b + c) / 3.0;
   const int x = std::clamp(static_cast<int>(middle.x), 0, size.x - 1),
             y = std::clamp(static_cast<int>(middle.y), 0, size.y - 1);
@@ -126,7 +126,7 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
     const glm::dvec2 sum = texture_uv(t, 0) + texture_uv(t, 1) + texture_uv(t, 2);
     return std::isfinite(sum.x) && std::isfinite(sum.y);
   };
-  // For each vertex of triangles without coordinates: a corner on a triangle that has coordinates.
+  // For each vertex of triangles without coordinates: a corner of a triangle with coordinates.
   std::unordered_map<std::uint32_t, std::uint32_t> corner_of;
   for (const auto t : atlas_.moved)
     if (!has_coordinates(t))
@@ -145,13 +145,14 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
     if (corner == 0xffffffffu) return std::nullopt;
     const std::uint32_t t = corner / 3;
     const Material& material = material_of(t);
-    // A little inside: beyond the rim of a chart, or of the texture, are other colors.
+    // The sample is slightly inside the triangle, because other colors are beyond the rim of a
+    // chart or of the texture.
     const glm::dvec2 middle = (texture_uv(t, 0) + texture_uv(t, 1) + texture_uv(t, 2)) / 3.0;
     const glm::dvec2 uv = glm::mix(texture_uv(t, static_cast<int>(corner % 3)), middle, 0.05);
     return sampler.sample(uv, material.wrap_u, material.wrap_v);
   };
 
-  // Painted texels are written afterwards: another lookup may read the same place.
+  // Painted texels are written afterwards, because another lookup may read the same texel.
   struct Texel {
     std::uint32_t at;
     std::array<std::uint8_t, 3> rgb;

@@ -12,22 +12,24 @@
 
 namespace strata::mesh {
 
-// Paints the colors of a mesh's materials, textures and vertices on its atlas. Holds references.
+// Paints the colors of a mesh's materials, textures and vertices on its atlas. Stores references to
+// the mesh and the atlas.
 class SurfacePaint {
  public:
   SurfacePaint(const TriangleMesh& mesh, const Atlas& atlas) : mesh_(mesh), atlas_(atlas) {}
 
   const Material& material_of(std::size_t triangle) const;
 
-  // Paints all texels of the triangles (`source`: their texture; empty: the material's color only),
-  // with alpha 255 where a triangle covers a texel's center and a little less where it only claims
-  // one. Uses two threads.
+  // Paints all texels of the triangles. `source` is their texture, or empty for the material's
+  // color only. Alpha is 255 if a triangle covers a texel's center, and slightly less if it only
+  // claims the texel. Uses two threads.
   void paint(std::span<const std::uint32_t> triangles, const Picture& source,
              Picture& picture) const;
 
-  // Paints the triangles of `atlas.moved` into a picture of the file's own texture, and `ring`
-  // texels around them where no triangle is. Triangles without coordinates mix the colors that
-  // their corners have on neighboring triangles. Texels continue as `texture`'s materials define.
+  // Paints the triangles of `atlas.moved` into an image of the file's own texture, and `ring`
+  // texels around them that belong to no triangle. Triangles without coordinates mix the colors of
+  // their corners on neighboring triangles. Texels continue as defined by the materials of
+  // `texture`.
   void paint_moved(int texture, int ring, Picture& picture) const;
 
  private:

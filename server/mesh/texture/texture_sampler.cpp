@@ -8,7 +8,7 @@
 namespace strata::mesh {
 namespace {
 
-// The pixel at position `at` of an endless row.
+// Returns the pixel at position `at` of an endless row.
 int wrapped(std::int64_t at, int size, Wrap wrap) {
   if (wrap == Wrap::clamp) return static_cast<int>(std::clamp<std::int64_t>(at, 0, size - 1));
   const std::int64_t period = wrap == Wrap::mirror ? 2 * std::int64_t{size} : size;
@@ -40,8 +40,7 @@ Picture halve(const Picture& picture) {
 }
 
 glm::vec4 TextureSampler::sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
-  // Distant coordinates keep the precision of a double in their fraction; NaN is replaced by the
-  // origin.
+  // Coordinates far away keep double precision in their fraction. NaN is replaced by the origin.
   const auto finite = [](double value) { return std::abs(value) < 1e9 ? value : 0.0; };
   const double x = finite(uv.x) * picture_.width - 0.5,
                y = (1 - finite(uv.y)) * picture_.height - 0.5;

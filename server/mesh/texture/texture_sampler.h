@@ -7,20 +7,21 @@
 
 namespace strata::mesh {
 
-// Half the width and height (at least 1), each pixel the mean light of four.
+// Returns an image with half the width and height (at least 1). Each pixel is the mean light of
+// four pixels.
 Picture halve(const Picture& picture);
 
-// A decoded texture with the lookup of a GPU: texel centers at (i + 0.5) / size, uv origin lower
-// left, bilinear.
+// A decoded texture with the lookup of a GPU: texel centers at (i + 0.5) / size, UV origin at the
+// lower left, bilinear interpolation.
 class TextureSampler {
  public:
   explicit TextureSampler(const Picture& picture) : picture_(picture) {}
 
-  // Red, green, blue as stored, 0…255.
+  // Returns red, green and blue as stored, 0…255.
   glm::vec3 sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
     return sample_with_alpha(uv, wrap_u, wrap_v);
   }
-  // The same with alpha, which is not multiplied in.
+  // Returns the same colors with alpha. The colors are not multiplied by alpha.
   glm::vec4 sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const;
 
  private:

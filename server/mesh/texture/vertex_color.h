@@ -8,7 +8,7 @@
 namespace strata::mesh {
 
 inline std::uint32_t channel_byte(double value) {
-  // NaN becomes 0, too
+  // NaN also becomes 0
   return value >= 0 ? static_cast<std::uint32_t>(std::lround(std::min(value, 255.0))) : 0u;
 }
 
@@ -17,8 +17,8 @@ inline std::uint32_t pack_color(double red, double green, double blue, double al
          channel_byte(alpha) << 24;
 }
 
-// Converts one channel, 0…1, from linear light to sRGB (IEC 61966-2-1), and back. Values outside,
-// and NaN, are clamped.
+// Convert one channel (0…1) from linear light to sRGB (IEC 61966-2-1) and back. Values outside this
+// range and NaN are clamped.
 inline double srgb_of_linear(double value) {
   value = value >= 0 ? std::min(value, 1.0) : 0.0;
   return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
@@ -28,12 +28,12 @@ inline double linear_of_srgb(double value) {
   return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
-// Colors given as real numbers are 0…1 in some files and 0…255 in others, and no header says which.
-// They are read as 0…1 until a channel exceeds 1; then the stored ones are rescaled (each was 0 or
-// about 1 of 255).
+// Colors given as real numbers have the range 0…1 in some files and 0…255 in others, and no header
+// specifies the range. They are read as 0…1 until a channel exceeds 1. Then the stored colors are
+// rescaled. Each of their channels was 0 or about 1 of 255.
 class RealColorScale {
  public:
-  // `stored` holds the colors packed before; without alpha a color is opaque.
+  // `stored` has the colors packed before. A color without alpha is opaque.
   std::uint32_t pack(const double (&rgba)[4], bool has_alpha, std::vector<std::uint32_t>& stored) {
     const int channels = has_alpha ? 4 : 3;
     if (!bytes_ && *std::max_element(rgba, rgba + channels) > 1.0) {

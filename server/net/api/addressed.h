@@ -19,13 +19,13 @@ namespace strata::net {
 struct Request;
 struct RouteContext;
 
-// Finds the entity that the address names, as visible to the caller's role. Reads the store; opens
-// no room.
+// Return the entity that the address names, as visible to the caller's role. They read the database
+// and do not open a room.
 Result<Project> stored_project(const RouteContext& context, const Request& request);
 Result<Model> stored_model(const RouteContext& context, const Request& request);
 Result<Layer> stored_layer(const RouteContext& context, const Request& request);
 Result<Table> stored_table(const RouteContext& context, const Request& request);
-// Opens the room of the model that the address names, unless it is open already.
+// Returns the room of the model that the address names. Opens the room if it is not open.
 Result<std::shared_ptr<room::Room>> open_room(const RouteContext& context, const Request& request);
 
 }  // namespace strata::net

@@ -9,8 +9,8 @@
 
 namespace strata::net {
 
-// Adds the routes of entities that everybody reads and that annotators or higher roles write.
-// Bodies are JSON, and answers to changes are stored for repeats.
+// Adds the routes of entities that all viewers can read and that annotators or higher roles can
+// change. The bodies are JSON. Responses to changes are stored for repeated calls.
 class AnnotatedRoutes {
  public:
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);

@@ -67,9 +67,9 @@ std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, stor
 constexpr std::string_view kPolicy =
     "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
     "form-action 'self'; frame-ancestors 'none'";
-// Redoc, on the page of the contract, adds two style elements: an empty one that it fills by
-// script, and one with the style of its scroll bars. The hashes are of these two texts; style
-// elements with any other text and style attributes stay forbidden.
+// Redoc, which shows the documentation of the API, adds two style elements. One is empty and is
+// filled by a script. The other contains the style of the scroll bars. The hashes are those of
+// these two texts. All other style elements and all style attributes remain forbidden.
 constexpr std::string_view kStylesOfDocs =
     "; style-src 'self' 'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=' "
     "'sha256-QMIg+bpjm3JdElJ388KYke01izlUW0UoNOeKjpMxdgc='";
@@ -83,7 +83,7 @@ const Headers& security_headers() {
       {"Referrer-Policy", "no-referrer"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
       {"Cross-Origin-Resource-Policy", "same-origin"},
-      // Denies the features that the pages do not use.
+      // Disables the browser features that the pages do not use.
       {"Permissions-Policy",
        "accelerometer=(), camera=(), display-capture=(), geolocation=(), gyroscope=(), magnetometer=(), "
        "microphone=(), midi=(), payment=(), serial=(), usb=(), xr-spatial-tracking=()"},
@@ -266,7 +266,7 @@ Result<void> Api::identify(Request& request, const Route& route) {
 }
 
 std::optional<Response> Api::admit(Request& request, const Route& route) {
-  // Public routes (the page itself, signing in, health) must work with a stale cookie, too.
+  // Public routes, such as the page, sign-in and health, must work even with an invalid cookie.
   if (route.role)
     if (auto known = identify(request, route); !known) return problem_response(known.error());
   if (changes(request.method))
@@ -301,7 +301,7 @@ void Api::handle(const Request& request, const Route& route, const Respond& send
   const Respond respond(
       [send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
        accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
-        // Applies to reads only, which a client can repeat with another `Accept`.
+        // Only for reads, because a client can repeat them with another `Accept`.
         if (response.status == 200 && !response.events &&
             !accepts_type(accept, response.header("Content-Type")))
           response = problem_response({ErrorCode::not_acceptable, "Not acceptable",
@@ -325,7 +325,7 @@ void Api::handle(const Request& request, const Route& route, const Respond& send
       return respond(std::move(response->with("Idempotency-Replayed", "true")));
     }
   }
-  // Handlers that store their answer reply before they return, so `request` is still valid.
+  // `request` is still valid because handlers that store their response send it before they return.
   const Respond answer = remembered ? Respond([this, &request, respond](Response response) {
     answers_.end(request);
     respond(std::move(response));
@@ -352,7 +352,8 @@ void Api::answer_failures(const Request& request, const Respond& answer,
   }
 }
 
-// Public routes are the page, which has its own tags, and health, which caches should not keep.
+// Public routes get no tag here. The page has its own tags, and caches should not keep the health
+// status.
 void Api::answer_read(const Request& request, const Route& route, const Respond& respond) {
   if (!route.role) return route.handler(request, respond);
   const auto known = request.header("if-none-match");
@@ -360,15 +361,15 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
     const auto state = route.state ? route.state(request) : std::nullopt;
     return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
   };
-  // Comparing the state before the work saves the work. Such tags include `Accept`. Whether the
-  // entity exists that `*` matches is known only afterwards.
+  // Comparing the states first avoids unnecessary work. A tag of the state depends on `Accept`. `*`
+  // matches any existing entity, so it can be compared only afterwards.
   const auto before = state_now();
   if (before && known != "*" && names_tag(known, *before))
     return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));
   const Respond with_tag([respond, known_tags = std::string(known), before,
                           state_now](Response response) {
     if (response.status != 200) return respond(std::move(response));
-    // The state did not change while the handler worked, so the answer shows exactly this state.
+    // The state is the same before and after the handler, so the response shows exactly this state.
     if (before && response.header("ETag").empty() && state_now() == before) {
       if (response.header("Vary").empty()) response.with("Vary", "Accept");
       response.with("ETag", *before);
@@ -376,7 +377,8 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
     }
     const auto tag = tag_of_body(response);
     if (!tag) return respond(std::move(response));
-    // For programs. `no-store`: a shared browser must not keep lists of people and sessions.
+    // The tag is for programs. `no-store` prevents a shared browser from keeping lists of users and
+    // sessions.
     response.with("ETag", *tag).with("Cache-Control", "private, no-store");
     respond(names_tag(known_tags, *tag) ? not_modified(response) : std::move(response));
   });
@@ -396,7 +398,8 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
   auto project = STRATA_TRY(store_.projects().find(to_string((*room)->model().project_id)));
-  // The portrait that others see. The server later closes the connection of a deleted user.
+  // Finds the name and color that other users see. If the account is deleted, the server closes the
+  // connection later.
   auto person = store_.accounts().find(request.user());
   if (!person && person.error().code != ErrorCode::not_found) return tl::unexpected(person.error());
   std::optional<protocol::PersonalView> view;

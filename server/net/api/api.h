@@ -35,8 +35,8 @@
 
 namespace strata::net {
 
-// The layer between the sockets and the rooms: finds the route, authenticates and authorizes the
-// caller, and recognizes repeated requests. Does not depend on a socket library.
+// The layer between the sockets and the rooms. Finds the route, authenticates and authorizes the
+// caller, and detects repeated requests. Does not depend on a socket library.
 class Api {
  public:
   Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
@@ -48,32 +48,34 @@ class Api {
   WorkerPool& workers() { return workers_; }
   QuestionDesk& questions() { return questions_; }
 
-  // Call once the head of the request is read; does not block. Writes the path's parameters into
-  // the request. Null: `refusal` is the answer.
+  // Finds the route when the head of the request has been read. Does not block. Writes the
+  // parameters of the path to the request. If it returns null, `refusal` is the response.
   const Route* find_route(Request& request, Response& refusal) const;
-  // Call on a worker before the body is read. Returns the refusal, if any.
+  // Checks the request before the body is read. Call it on a worker. Returns the response if the
+  // request is refused.
   std::optional<Response> admit(Request& request, const Route& route);
-  // Call on a worker once the body is read. That may have taken long, and in the meantime the
-  // caller may have lost the access or the role.
+  // Checks the request again after the body has been read, because the caller may have lost the
+  // access or the role in the meantime. Call it on a worker.
   std::optional<Response> admit_again(Request& request, const Route& route);
-  // Call on a worker, with the body.
+  // Handles the request, which includes the body. Call it on a worker.
   void handle(const Request& request, const Route& route, const Respond& respond);
 
-  // For the live connection of a model: whether the address is one, and whether the caller may
-  // connect (blocks: opens the room).
+  // For the live connection of a model: return whether the address is the address of a live
+  // connection, and whether the caller may connect. The second function opens the room and may
+  // block.
   static bool is_live_address(const Request& request);
   struct LiveEntry {
     std::shared_ptr<room::Room> room;
     std::string project_slug;
     Principal principal;
     room::Portrait portrait;
-    std::optional<protocol::PersonalView> personal_view;  // a kiosk has none
+    std::optional<protocol::PersonalView> personal_view;  // empty for a kiosk
     std::string secret;                                   // as the client sent it
   };
   Result<LiveEntry> admit_live(Request& request);
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
-  // Whether a session with this secret may stay in the project in this role (blocks). While the
-  // database is unreachable, every session may stay.
+  // Returns whether a session with this secret may stay in the project with this role. Returns true
+  // while the database is unreachable. Blocks.
   bool is_still_welcome(const std::string& secret, ProjectId project_id, Role role);
   LiveSockets& live_sockets() { return *shared_->sockets; }
 
@@ -100,8 +102,8 @@ class Api {
   WorkerPool workers_;
   QuestionDesk questions_;
   Router router_;
-  Route page_;  // every address outside the API
-  Route live_;  // the live connections, without a handler
+  Route page_;  // for all addresses outside the API
+  Route live_;  // for the live connections; has no handler
   app::TrashPurger trash_purger_;
   const TableEvents table_events_;
   const RouteContext context_;
@@ -109,7 +111,7 @@ class Api {
   app::DemoAnnotators demo_annotators_;
 };
 
-// The headers of every answer.
+// Returns the headers that every response gets.
 const Headers& security_headers();
 
 }  // namespace strata::net

@@ -9,15 +9,15 @@
 
 namespace strata::net {
 
-// Counters of the module `net`. Any thread may add to them.
+// Counters of the module `net`. All threads may change them.
 struct Metrics {
-  std::array<std::atomic<std::uint64_t>, 6> requests{};  // by the first digit of the status
+  std::array<std::atomic<std::uint64_t>, 6> requests{};  // by the first digit of the status code
   std::atomic<std::int64_t> open_connections{0};
-  std::atomic<std::int64_t> open_sockets{0};  // WebSockets
+  std::atomic<std::int64_t> open_sockets{0};  // open WebSockets
   app::EditCounters edits;
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
-  std::atomic<std::uint64_t> questions_left{0};  // disconnected by the client before the answer
+  std::atomic<std::uint64_t> questions_left{0};  // the client disconnected before the response
 
   void count_request(int status) { ++requests[status >= 100 && status < 600 ? status / 100 : 0]; }
 };
@@ -30,7 +30,7 @@ struct Gauges {
   std::uint64_t question_steps = 0;
 };
 
-// Prometheus text format 0.0.4.
+// Returns the metrics in the Prometheus text format 0.0.4.
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges);
 
 }  // namespace strata::net

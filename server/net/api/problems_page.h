@@ -5,7 +5,8 @@
 
 namespace strata::net {
 
-// Lists every `type` of a problem with its status, meaning and remedy: a page without scripts.
+// Returns an HTML page that lists every `type` of a problem with its status, meaning and remedy.
+// The page contains no scripts.
 std::string problems_html();
 std::string html_escape(std::string_view text);
 

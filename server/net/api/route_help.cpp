@@ -16,15 +16,16 @@
 
 namespace strata::net {
 namespace {
-constexpr int kMaxTries = 50;  // more than there are simultaneous changes of one entity
+constexpr int kMaxTries = 50;  // exceeds the simultaneous changes to one entity
 constexpr std::size_t kDigitsOfBody = 16;
 }  // namespace
 
 Handler answering(std::function<Result<Response>(const Request&)> answer) {
   return [answer = std::move(answer)](const Request& request, const Respond& respond) {
     auto response = answer(request);
-    // A change without a version applies to the newest one, also while others change the same
-    // entity: at each try one of the changes succeeds.
+    // A change without a version applies to the newest version. If other users change the entity at
+    // the same time, the change is tried again. At each try, one of the simultaneous changes
+    // succeeds.
     const auto if_match = request.header("if-match");
     const bool means_any = (request.method == Method::patch || request.method == Method::remove) &&
                            (if_match.empty() || if_match == "*");
@@ -57,7 +58,7 @@ Response with_etag(Response response, const Request& request, std::int64_t versi
   std::string etag = etag_of(version);
   if (request.method != Method::get && request.method != Method::head)
     return response.with("ETag", etag);
-  // One version differs between roles, and changes after the first edit.
+  // The content of one version differs between roles, and it changes after the first edit.
   etag.insert(etag.size() - 1, "." + sha256_hex(response.body).substr(0, kDigitsOfBody));
   if (names_tag(request.header("if-none-match"), etag))
     return empty_response(304).with("ETag", etag);
@@ -65,7 +66,7 @@ Response with_etag(Response response, const Request& request, std::int64_t versi
 }
 
 namespace {
-// Also accepts the form that `with_etag` writes, with a suffix after the version.
+// Also accepts the ETags of `with_etag`, which have a suffix after the version.
 bool names_version(std::string_view etag, std::int64_t version) {
   const std::string own = etag_of(version), beginning = own.substr(0, own.size() - 1) + ".";
   return etag == own || (etag.starts_with(beginning) && etag.ends_with('"'));

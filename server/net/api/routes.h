@@ -5,7 +5,7 @@ namespace strata::net {
 class Router;
 struct RouteContext;
 
-// Each function adds the routes of one kind of resource.
+// Each function adds the routes of one type of resource.
 void add_system_routes(Router& router, const RouteContext& context);
 void add_auth_routes(Router& router, const RouteContext& context);
 void add_people_routes(Router& router, const RouteContext& context);

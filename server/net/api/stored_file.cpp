@@ -19,10 +19,11 @@ namespace strata::net {
 namespace {
 
 constexpr std::size_t kHeadBytes = 1u << 20;
-constexpr std::uint64_t kAtOnceBytes = 4u << 20;  // larger answers are streamed
+constexpr std::uint64_t kAtOnceBytes = 4u << 20;  // larger files are streamed
 constexpr std::uint64_t kThumbnailFileBytes = 128u << 20;
 
-// No file can run scripts in the server's origin, even if a browser treats it as a page.
+// Prevents a file from running scripts in the server's origin, even if a browser displays it as a
+// page.
 constexpr const char* kSandbox = "sandbox; default-src 'none'";
 
 Result<int> thumbnail_side(const Request& request) {
@@ -35,7 +36,7 @@ Result<int> thumbnail_side(const Request& request) {
 }
 
 Result<Response> thumbnail(const RouteContext& context, const StoredFile& file, int side) {
-  // Decoded pictures are large: decoding one at a time bounds the memory.
+  // Decodes only one image at a time to limit the memory, because decoded images are large.
   static std::mutex decoding;
   auto stored = STRATA_TRY(context.store.attachments().thumbnail(file.sha256, side));
   if (stored) return bytes_response(std::move(*stored), "image/jpeg");
@@ -65,7 +66,8 @@ Result<Response> thumbnail(const RouteContext& context, const StoredFile& file, 
     picture.error().field = "thumbnail";
     return tl::unexpected(picture.error());
   }
-  // If it cannot be stored (disk full, database busy), the next request makes it again.
+  // Ignores errors, such as a full disk or a busy database. The next request creates the thumbnail
+  // again.
   (void)context.store.attachments().keep_thumbnail(file.sha256, side, *picture);
   return bytes_response(std::move(*picture), "image/jpeg");
 }
@@ -114,7 +116,7 @@ InspectedFile inspect_file(const std::filesystem::path& file, const std::string&
   if (found.name.empty()) found.name = "unnamed";
   const auto head = head_of(file);
   found.media_type = sniff_media_type(head, found.name);
-  // Stores a picture of unknown size, too: it is the user's file.
+  // Accepts images of unknown size because the server stores any file of a user.
   const bool is_picture = is_raster_picture(found.media_type);
   if (const auto info = inspect_picture(head, 1 << 16); is_picture && info) {
     found.width = info->width;

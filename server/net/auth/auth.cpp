@@ -61,7 +61,7 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
     }
   }
   auto stored = STRATA_TRY(store_.tokens().find(token));
-  // Links are exchanged for sessions; they are not tokens.
+  // Links are not tokens. A client exchanges a link for a session.
   using store::TokenKind;
   if (stored && stored->kind != TokenKind::session && stored->kind != TokenKind::script)
     return std::nullopt;
@@ -77,14 +77,14 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
     principal = principal_of(*kiosk);
   }
   std::lock_guard lock(mutex_);
-  if (changes != changes_) return principal;  // the result may be older than the change
+  if (changes != changes_) return principal;  // the result may predate the change
   if (remembered_.size() >= kMaxRemembered) remembered_.clear();
   remembered_[key] = {principal, now + kRememberFor};
   return principal;
 }
 
-// Once an administrator can sign in with a password, the token loses the owner's role: access to
-// the environment must not mean permanent ownership of the site.
+// The token loses the owner role as soon as an administrator can sign in with a password. Access to
+// the environment must not give permanent ownership of the site.
 Result<Principal> Authenticator::owner_by_token() {
   const auto principal = [](bool is_script) {
     const Role role = is_script ? Role::administrator : Role::owner;
@@ -108,7 +108,8 @@ std::string Authenticator::secret_of(const Request& request) {
   if (authorization.empty()) {
     const std::string cookie(request.as_kiosk ? kKioskCookie : kSessionCookie);
     std::string secret = cookie_value(request.header("cookie"), std::string(kHostPrefix) + cookie);
-    // Over https the plain name is ignored: a neighboring host may have set the cookie.
+    // Over HTTPS, the name without the prefix is ignored because a neighboring host may have set
+    // that cookie.
     if (secret.empty() && !came_by_https(request))
       secret = cookie_value(request.header("cookie"), cookie);
     return secret;
@@ -127,12 +128,12 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
                 "The Authorization header must have the form `Bearer TOKEN`.", "Authorization");
   auto principal = STRATA_TRY(identify_token(secret));
   if (!principal) return unknown_secret();
-  // A cookie is valid for its purpose only: a script that sets cookies cannot make a kiosk of a
-  // user's page, or the reverse.
+  // Each cookie is valid only for its own purpose. A script that sets cookies cannot turn a user's
+  // page into a kiosk, or a kiosk into a user's page.
   const bool is_kiosk = principal->kiosk.has_value();
   if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
-  // A script's token is not a session: it does not end with the browser's session, and no page
-  // lists it among the sessions.
+  // A token for scripts is not accepted as a session cookie. It does not end with the browser
+  // session, and no page lists it as a session.
   const bool is_session = principal->secret != 0 && !principal->is_script;
   if (by_cookie && !is_kiosk && !is_session) return unknown_secret();
   principal->by_cookie = by_cookie;
@@ -164,7 +165,7 @@ Result<std::string> Authenticator::session_for_token(const std::string& token,
   if (by_link) return *by_link;
   auto principal = STRATA_TRY(identify_token(token));
   if (!principal) return unknown_secret();
-  // A session made from a session or a token would outlive it.
+  // Sessions and tokens cannot create a session because it would outlive them.
   if (principal->secret != 0 || principal->is_script || principal->kiosk)
     return fail(ErrorCode::forbidden, "Cannot sign in with this token",
                 "You cannot sign in with a token for scripts. Scripts send it as "

@@ -12,43 +12,48 @@
 
 namespace strata::net {
 
-// Over https the names begin with `__Host-`: browsers then accept the cookies from this host only,
-// over https, for all paths (RFC 6265bis).
+// With HTTPS, the cookie names get the prefix `__Host-`. Browsers then accept these cookies only
+// from this host, over HTTPS and for all paths (RFC 6265bis).
 constexpr std::string_view kSessionCookie = "strata_session", kKioskCookie = "strata_kiosk";
 constexpr std::chrono::hours kSessionLifetime{24 * 90};
-// of the cookie; the link has its own expiry
+// The lifetime of the cookie. The link has its own expiry date.
 constexpr std::chrono::hours kKioskLifetime{24 * 365};
 constexpr std::size_t kMinOwnerTokenLength = 32;
 
-// The name of a kiosk in lists of people. User names contain no blanks.
+// Returns the name of a kiosk in lists of users. A user name cannot contain blanks, so it never
+// equals the name of a kiosk.
 std::string kiosk_name(KioskId id);
 bool is_kiosk_name(const std::string& user);
 
-// Identifies the sender of a request: by bearer token, by the session cookie, or, if the request is
-// marked as a kiosk's, by the kiosk's cookie. Thread-safe; may query the database, so call it on a
-// worker. Results are cached for a few seconds, so that a busy page needs no query per request.
+// Identifies the sender of a request by a bearer token or by the session cookie. A request that is
+// marked as coming from a kiosk is identified by the kiosk cookie instead. Thread-safe. May query
+// the database, so call it on a worker. Caches results for a few seconds, so a busy page does not
+// need a query for each request.
 class Authenticator {
  public:
-  // `owner_token`, if not empty (STRATA_OWNER_TOKEN), has the owner's role until an administrator
-  // has a password; afterwards it is an administrator's token for scripts.
+  // `owner_token` is the value of STRATA_OWNER_TOKEN and may be empty. The token has the owner role
+  // until an administrator has a password. Afterwards it is a token for scripts with the
+  // administrator role.
   Authenticator(store::Store& store, std::string owner_token);
 
-  // Nothing: the request has no secret. 401: the secret is unknown, expired or revoked. 503: the
-  // database is unreachable.
+  // Returns nothing if the request has no secret. Returns 401 if the secret is unknown, expired or
+  // revoked, and 503 if the database is unreachable.
   Result<std::optional<Principal>> identify(const Request& request);
   Result<std::optional<Principal>> identify_token(const std::string& token);
-  // The bearer token, otherwise the applicable cookie; empty if the request has neither.
+  // Returns the bearer token or, if it is absent, the applicable cookie. Returns an empty text if
+  // the request has neither.
   static std::string secret_of(const Request& request);
 
-  // Make a browser session from a password, a token (the owner's token while it acts as the owner,
-  // or the secret of an owner link) or a link, and return the session's secret. `agent`: the
-  // browser's User-Agent. 401: wrong credentials. 403: a token for scripts.
+  // Create a browser session and return its secret. The credential is a password, a token or a
+  // link. A valid token is the owner's token while it has the owner role, or the secret of an owner
+  // link. `agent` is the browser's User-Agent. Wrong credentials give 401; a token for scripts
+  // gives 403.
   Result<std::string> session_for_password(const std::string& user, const std::string& password,
                                            const std::string& agent);
   Result<std::string> session_for_token(const std::string& token, const std::string& agent);
   Result<std::string> session_for_link(const std::string& link, const std::string& agent);
   Result<void> end_session(const std::string& session_token);
-  // Clears the cache. Call after a change of accounts or tokens.
+  // Clears the cache. Call it after a change to accounts or tokens.
   void forget();
 
   static std::string set_cookie(const std::string& session_token, bool secure);
@@ -66,11 +71,11 @@ class Authenticator {
   const std::string owner_token_;
   std::mutex mutex_;
   std::unordered_map<std::string, Remembered> remembered_;
-  std::uint64_t changes_ = 0;  // number of calls of `forget`
+  std::uint64_t changes_ = 0;  // the number of calls to `forget`
   struct {
     bool is_script = false;
     std::chrono::steady_clock::time_point until;
-  } owner_token_now_;  // cached as `remembered_`
+  } owner_token_now_;  // cached in the same way as `remembered_`
 };
 
 }  // namespace strata::net

@@ -18,7 +18,8 @@
 namespace strata::net {
 namespace {
 
-// All other routes are closed, future ones too. These only read.
+// The only routes that kiosks may use. All of them only read. A new route is closed to kiosks
+// unless it is added here.
 constexpr std::string_view kOpen[] = {
     "/api/v1/kiosk",
     "/api/v1/models/{model}",
@@ -44,8 +45,8 @@ constexpr std::string_view kOpen[] = {
 
 using Tables = std::set<TableId>;
 
-// The tables of the model's public layers and of the tour, with the term lists of their public
-// columns.
+// Returns the tables of the model's public layers and of the tour. Includes the term lists that the
+// public columns of these tables use.
 Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
   const auto layers = STRATA_TRY(context.store.layers().of_model(kiosk.model, Role::viewer));
   const auto tour = STRATA_TRY(context.store.tours().find(kiosk.model, to_string(kiosk.tour)));
@@ -76,7 +77,7 @@ Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk,
   return tables.contains(table->id);
 }
 
-// Checks whether the kiosk can see the addressed entity of one kind.
+// Checks whether the kiosk can see the addressed entity. Each check covers one kind of entity.
 struct Place {
   const char* param;
   Result<bool> (*is_own)(const RouteContext& context, const KioskPass& kiosk,
@@ -146,7 +147,7 @@ std::optional<protocol::ServerMessage> filtered_for_kiosk(const protocol::Server
     return event != nullptr;
   };
   if (auto* layer = std::get_if<LayerEvent>(&filtered))
-    layer->review.reset();  // contains names of people
+    layer->review.reset();  // contains user names
   if (without_user(std::get_if<LayerEvent>(&filtered)) ||
       without_user(std::get_if<ViewEvent>(&filtered)) ||
       std::holds_alternative<Welcome>(filtered) || std::holds_alternative<LookEvent>(filtered) ||

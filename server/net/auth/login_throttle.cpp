@@ -48,7 +48,8 @@ void LoginThrottle::was_right(const std::string& address, const std::string& nam
   if (name.empty()) return;
   std::lock_guard lock(mutex_);
   const std::string key = both(address, name);
-  // The address gets no tries back: repeated sign-ins cost the server as much as guesses.
+  // The address does not get its attempt back because repeated sign-ins cost the server as much as
+  // guesses.
   if (const auto found = by_both_.find(key); found != by_both_.end()) found->second.give_back();
   if (const auto found = by_name_.find(to_lower(name)); found != by_name_.end())
     found->second.give_back();
@@ -69,7 +70,7 @@ std::string address_of(const Request& request) {
   };
   address = plain(address);
   if (address.is_loopback()) {
-    // The last entry of the last header comes from the proxy; a client can forge those before it.
+    // The proxy adds the last entry of the last header. A client can forge the entries before it.
     std::string_view speaks_for;
     for (const auto& [key, value] : request.headers)
       if (key == "x-forwarded-for") speaks_for = value;

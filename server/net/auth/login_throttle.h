@@ -11,16 +11,17 @@
 
 namespace strata::net {
 
-// Limits password guesses: tries per address, tries per name and address, and, with a limit far
-// above that of one address, tries per name. Tries from other addresses do not block an address
-// that signed in successfully before. Thread-safe.
+// Limits attempts to guess passwords. There is one limit per address, one per name and address, and
+// one per name. The limit per name is far above the limit per name and address. Attempts from other
+// addresses do not block an address from which the user signed in before. Thread-safe.
 class LoginThrottle {
  public:
   using Clock = TokenBucket::Clock;
-  // 429: too many tries. `name` may be empty for a secret of 256 bits, which belongs to no name.
+  // Returns 429 after too many attempts. `name` may be empty for a 256-bit secret, which belongs to
+  // no name.
   Result<void> pass(const std::string& address, const std::string& name,
                     Clock::time_point now = Clock::now());
-  // The last try was right, so it does not count as a guess.
+  // Call it after a correct attempt. That attempt does not count as a guess.
   void was_right(const std::string& address, const std::string& name);
 
  private:
@@ -33,11 +34,12 @@ class LoginThrottle {
 
   std::mutex mutex_;
   Buckets by_address_, by_both_, by_name_;
-  std::unordered_set<std::string> known_;  // name and address of successful sign-ins
+  std::unordered_set<std::string> known_;  // names and addresses of successful sign-ins
 };
 
-// Returns the sender's address: the peer, or the client of a proxy on this machine. Of IPv6 only
-// the first half, since one household chooses the rest.
+// Returns the address of the sender. The sender is the peer or, if the peer is a proxy on this
+// machine, the client of the proxy. For IPv6, returns only the first half of the address because
+// one household can choose the other half.
 std::string address_of(const Request& request);
 
 }  // namespace strata::net

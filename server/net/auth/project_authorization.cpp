@@ -22,7 +22,7 @@ Result<ProjectId> project_id_of(const Result<T>& found) {
 }
 
 struct Place {
-  const char* param;  // of a route's pattern
+  const char* param;  // a parameter in a route's pattern
   Result<ProjectId> (*project)(const RouteContext& context, const std::string& ref);
 };
 
@@ -39,7 +39,7 @@ constexpr Place kProject = {
       return project.id;
     }};
 
-// The parameters of routes whose address belongs to a project.
+// The path parameters that determine a project.
 constexpr Place kPlaces[] = {
     kProject,
     {"model",
@@ -87,13 +87,13 @@ Result<void> enter(const RouteContext& context, Principal& who, const Place& pla
   const auto project = place.project(context, ref);
   if (!project && project.error().code != ErrorCode::not_found)
     return tl::unexpected(project.error());
-  // The answer is the same for a missing and an invisible project.
+  // The response must not reveal whether an invisible project exists.
   if (!project || !who.sees(*project)) return no_such(place.param, ref, field);
   who.role = who.roles.in(*project);
   return {};
 }
 
-// Avoids the look-up for users whose role is the same in all projects.
+// Avoids the query for users with the same role in all projects.
 bool depends_on_project(const Roles& roles) {
   return roles.everywhere == Role::guest ||
          (roles.everywhere < Role::curator && !roles.in_projects.empty());

@@ -6,23 +6,24 @@
 
 namespace strata::net {
 
-// Sets the role of the request's principal to the caller's role in the project of the addressed
-// model, table, attachment, comment, job or kiosk; if `in_query`, in the project of the query's
-// `project` (absent: `default`). 404, as for a missing entity: the caller has no role in it.
+// Sets the role of the request's principal to the caller's role in the addressed project. The path
+// addresses the project by a model, table, attachment, comment, job or kiosk. If `in_query` is
+// true, the query parameter `project` (default: `default`) names the project. Returns 404, as for a
+// missing entity, if the caller has no role in the project.
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query);
 
-// Returns that project without regard to the caller's role; nothing if the address belongs to no
-// project or the entity does not exist.
+// Returns the addressed project, regardless of the caller's role. Returns nothing if the address
+// belongs to no project or the entity does not exist.
 Result<std::optional<ProjectId>> addressed_project(const RouteContext& context,
                                                    const Request& request);
-// Returns the number in the path's `param`; 404 if it cannot be an id.
+// Returns the number in the path parameter `param`. Returns 404 if it cannot be an id.
 Result<std::int64_t> number_of(const Request& request, const std::string& param);
 template <class Id>
 Result<Id> id_of(const Request& request, const std::string& param) {
   return Id(STRATA_TRY(number_of(request, param)));
 }
 
-// Checks that the caller can see the project; otherwise 404 at `field`.
+// Checks that the caller can see the project. Otherwise returns 404 at `field`.
 Result<void> check_seen(const RouteContext& context, const Request& request,
                         const std::string& project, const std::string& field);
 

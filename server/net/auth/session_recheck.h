@@ -5,8 +5,8 @@
 
 namespace strata::net {
 
-// Whether a session with this secret still has the role in the project. True while the database is
-// unreachable. May query the database.
+// Returns whether a session with this secret still has the role in the project. Returns true while
+// the database is unreachable. May query the database.
 inline bool is_still_welcome(Authenticator& auth, const std::string& secret, ProjectId project_id,
                              Role role) {
   const auto who = auth.identify_token(secret);

@@ -9,7 +9,7 @@
 namespace strata::net {
 namespace {
 
-// Removes the next part from a list that `separator` divides, and returns it.
+// Removes the first entry from a list with this separator, and returns it.
 std::string_view next_of(std::string_view& list, char separator) {
   const auto end = std::min(list.find(separator), list.size());
   const std::string_view part = trimmed(list.substr(0, end));
@@ -29,7 +29,7 @@ double quality_of(std::string_view parameters) {
   return 1;
 }
 
-// Returns how closely a range such as `text/*` matches a type; 0: no match.
+// Returns how specifically a range such as `text/*` matches a type. 0 means no match.
 int closeness(const std::string& range, const std::string& type) {
   if (range == type) return 4;
   const bool is_json = type.starts_with("application/") && type.ends_with("+json");

@@ -25,7 +25,7 @@ std::optional<RequestedRange> requested_range(std::string_view header, std::uint
   const auto first = number_of(range.substr(0, dash)), last = number_of(range.substr(dash + 1));
   const bool has_first = dash > 0, has_last = dash + 1 < range.size();
   if ((has_first && !first) || (has_last && !last) || (!has_first && !has_last)) return whole;
-  if (!has_first) {  // the last bytes
+  if (!has_first) {  // requests the last bytes
     if (*last == 0 || bytes == 0) return std::nullopt;
     return RequestedRange{{bytes - std::min(*last, bytes), bytes}, true};
   }

@@ -7,12 +7,12 @@
 namespace strata::net {
 
 struct ByteRange {
-  std::uint64_t begin = 0, end = 0;  // excludes `end`
+  std::uint64_t begin = 0, end = 0;  // excluding `end`
 };
 
-// The range of a content of `size` bytes that a Range header requests (RFC 9110, 14.2). Ranges of
-// other units, several ranges and malformed ones are ignored, as the RFC allows: the result is the
-// whole content. Nothing: no requested byte exists (416).
+// The range that a Range header requests from a content of `bytes` bytes (RFC 9110, 14.2).
+// `requested_range` ignores other units, several ranges and malformed ranges, as the RFC allows. It
+// then returns the whole content. It returns nothing if no requested byte exists (416).
 struct RequestedRange {
   ByteRange range;
   bool is_part = false;

@@ -14,14 +14,14 @@
 
 namespace strata::net {
 
-// middle levels, not the strongest: clients wait for the result
+// Medium levels instead of the strongest, because clients wait for the result.
 constexpr int kGzipLevel = 5;
 constexpr int kBrotliQuality = 4;
 
-// Named: a member of a class must not have a type of an unnamed namespace.
+// Not in the unnamed namespace, because it is the type of a class member.
 struct GzipStream {
   GzipStream() {
-    constexpr int kGzipWindow = 15 + 16;  // zlib's code for the gzip format
+    constexpr int kGzipWindow = 15 + 16;  // zlib's number for the gzip format
     if (deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY) != Z_OK)
       throw std::bad_alloc();
   }
@@ -31,7 +31,7 @@ struct GzipStream {
 
   void add(std::span<const std::uint8_t> bytes, bool last, std::vector<std::uint8_t>& out) {
     std::array<std::uint8_t, 16384> piece;
-    // zlib has 32-bit counters.
+    // Adds the bytes in parts because zlib has 32-bit counters.
     do {
       const std::size_t n = std::min<std::size_t>(bytes.size(), 1u << 30);
       stream.next_in = const_cast<Bytef*>(bytes.data());
@@ -55,7 +55,7 @@ struct BrotliStream {
   BrotliStream() : encoder(BrotliEncoderCreateInstance(nullptr, nullptr, nullptr)) {
     if (!encoder) throw std::bad_alloc();
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_QUALITY, kBrotliQuality);
-    // 256 KiB per stream instead of the default of 4 MiB
+    // Uses 256 KiB per stream instead of the default of 4 MiB.
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_LGWIN, 18);
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_MODE, BROTLI_MODE_TEXT);
   }
@@ -86,7 +86,7 @@ struct BrotliStream {
 
 namespace {
 
-constexpr std::size_t kMinBytes = 1024;  // less fits into one packet anyway
+constexpr std::size_t kMinBytes = 1024;  // a smaller text fits into one packet anyway
 
 bool is_text(std::string_view content_type) {
   const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));
@@ -94,7 +94,7 @@ bool is_text(std::string_view content_type) {
          type.ends_with("+xml") || type == "application/xml" || type == "application/javascript";
 }
 
-// `"v3"` becomes `"v3-br"`; a weak tag stays weak.
+// Turns `"v3"` into `"v3-br"`. A weak tag stays weak.
 std::string with_coding(std::string_view etag, Coding coding) {
   std::string text(etag);
   if (text.size() >= 2 && text.back() == '"')
@@ -111,7 +111,7 @@ void set(Response& response, std::string_view header_name, std::string value) {
   response.with(std::string(header_name), std::move(value));
 }
 
-// If the client has the answer in a coding, returns the tag of that representation.
+// If the client already has the content in a coding, sets the ETag of that representation.
 void name_known_tag(Response& response, std::string_view known_tags) {
   response.with("Vary", "Accept-Encoding");
   const std::string etag(response.header("ETag"));
@@ -170,7 +170,7 @@ void compress(Response& response, std::string_view accept_encoding, std::string_
     return;
   for (const char* of_its_own : {"Content-Encoding", "Content-Range", "Accept-Ranges"})
     if (!response.header(of_its_own).empty()) return;
-  if (response.header("Cache-Control") == "no-store") return;  // it contains a secret
+  if (response.header("Cache-Control") == "no-store") return;  // the response contains a secret
   if (!response.stream && std::max(response.body.size(), response.bytes.size()) < kMinBytes) return;
   response.with("Vary", "Accept-Encoding");
   const auto coding = accepted_coding(accept_encoding);

@@ -9,17 +9,18 @@
 
 #include "net/http/http_types.h"
 
-// Content codings of answers (RFC 9110, 8.4): gzip and Brotli, if the client accepts them.
+// The content codings of responses (RFC 9110, 8.4). The server uses gzip and Brotli if the client
+// accepts them.
 namespace strata::net {
 
 enum class Coding { gzip, brotli };
-std::string_view name(Coding coding);  // in Content-Encoding: "gzip", "br"
+std::string_view name(Coding coding);  // as in Content-Encoding: "gzip", "br"
 
-// Returns the best coding that an Accept-Encoding header accepts; nothing if the header is absent
-// or accepts neither (quality 0 is a refusal).
+// Returns the best coding that an Accept-Encoding header accepts. Returns nothing if the header is
+// absent or accepts no supported coding. A quality of 0 is a refusal.
 std::optional<Coding> accepted_coding(std::string_view accept_encoding);
 
-// Compresses one content; for one thread at a time.
+// Compresses one content. Not thread-safe.
 class Compressor {
  public:
   explicit Compressor(Coding coding);
@@ -27,7 +28,8 @@ class Compressor {
   Compressor(Compressor&&) noexcept;
   Compressor& operator=(Compressor&&) noexcept;
 
-  // Returns the compressed bytes that are ready, with `last` all of them. May be empty before.
+  // Adds bytes and returns the compressed bytes that are ready. Without `last`, the result may be
+  // empty. With `last`, returns all remaining bytes.
   std::vector<std::uint8_t> add(std::span<const std::uint8_t> bytes, bool last);
 
  private:
@@ -36,14 +38,15 @@ class Compressor {
 };
 
 // Compresses texts of at least a kilobyte (JSON, CSV, HTML, …) with a coding that the client
-// accepts. Skips answers that have a coding or ranges already, and `no-store` answers, which
-// contain a secret. A streamed answer loses its length. The ETag gets the coding's name, since it
-// identifies one representation. A 304 names the client's tag, one of `known_tags`.
+// accepts. Skips responses that already have a coding or ranges. Skips `no-store` responses because
+// they contain a secret. A streamed response loses its length. The name of the coding is added to
+// the ETag because an ETag identifies one representation. A 304 response gets the tag from
+// `known_tags` that matches it.
 void compress(Response& response, std::string_view accept_encoding,
               std::string_view known_tags = {});
 
-// Removes the suffixes of `compress` from If-Match and If-None-Match, so that handlers compare
-// their own ETags; Request::known_tags keeps the original.
+// Removes the suffixes that `compress` adds from If-Match and If-None-Match, so handlers can
+// compare their own ETags. Request::known_tags keeps the original text.
 void forget_codings(Request& request);
 
 }  // namespace strata::net

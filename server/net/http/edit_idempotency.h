@@ -10,14 +10,14 @@
 
 namespace strata::net {
 
-// Binds an Idempotency-Key to one edit. The journal answers a repeat by the id that is derived from
-// the key; this class refuses (422) another edit with the key of an edit that is in the journal or
-// on its way there. Thread-safe, blocks.
+// Binds an Idempotency-Key to one edit. The id of an edit is derived from its key, so the journal
+// detects a repeated edit. This class refuses (422) a key that another edit has used. That edit may
+// already be in the journal or may still be running. Thread-safe, blocks.
 class EditIdempotency {
  public:
   explicit EditIdempotency(store::Store& store) : store_(store) {}
 
-  // Call `end` afterwards.
+  // Registers the edit. After a success, call `end` when the edit is done.
   Result<void> begin(ModelId model_id, const room::EditRequest& edit);
   void end(const Uuid& id);
 

@@ -35,7 +35,7 @@ std::string_view without_weakness(std::string_view tag) {
   return tag;
 }
 
-// Escapes parts from outside, so that two parts cannot be confused with one.
+// Writes the length before each part, so different lists of parts cannot give the same text.
 void add(std::string& text, std::string_view part) {
   text.append(std::to_string(part.size())).append(":").append(part);
 }
@@ -47,7 +47,7 @@ void add(std::string& text, Id<Kind> id) {
   add(text, id.number());
 }
 
-// Returns the sequence that the query names as `at`.
+// Returns the sequence in the query parameter `at`.
 std::optional<std::int64_t> past_sequence(const Request& request) {
   const auto at = request.query.find("at");
   if (at == request.query.end()) return std::nullopt;
@@ -55,8 +55,8 @@ std::optional<std::int64_t> past_sequence(const Request& request) {
   return sequence ? std::optional(*sequence) : std::nullopt;
 }
 
-// Adds the room's state in memory, which follows the database slightly later. `past`: the answer
-// shows that sequence instead of the newest.
+// Adds the state of the room, which follows the database with a short delay. If `past` is set, the
+// response shows that sequence instead of the newest one.
 bool add_room(std::string& text, const room::Room& room, std::optional<std::int64_t> past = {}) {
   const std::int64_t durable = room.edits().durable_sequence();
   const bool is_past = past && *past <= durable;
@@ -68,7 +68,7 @@ bool add_room(std::string& text, const room::Room& room, std::optional<std::int6
   for (const Layer& layer : room.layers().all()) {
     add(text, layer.id);
     add(text, layer.version);
-    // the palette may depend on terms, whose records change independently
+    // The palette may depend on terms, and their records change independently of the layer.
     add(text, to_json(layer).at("palette").dump());
   }
   text += ';';
@@ -174,7 +174,7 @@ StateOf state_of_painted_table(const RouteContext& context) {
     std::string text;
     for (const Layer& layer : *layers) {
       add(text, layer.id);
-      if (layer.sequence > 0) models.insert(layer.model_id);  // other layers are still empty
+      if (layer.sequence > 0) models.insert(layer.model_id);  // others were never painted
     }
     for (const ModelId model : models) {
       const auto room = context.rooms.open(to_string(model), request.role());

@@ -10,13 +10,13 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMaxBoundaryLength = 70;  // RFC 2046
+constexpr std::size_t kMaxBoundaryLength = 70;  // maximum of RFC 2046
 constexpr std::size_t kMaxPartHead = 8192;
 
 constexpr std::size_t kWindowBytes = 4u << 20;
 
-// std::string_view::find is too slow for gigabytes; memmem is vectorized. Reports the searched part
-// to `passed`, window by window.
+// Uses memmem, which is vectorized, because std::string_view::find is too slow for gigabytes. Calls
+// `passed` with the searched part, window by window.
 std::size_t find(std::string_view text, std::string_view what, std::size_t from,
                  const std::function<void(std::string_view)>& passed) {
   while (from < text.size()) {
@@ -29,8 +29,8 @@ std::size_t find(std::string_view text, std::string_view what, std::size_t from,
   return std::string_view::npos;
 }
 
-// Keeps the sender's folders, since files of one scan refer to each other by them. Removes parts
-// that lead out of them.
+// Keeps the sender's folders because the files of one scan refer to each other by these paths.
+// Removes parts that lead to a folder outside.
 std::string relative_filename(std::string_view name) {
   std::string path;
   for (std::string part; !name.empty();) {
@@ -44,7 +44,7 @@ std::string relative_filename(std::string_view name) {
   return path;
 }
 
-// Returns a header's value from a part's head; empty if it is absent.
+// Returns the value of a header from the head of a part. Returns an empty text if it is absent.
 std::string_view header_of(std::string_view head, std::string_view name) {
   while (!head.empty()) {
     const auto end = std::min(head.find("\r\n"), head.size());
@@ -94,7 +94,7 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
   std::size_t at = separator.size() - 2;
   while (!body.substr(at).starts_with("--")) {
     if (body.substr(at, 2) != "\r\n") return malformed();
-    // Both searches start at an existing line break, since a head or a content may be empty.
+    // Both searches start at the preceding line break because the head or the content may be empty.
     const auto head_end = find(body, "\r\n\r\n", at, passed);
     if (head_end == std::string_view::npos || head_end - at > kMaxPartHead) return malformed();
     const auto content_begin = head_end + 4;
@@ -103,13 +103,14 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
     const std::string_view head = body.substr(at, head_end - at);
     at = content_end + separator.size();
     const std::string name = header_parameter(header_of(head, "content-disposition"), "filename");
-    if (name.empty()) continue;  // a field without a file
+    if (name.empty()) continue;  // the field contains no file
     if (files.size() >= kMaxFormFiles)
       return fail(ErrorCode::too_large, "Too many files",
                   "A form can have at most " + std::to_string(kMaxFormFiles) +
                       " files. Send the files as a zip file.",
                   "body");
-    // An empty content ends before it begins: it shares its line break with the blank line.
+    // For an empty content, content_end is less than content_begin because the separator shares its
+    // line break with the blank line.
     FormFile file{relative_filename(name),
                   body.substr(content_begin, std::max(content_end, content_begin) - content_begin)};
     if (std::any_of(files.begin(), files.end(),

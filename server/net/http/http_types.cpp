@@ -42,7 +42,7 @@ Response json_response(const nlohmann::json& json, int status) {
   Response response;
   response.status = status;
   response.with("Content-Type", "application/json");
-  // Names come from people and files: broken UTF-8 must not throw here.
+  // Replaces invalid UTF-8 in names from users and files instead of throwing an exception.
   response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return response;
 }
@@ -149,7 +149,7 @@ void name_download(Response& response, const std::string& filename) {
 
 namespace {
 
-// Decodes as forms encode: a plus is a space.
+// Decodes the text like a form field, where a plus means a space.
 std::optional<std::string> query_text(std::string_view text) {
   std::string spaced(text);
   std::ranges::replace(spaced, '+', ' ');
@@ -195,7 +195,7 @@ Result<void> parse_target(std::string_view target, Request& request) {
       return fail(ErrorCode::malformed, "Duplicate query parameter",
                   "Send '" + *key + "' only once.", *key);
   }
-  // Belongs to no route: selects the cookie.
+  // `as` belongs to no route. It selects the cookie.
   if (const auto as = request.query.find("as");
       as != request.query.end() && as->second == "kiosk") {
     request.as_kiosk = true;
@@ -205,7 +205,7 @@ Result<void> parse_target(std::string_view target, Request& request) {
 }
 
 Result<std::string> requested_language(const Request& request) {
-  constexpr std::size_t kMaxLength = 35;  // BCP 47
+  constexpr std::size_t kMaxLength = 35;  // long enough for BCP 47
   std::string language = to_lower(request.query_or("lang", {}));
   if (language.size() > kMaxLength)
     return fail(ErrorCode::invalid, "Invalid language",

@@ -22,29 +22,29 @@
 
 namespace strata::net {
 
-// HTTP as the routes see it. Includes no socket library: routes compile fast, and tests need no
-// socket.
+// The HTTP types that the routes use. They include no socket library, so routes compile fast and
+// tests do not need a socket.
 
 enum class Method { get, head, post, put, patch, remove, options, unknown };
 std::string_view name(Method method);
 
-// The ids of a kiosk's content.
+// The ids of a kiosk and of its content.
 struct KioskPass {
   KioskId id = 0;
   ModelId model = 0;
   NamedPartId tour = 0;
 };
 
-// The sender of a request. `role`: the role in the addressed project. `by_cookie`: the browser
-// added the secret automatically, so calls that change something must prove their origin.
+// The sender of a request. `role` is the role in the addressed project. `by_cookie` is true if the
+// browser added the secret automatically. Calls that change data must then prove their origin.
 struct Principal {
   std::string user;
   Role role = Role::viewer;
   bool by_cookie = false;
-  bool is_script = false;  // identified by a token for scripts
-  TokenId secret = 0;      // id of the session or token; 0: the owner's token from the environment
+  bool is_script = false;  // authenticated by a token for scripts
+  TokenId secret = 0;      // id of the session or token; 0: the owner's token
   Roles roles{};
-  std::optional<KioskPass> kiosk{};  // set for a screen that shows a tour, which is not a user
+  std::optional<KioskPass> kiosk{};  // set for a kiosk, which is not a user
 
   bool sees(ProjectId project) const { return roles.in(project) >= Role::viewer; }
 };
@@ -53,73 +53,77 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 
 struct Request {
   Method method = Method::get;
-  std::string target;                         // as sent
+  std::string target;                         // as the client sent it
   std::string path;                           // decoded, without the query
-  std::vector<std::string> segments;          // of the path, each decoded
+  std::vector<std::string> segments;          // of the path, decoded
   std::map<std::string, std::string> query;   // decoded
-  std::map<std::string, std::string> params;  // parameters of the route's pattern
+  std::map<std::string, std::string> params;  // values of the parameters in the route's pattern
   Headers headers;                            // names in lower case
-  std::string body;                           // in memory, otherwise in
-  // `body_file`, removed after the answer unless a handler moves it
+  std::string body;                           // the body in memory
+  // The file with the body, if the body is not in memory. It is deleted after the response unless a
+  // handler moves it.
   std::filesystem::path body_file;
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
-  std::string peer;     // address of the other end of the connection
+  std::string peer;     // address of the client
   bool by_tls = false;  // the connection uses TLS
-  // original If-None-Match; `headers` has it without codings (net/http/compression.h)
+  // The original If-None-Match. `headers` contains it without codings (net/http/compression.h).
   std::string known_tags{};
-  // the query has `as=kiosk`: only the kiosk's cookie counts, which is ignored otherwise
+  // The query contains `as=kiosk`. The kiosk's cookie is then the only valid one. It is ignored
+  // otherwise.
   bool as_kiosk = false;
 
-  std::string_view header(std::string_view lower_case_name) const;  // empty when absent
+  std::string_view header(std::string_view lower_case_name) const;  // empty if absent
   const std::string& param(const std::string& name) const { return params.at(name); }
   std::string query_or(const std::string& name, const std::string& fallback) const;
-  // set for routes that require a principal
+  // Only for routes that require a principal.
   const std::string& user() const { return principal->user; }
-  Role role() const { return principal->role; }                         // likewise
-  Author author() const { return {principal->user, principal->role}; }  // likewise
+  Role role() const { return principal->role; }                         // only for such routes
+  Author author() const { return {principal->user, principal->role}; }  // only for such routes
 };
 
 struct Response {
   int status = 200;
   Headers headers;
   std::string body;
-  std::vector<std::uint8_t> bytes;   // sent instead of `body` if not empty
-  std::filesystem::path file;        // likewise
-  std::shared_ptr<const void> held;  // released once the answer is sent
-  // Bytes made while they are sent, instead of `body`. `write` runs on a worker, stops when the
-  // sink returns false, and returns whether it wrote everything; otherwise the connection is
-  // closed, so that the client detects the failure.
+  std::vector<std::uint8_t> bytes;   // sent instead of `body`, if not empty
+  std::filesystem::path file;        // sent instead of `body`, if not empty
+  std::shared_ptr<const void> held;  // released when the response has been sent
+  // Bytes that are produced while they are sent, instead of `body`. `write` runs on a worker and
+  // must stop when the sink returns false. It returns whether it wrote all bytes. If not, the
+  // server closes the connection, so the client detects the failure.
   using Sink = std::function<bool(std::span<const std::uint8_t>)>;
   struct Stream {
-    std::optional<std::uint64_t> length;  // nothing: known only at the end
+    std::optional<std::uint64_t> length;  // empty: unknown until the end
     std::function<bool(const Sink&)> write;
   };
   std::optional<Stream> stream;
-  // Server-sent events (HTML, section 9.2), until the client disconnects. A worker calls `next`
-  // about once a second; nothing ends the stream. The client reconnects automatically.
+  // Server-sent events (HTML, section 9.2) until the client disconnects. A worker calls `next`
+  // about once a second. The stream ends when `next` returns nothing. The client reconnects
+  // automatically.
   struct Events {
     std::function<std::optional<std::string>()> next;
   };
   std::optional<Events> events;
 
   Response& with(std::string header_name, std::string value);
-  std::string_view header(std::string_view name) const;  // name as in `with`; empty when absent
+  std::string_view header(std::string_view name) const;  // `name` as in `with`; empty if absent
 };
 
 Response json_response(const nlohmann::json& json, int status = 200);
 Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type);
 Response text_response(std::string text, std::string content_type);
-Response empty_response(int status);              // 204, 304
+Response empty_response(int status);              // for 204 and 304
 Response problem_response(const Error& problem);  // RFC 9457
-// Returns a download, and keeps the file while it is sent.
+// Returns a download. Keeps the file until it has been sent.
 Response file_response(std::shared_ptr<const TemporaryFile> file);
-// For a file that browsers save instead of showing it; accepts any characters.
+// Adds the header for a file that browsers save instead of display. The file name may contain any
+// characters.
 void name_download(Response& response, const std::string& filename);
 std::string_view reason_phrase(int status);
 
-// The one answer to a request; may be called from any thread. Only the first call counts. If the
-// last copy is destroyed without a call, the client gets a 500.
+// The only response to a request. May be called from any thread. Calls after the first one have no
+// effect. If the last copy is destroyed without a call, the client gets a 500.
 class Respond {
  public:
   explicit Respond(std::function<void(Response)> send);
@@ -131,11 +135,12 @@ class Respond {
   std::shared_ptr<State> state_;
 };
 
-// Splits and decodes a request target. Refuses bad percent escapes, NUL, invalid UTF-8, and a query
-// parameter given twice.
+// Splits and decodes a request target. Refuses invalid percent escapes, NUL, invalid UTF-8, and
+// repeated query parameters.
 Result<void> parse_target(std::string_view target, Request& request);
 
-// `lang`, a language tag in lower case; empty: any. Refuses one that is too long (422, `lang`).
+// Returns the language tag in `lang` in lower case. An empty text means any language. Refuses a tag
+// that is too long (422, `lang`).
 Result<std::string> requested_language(const Request& request);
 
 }  // namespace strata::net

@@ -12,7 +12,7 @@ std::string scoped_key(const Request& request) {
                     request.target + '\n' + std::string(key));
 }
 
-// Distinguishes bodies in files by their length: hashing gigabytes for a retry is too slow.
+// Identifies a body in a file only by its length because hashing gigabytes for a retry is too slow.
 std::string fingerprint(const Request& request) {
   return request.body_file.empty() ? sha256_hex(request.body)
                                    : "file:" + std::to_string(request.body_bytes);

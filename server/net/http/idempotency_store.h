@@ -12,15 +12,17 @@
 
 namespace strata::net {
 
-// Idempotency-Key: stores the first successful answer to a key in the database, in the transaction
-// of the call's effect, and returns it to a repeat. A key belongs to one user, method and address.
-// Refuses the same key with another body (422), and a repeat while the first call is still running
-// (409). Refusals are not stored: the call changed nothing and may be retried. Thread-safe, blocks.
+// Implements Idempotency-Key. Stores the first successful response to a key in the database, in the
+// same transaction as the effect of the call. Returns the stored response to a repeated call. A key
+// is valid for one user, method and address. Refuses the same key with another body (422), and a
+// repeated call while the first call is running (409). Refusals are not stored because the call
+// changed nothing and may be retried. Thread-safe, blocks.
 class IdempotencyStore {
  public:
   explicit IdempotencyStore(store::Store& store) : store_(store) {}
 
-  // Returns the stored answer for the request's key. Nothing: the call is new; call `end` later.
+  // Returns the stored response for the request's key. Returns nothing if the call is new. In that
+  // case, call `end` later.
   Result<std::optional<nlohmann::json>> begin(const Request& request);
   void end(const Request& request);
 
@@ -30,15 +32,16 @@ class IdempotencyStore {
   std::unordered_set<std::string> at_work_;
 };
 
-// The key under which the answer is stored; empty if the request has none.
+// Returns the key under which the response is stored. Returns an empty text if the request has no
+// key.
 std::string scoped_key(const Request& request);
-// Distinguishes requests with the same key.
+// Returns a text that distinguishes requests with the same key.
 std::string fingerprint(const Request& request);
 
 nlohmann::json stored_answer(const Response& response, std::string request_fingerprint);
 Response response_of(const nlohmann::json& stored);
 
-// For the call with the effect: stores `respond(effect)` with it if the request has a key.
+// Stores `respond(effect)` together with the effect of the call, if the request has a key.
 template <class... Effect>
 store::IdempotentResponse<Effect...> idempotent_response(
     const Request& request,

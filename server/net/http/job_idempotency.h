@@ -9,17 +9,19 @@
 
 namespace strata::net {
 
-// The job that a call's Idempotency-Key started. Kept in memory only. The database has the key of a
-// job that succeeded, with its result; a repeat then gets a finished job. A key whose job a restart
-// ended starts the job again. Thread-safe.
+// Finds the job that a call with an Idempotency-Key started. The keys of running jobs are kept only
+// in memory. The database stores the key and the result of a job that succeeded, so a repeated call
+// gets a finished job. If a restart of the server ended the job, a repeated call starts the job
+// again. Thread-safe.
 class JobIdempotency {
  public:
   explicit JobIdempotency(jobs::JobQueue& jobs) : jobs_(jobs) {}
 
-  // Nothing: the key is new, or its job is forgotten. 422: the key was used with another body.
+  // Returns nothing if the key is new or its job is no longer listed. Returns 422 if the key was
+  // used with another body.
   Result<std::optional<JobId>> find(const Request& request);
   void started(const Request& request, JobId job);
-  // Returns the job that an earlier server process finished.
+  // Adds a finished job for the result of a job that an earlier server process ran, and returns it.
   Result<JobId> finished(const Request& request, ProjectId project, jobs::JobResult result);
 
  private:

@@ -39,7 +39,7 @@ bool is_own_origin(std::string_view origin, std::string_view host,
 
 namespace {
 
-// `museum.example` from `museum.example:8080`; an IPv6 address keeps its brackets.
+// Returns `museum.example` for `museum.example:8080`. An IPv6 address keeps its brackets.
 std::string_view without_port(std::string_view host) {
   if (host.starts_with('[')) {
     const auto end = host.find(']');
@@ -100,7 +100,7 @@ bool is_own(const Request& request, const std::vector<std::string>& allowed) {
 Result<void> check_same_origin(const Request& request, const std::vector<std::string>& allowed) {
   const auto origin = request.header("origin");
   if (request.principal && !request.principal->by_cookie) return {};
-  // Signing in: a foreign page must not sign in its visitor as another user.
+  // When signing in: a foreign page must not sign in its visitor as another user.
   if (!request.principal && origin.empty()) return {};
   if (!origin.empty()) {
     if (is_own(request, allowed)) return {};

@@ -11,13 +11,13 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMaxCursorLength = 6000;  // the remaining head has 8 KiB in all
+constexpr std::size_t kMaxCursorLength = 6000;  // the whole head of a request has at most 8 KiB
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// Each text has one valid cursor: other spellings are refused.
+// Decodes a cursor. Each text has only one valid cursor, so other encodings are refused.
 std::optional<std::string> text_of_cursor(const std::string& cursor) {
   const auto bytes = from_base64(cursor);
   if (!bytes || to_base64url(*bytes) != cursor) return std::nullopt;
@@ -28,7 +28,7 @@ bool is_of_page(const std::string& parameter) {
   return parameter == "limit" || parameter == "offset" || parameter == "after";
 }
 
-// Identifies the list, its order and its filters.
+// Returns a text that identifies the list, its order and its filters.
 std::string list_mark(const Request& request) {
   std::string text;
   for (const std::string& segment : request.segments)
@@ -47,7 +47,7 @@ std::string text_of(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// Accepts exactly the text that `cursor_of` writes.
+// Accepts only the texts that `cursor_of` returns.
 Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
   if (cursor.empty() || cursor.size() > kMaxCursorLength) return wrong_place();
   const auto text = text_of_cursor(cursor);
@@ -62,7 +62,7 @@ Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
 
 std::string link_to(const Request& request, const Page& page, const std::string& where,
                     const char* relation) {
-  std::string target;  // encoded again: the original may hold bytes invalid in a header
+  std::string target;  // encoded again because the original may be invalid in a header
   for (const auto& segment : request.segments) target += "/" + percent_encode(segment);
   target += "?";
   for (const auto& [key, value] : request.query)

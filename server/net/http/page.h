@@ -15,11 +15,12 @@ namespace strata::store {
 class Store;
 }
 
-// Pages of lists: `limit`, and the beginning of the page: after the last entry of another page
-// (`after`), which stays right while others write, or after a number of entries (`offset`).
+// Pages of lists. `limit` is the size of a page. A page begins after the last entry of another page
+// (`after`) or after a number of entries (`offset`). Only `after` remains correct while other users
+// change the list.
 namespace strata::net {
 
-// The sort key of one entry: an array of whole numbers, texts and nulls. No two entries have the
+// The sort key of one entry. It is an array of numbers, texts and nulls. No two entries have the
 // same key.
 using ListPlace = nlohmann::json;
 
@@ -30,27 +31,27 @@ struct Page {
 };
 constexpr int kMaxPage = 1000;
 
-// For lists that had no pages originally: an absent `limit` means the largest.
+// `default_limit` applies if `limit` is absent.
 Result<Page> page_of(const Request& request, int default_limit = 100);
 
-// Returns a place as `after` has it, valid for the same list, filters and order only; nothing if it
-// is too long for an address.
+// Returns a position as a text for `after`. The text is valid only for the same list, filters and
+// order. Returns nothing if the text is too long for an address.
 std::optional<std::string> cursor_of(const Request& request, const ListPlace& place);
 
-// Adds Link headers (next, prev). `last`: the end of the page, if entries follow.
+// Adds Link headers (next, prev). `last` is the end of the page, if more entries follow.
 void add_page_links(Response& response, const Request& request, const Page& page,
                     const std::optional<ListPlace>& last);
-// For lists that support offsets only.
+// For lists that support only offsets.
 void add_page_links(Response& response, const Request& request, const Page& page,
                     std::int64_t total);
 
-// Returns the number after which the page begins, for lists sorted by one number; `first` without
-// `after`. Refuses (422, `after`) a place of another shape.
+// Returns the number after which the page begins, for lists that are sorted by one number. Returns
+// `first` if there is no `after`. Refuses (422, `after`) a position with a different structure.
 Result<std::int64_t> number_after(const Page& page, std::int64_t first = 0);
 using store::wrong_place;
 
-// Drops the rows after the page: callers read one more row to find out whether the list continues.
-// If it does, returns `place_of` the page's last row.
+// Removes the rows after the page. Callers read one extra row to detect whether more entries
+// follow. If so, returns `place_of` the last row of the page.
 template <class Rows, class PlaceOf>
 std::optional<ListPlace> end_page(Rows& rows, const Page& page, const PlaceOf& place_of) {
   if (rows.size() <= static_cast<std::size_t>(page.limit)) return std::nullopt;
@@ -58,14 +59,15 @@ std::optional<ListPlace> end_page(Rows& rows, const Page& page, const PlaceOf& p
   return ListPlace(place_of(rows.back()));
 }
 
-// The entries of a list in memory that belong to a page.
+// The part of a list in memory that belongs to a page.
 struct Slice {
   std::size_t begin = 0, end = 0;
-  std::optional<ListPlace> last{};  // if entries follow
+  std::optional<ListPlace> last{};  // set if more entries follow
 };
 using NumberKey = std::vector<std::int64_t>;  // compared number by number
 Result<Slice> slice_of(const Page& page, std::span<const NumberKey> sorted);
-// The same for a list that the database sorts by names (store::Projects::names_until).
+// Like the function above, for a list that the database sorts by names
+// (store::Projects::names_until).
 Result<Slice> slice_of(const Page& page, std::span<const store::NamedId> sorted,
                        store::Store& store);
 

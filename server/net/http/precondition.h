@@ -4,8 +4,8 @@
 
 namespace strata::net {
 
-// 428 (RFC 6585): the change has no version in If-Match, although the entity has versions and the
-// project requires them.
+// Returns 428 (RFC 6585) if the change has no version in If-Match although the project requires one
+// for entities with versions.
 Result<void> check_precondition(const RouteContext& context, const Request& request,
                                 const Route& route);
 

@@ -5,7 +5,7 @@
 namespace strata::net {
 namespace {
 
-// Processors per computing question; their number limits the simultaneous questions.
+// The number of processors for each simultaneous question.
 constexpr unsigned kProcessorsForOne = 4;
 
 int questions_at_once() {
@@ -63,7 +63,7 @@ QuestionDesk::People::iterator QuestionDesk::next() {
   for (auto person = people_.begin(); person != people_.end(); ++person) {
     const Person& its = person->second;
     if (its.waiting.empty()) continue;
-    // A stopping desk ignores the limit.
+    // Ignores the limit while the desk is stopping.
     if (its.under_way >= options_.of_one_at_once && !stopping_) continue;
     const auto order = [](const Person& p) { return std::pair(p.under_way, p.last_begun); };
     if (first == people_.end() || order(its) < order(first->second)) first = person;

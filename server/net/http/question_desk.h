@@ -18,26 +18,27 @@
 
 namespace strata::net {
 
-// Queues and answers the questions that read many texels or render pictures (Route::is_question).
-// One user's questions do not delay those of others: a user has a few at a time, and the next one
-// is of the user with the fewest running questions, then of the one with the longest wait. While
-// they compute they share the processors by time (domain/people/question_turns.h). Thread-safe.
+// Queues and runs the requests that read many texels or render images (questions, see
+// Route::is_question). The questions of one user do not delay those of other users. Each user can
+// run only a few questions at a time. The next question is from the user with the fewest running
+// questions. If several users have the same number, it is from the one who has waited longest.
+// Running questions share the processors (domain/people/question_turns.h). Thread-safe.
 class QuestionDesk {
  public:
   struct Options {
     int threads = 8;
     int of_one_at_once = 2;
-    std::size_t of_one_waiting = 32;  // more are refused (429)
-    std::size_t waiting = 256;        // of all users; more are refused (503)
+    std::size_t of_one_waiting = 32;  // more questions are refused (429)
+    std::size_t waiting = 256;        // of all users; more questions are refused (503)
   };
   explicit QuestionDesk(Options options);
   ~QuestionDesk() { stop(); }
 
-  // Returns a question of the caller, within the limits of the caller's role. `end_all` ends it
-  // with the others.
+  // Returns a question of the caller, with the limits of the caller's role. `end_all` also ends
+  // this question.
   std::shared_ptr<Question> begin(const Request& request);
-  // Calls `work` on a thread of the desk, with the question as Question::current. Error: `work`
-  // will not be called.
+  // Calls `work` on a thread of the desk, with the question as Question::current. Does not call
+  // `work` if it returns an error.
   Result<void> post(const std::shared_ptr<Question>& question, std::function<void()> work);
 
   // Ends all current and later questions.

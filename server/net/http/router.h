@@ -11,45 +11,46 @@
 
 namespace strata::net {
 
-// Handlers run on a worker thread and may block; they call `respond` at once or later.
+// Handlers run on a worker thread and may block. They call `respond` before or after they return.
 using Handler = std::function<void(const Request& request, const Respond& respond)>;
 
-// How the session reads the body before the handler runs.
+// Determines how the session reads the body before the handler runs.
 enum class BodyKind { none, memory, file };
 
 struct Route {
   Method method = Method::get;
   std::string pattern;  // "/api/v1/models/{model}/texels.{format}": one {name} per segment
   Handler handler;
-  // Least role that may call it, in the addressed project or in general. Empty: public.
+  // Lowest role that may call the route, in the addressed project or on the site. Empty for public
+  // routes.
   std::optional<Role> role = Role::viewer;
-  std::vector<std::string> query{};  // accepted parameters; others are refused
+  std::vector<std::string> query{};  // accepted parameters; all others are refused
   bool any_query = false;
-  bool project_in_query = false;  // the query names the project
-  // Refuses by the address, before the body is read.
+  bool project_in_query = false;  // a query parameter names the project
+  // Can refuse the request before the body is read.
   std::function<Result<void>(const Request& request)> check{};
   BodyKind body = BodyKind::none;
   std::uint64_t max_body = 0;  // bytes
-  // The handler stores its answer with its effect (`idempotent_response`); a repeat of its
-  // Idempotency-Key gets that answer without the handler,
+  // The handler stores its response together with its effect (`idempotent_response`). A call with a
+  // repeated Idempotency-Key gets this response, and the handler does not run.
   bool keeps_answer = false;
-  // or the answer that this function makes from it.
+  // If set, creates the response to a repeated call from the stored one.
   std::function<Result<Response>(const Request& request, const nlohmann::json& stored)> replay{};
-  // An edit that may take long: ends with its client's connection, within the limits of a question,
-  // but does not wait for a turn.
+  // The edit may take a long time. It ends when the client disconnects, and it has the limits of a
+  // question. It does not wait for a turn.
   bool is_long_edit = false;
-  // May take long: the question desk (net/http/question_desk.h) answers it, in turns and within
-  // limits.
+  // The request may take a long time. The question desk (net/http/question_desk.h) runs it in turns
+  // and with limits.
   bool is_question = false;
-  // Changes an entity with a version: a project may require If-Match (net/http/precondition.h).
+  // Changes an entity that has a version. A project may require If-Match (net/http/precondition.h).
   bool needs_version = false;
-  // For expensive reads: the state that the answer depends on (net/http/entity_tags.h). Their
-  // handlers answer before they return.
+  // For expensive reads: returns the state that determines the response (net/http/entity_tags.h).
+  // The handlers of these routes respond before they return.
   StateOf state{};
 };
 
-// Finds the route of a request. Routes are added before the server starts; afterwards it is
-// read-only and so thread-safe.
+// Finds the route of a request. Add all routes before the server starts. Afterwards the router is
+// read-only and therefore thread-safe.
 class Router {
  public:
   void add(Route route);
@@ -59,12 +60,12 @@ class Router {
     std::map<std::string, std::string> params;
     std::vector<Method> allowed;  // methods of the path; empty: the path does not exist
   };
-  // HEAD finds the route of GET.
+  // For HEAD, returns the route of GET.
   Match find(Method method, const std::vector<std::string>& segments) const;
 
  private:
   struct Segment {
-    std::string prefix, param, suffix;  // without a parameter `prefix` is the whole segment
+    std::string prefix, param, suffix;  // without a parameter, `prefix` is the whole segment
   };
   struct Entry {
     Route route;

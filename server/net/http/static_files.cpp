@@ -11,7 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the document that reads the address in the browser; empty if there is nothing to show.
+// Returns the document that evaluates the address in the browser. Returns an empty text if there is
+// no such document.
 std::string_view document_of(const Request& request) {
   if (request.path == "/") return "index.html";
   if (request.path == "/docs" || request.path == "/api/v1/docs") return "docs.html";
@@ -21,7 +22,8 @@ std::string_view document_of(const Request& request) {
   return is_app ? "index.html" : "";
 }
 
-// The address of a page of the guide is that of its file, without the extension.
+// Returns the file of a page of the guide. Its address is the path of the file without the
+// extension.
 fs::path guide_page(const fs::path& address) {
   fs::path page = address;
   page += ".html";
@@ -39,7 +41,8 @@ bool is_inside(const fs::path& file, const fs::path& folder) {
   return end_of_folder == folder.end() && at != file.end();
 }
 
-// Size and modification time identify a version, since a build replaces whole files.
+// Uses the size and the modification time to identify a version because a build replaces whole
+// files.
 std::string etag_of(const fs::path& file) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
@@ -114,7 +117,7 @@ Response StaticFiles::serve(const Request& request) const {
   file = fs::canonical(file, error);
   if (error || !is_inside(file, folder_)) return problem_response(missing);
 
-  // The build writes compressed copies where they save bytes: `main-….js.br`, `main-….js.gz`.
+  // The build creates compressed copies if they save bytes: `main-….js.br`, `main-….js.gz`.
   fs::path sent = file;
   const auto coding = accepted_coding(request.header("accept-encoding"));
   const bool has_codings = fs::is_regular_file(coded(file, Coding::gzip), error);

@@ -9,11 +9,12 @@ namespace strata::net {
 
 std::string_view media_type(const std::filesystem::path& file);
 
-// Serves the files of the web client. Serves only files inside the folder, after following links.
-// `/`, `/models/…`, `/projects/…` and `/kiosk/…` are the page itself, which reads the address;
-// `/docs` and `/api/v1/docs` are the page of the contract; `/guide/PAGE` is a page of the guide,
-// without the extension of its file. Files under /assets/ and /guide/assets/ have a hash in their
-// name and never change. A client that accepts it gets `FILE.br` or `FILE.gz` if the build made it.
+// Serves the files of the web client. Serves only files inside the folder, also after following
+// links. `/`, `/models/…`, `/projects/…` and `/kiosk/…` return the page of the application, which
+// evaluates the address. `/docs` and `/api/v1/docs` return the documentation of the API.
+// `/guide/PAGE` returns a page of the guide. Its address has no file extension. The names of files
+// under /assets/ and /guide/assets/ contain a hash, so these files never change. Sends `FILE.br` or
+// `FILE.gz` if it exists and the client accepts it.
 class StaticFiles {
  public:
   explicit StaticFiles(std::filesystem::path folder);

@@ -6,31 +6,32 @@
 
 namespace strata::net {
 
-// Allows `per_second` calls on average and `burst` at once. One thread at a time.
+// Limits the rate of calls. Allows `per_second` calls on average and `burst` calls in a row. Not
+// thread-safe.
 class TokenBucket {
  public:
   using Clock = std::chrono::steady_clock;
   TokenBucket(double per_second, double burst, Clock::time_point now = Clock::now())
       : per_second_(per_second), burst_(burst), tokens_(burst), filled_at_(now) {}
 
-  // False: too fast.
+  // Takes a token. Returns false if the calls are too fast.
   bool take(Clock::time_point now = Clock::now()) {
     if (!has_one(now)) return false;
     tokens_ -= 1;
     return true;
   }
-  // Whether `take` would succeed.
+  // Returns whether `take` would succeed.
   bool has_one(Clock::time_point now) {
     fill(now);
     return tokens_ >= 1;
   }
-  // Whether the bucket is in its initial state.
+  // Returns whether the bucket is in its initial state.
   bool is_full(Clock::time_point now) {
     fill(now);
     return tokens_ >= burst_;
   }
 
-  // Returns how many calls would succeed now, and after how many whole seconds the bucket is full.
+  // Return how many calls would succeed now, and after how many whole seconds the bucket is full.
   int left(Clock::time_point now) {
     fill(now);
     return static_cast<int>(tokens_);

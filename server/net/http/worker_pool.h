@@ -8,8 +8,8 @@
 
 namespace strata::net {
 
-// Threads for work that may block (database, queries, encoding of pictures), so that the threads of
-// the sockets never block.
+// Threads for work that may block, such as database access, queries and image encoding. The threads
+// of the sockets therefore never block.
 class WorkerPool {
  public:
   WorkerPool(int threads, std::size_t max_waiting) : queue_(max_waiting) {
@@ -20,11 +20,11 @@ class WorkerPool {
   }
   ~WorkerPool() { stop(); }
 
-  // False if the queue is full or the pool has stopped: the caller answers 503.
+  // Returns false if the queue is full or the pool has stopped. The caller then responds with 503.
   bool post(std::function<void()> work) { return queue_.push(std::move(work)); }
   std::size_t waiting() const { return queue_.size(); }
 
-  // Finishes the queued work, then joins.
+  // Finishes the queued work and joins the threads.
   void stop() {
     queue_.close();
     for (auto& thread : threads_)

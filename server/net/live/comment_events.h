@@ -4,8 +4,9 @@
 
 namespace strata::net {
 
-// Call after the layer's visibility changed. Participants who no longer see the layer are notified
-// that its threads are gone; those who see it now receive the threads.
+// Sends events about the layer's comment threads after its visibility has changed. Participants who
+// can no longer see the layer are notified that its threads are gone. Participants who can now see
+// it receive the threads.
 void tell_threads(const RouteContext& context, const Layer& layer, Visibility before,
                   const std::string& user);
 

@@ -25,7 +25,7 @@
 namespace strata::net {
 namespace {
 
-constexpr int kHistoryToSearch = 500;  // journal rows to search for the end of a stroke's batch
+constexpr int kHistoryToSearch = 500;  // journal rows searched for the end of a stroke's batch
 
 Error need_hello() {
   return {ErrorCode::conflict, "Missing hello message",
@@ -34,7 +34,7 @@ Error need_hello() {
 
 std::string ref_of(const std::optional<std::string>& id) { return id.value_or(std::string()); }
 
-constexpr std::size_t kMaxEditorsSent = 1000;  // in one message
+constexpr std::size_t kMaxEditorsSent = 1000;  // entries per message
 
 std::vector<protocol::RecordEditors> editor_messages(
     const std::vector<app::RecordEditLocks::Entry>& entries) {
@@ -128,8 +128,8 @@ void LiveSession::on_closed() {
     leaving = std::move(member_);
     pointer_.reset();
   }
-  // Releases `mutex_` first: other sessions' notifications lock it, and leaving the room waits for
-  // its listeners.
+  // Releases `mutex_` first. Notifications from other sessions lock it, and leaving the room waits
+  // for the room's listeners.
   if (leaving) shared_->editors->leave(leaving->session(), tell_project());
 }
 
@@ -137,7 +137,7 @@ void LiveSession::tell(const protocol::ServerMessage& message) {
   if (member()) send(message);
 }
 
-// --- messages of the client
+// --- messages from the client
 
 void LiveSession::on(const protocol::Hello& message) {
   if (member())
@@ -223,7 +223,7 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
 
 LiveSession::Work LiveSession::on(const protocol::StrokeBegin& message) {
   if (!may_paint(message.id)) return {};
-  // the look-up of a tool or record may block
+  // Runs on a worker because the look-up of a tool or record may block.
   if (names_tool(message) || has_records(message.layer))
     return [self = shared_from_this(), message] { self->begin(message); };
   begin(message);
@@ -244,8 +244,8 @@ void LiveSession::begin(const protocol::StrokeBegin& message) {
 
 LiveSession::Work LiveSession::on(const protocol::StrokeExtend& message) {
   if (!may_paint(message.id)) return {};
-  // Needed only after a restart of the server: the previous batch is in the journal, and reading
-  // the journal may block.
+  // Needed only after a restart of the server. The previous batch is then in the journal, and
+  // reading the journal may block.
   if (shared_->strokes->lacks_start(owner_, message.stroke, message.n))
     return [self = shared_from_this(), message] {
       self->find_start(message);
@@ -281,7 +281,7 @@ void LiveSession::edit(const protocol::EditRequest& message) {
   submit(std::move(*request), std::nullopt);
 }
 
-// Whether the layer's values are keys of records.
+// Returns whether the values of the layer are keys of records.
 bool LiveSession::has_records(const protocol::LayerRef& ref) const {
   const auto layer = layer_of(ref);
   return layer && layer->table;
@@ -304,10 +304,10 @@ void LiveSession::step_through_history(const Message& message) {
 void LiveSession::on(const protocol::Undo& message) { step_through_history(message); }
 void LiveSession::on(const protocol::Redo& message) { step_through_history(message); }
 
-// If another person already edits the record, the broadcast names that person.
+// If another user already edits the record, the broadcast names that user.
 LiveSession::Work LiveSession::on(const protocol::RecordEdit& message) {
   if (!may_edit(ref_of(message.id))) return {};
-  // the look-up of the record blocks
+  // Runs on a worker because the look-up of the record blocks.
   if (message.editing) return [self = shared_from_this(), message] { self->edit_record(message); };
   shared_->editors->end({TableId(message.table), message.key}, member()->session(), tell_project());
   return {};
@@ -340,7 +340,7 @@ void LiveSession::on(const protocol::PresenceUpdate& message) {
     return member()->pointer(std::nullopt);
   }
   auto camera = cameras_.find(message.view_id);
-  if (camera == cameras_.end()) return;  // nothing is drawn yet, so the pointer has no position
+  if (camera == cameras_.end()) return;  // before the first frame, the pointer has no position
   {
     std::lock_guard lock(mutex_);
     pointer_ =
@@ -393,7 +393,8 @@ void LiveSession::find_start(const protocol::StrokeExtend& message) {
   const auto tool = shared_->strokes->tool(owner_, message.stroke);
   if (!tool) return;
   auto page = shared_->store->journal().history(tool->layer_id, kHistoryToSearch, 0);
-  // starts the stroke with a gap; the edit itself reports that the database is unreachable
+  // Without the journal, the stroke continues with a gap. The edit itself then reports that the
+  // database is unreachable.
   if (!page) return;
   for (const auto& row : page->rows) {
     if (row.stroke != message.stroke || row.user != principal_.user || !row.record.is_object() ||
@@ -412,7 +413,8 @@ void LiveSession::submit(room::EditRequest request, std::optional<BatchName> bat
     own_edits_.emplace(id, false);
   }
   if (const auto here = member()) here->edits();
-  // The answer counts even if the connection is closed by then: the StrokeTracker outlives it.
+  // Handles the result even if the connection is already closed, because the StrokeTracker outlives
+  // the connection.
   room_->edits().submit(
       std::move(request),
       [weak = weak_from_this(), shared = shared_, id, batch](const room::EditAnswer& answer) {
@@ -446,7 +448,7 @@ Message edit_message(const Uuid& id, bool is_batch, const Uuid& stroke, int n,
   return message;
 }
 
-// Returns the protocol's event of a change.
+// Returns the protocol's event name for a change.
 template <class Name>
 Name named(room::Listener::LayerChange change) {
   switch (change) {
@@ -498,7 +500,7 @@ void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch
 void LiveSession::edit_applied(const Edit& edit) {
   {
     std::lock_guard lock(mutex_);
-    if (own_edits_.contains(edit.id)) return;  // the author gets `applied`
+    if (own_edits_.contains(edit.id)) return;  // the author receives `applied` instead
   }
   protocol::LayerEvent event;
   event.event = protocol::LayerEventEvent::edited;
@@ -516,7 +518,7 @@ void LiveSession::edit_applied(const Edit& edit) {
 }
 
 void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
-  // Shows other people the restored layer; the authors get the answer of each edit.
+  // Notifies other users of the restored layer. The authors get a response to each edit.
   std::map<LayerId, std::int64_t> sequences;
   for (const auto& edit : edits)
     sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
@@ -597,7 +599,7 @@ void LiveSession::send_presence() {
   }
   protocol::Presence presence;
   for (auto& person : room_->participants().presence(own)) {
-    if (is_kiosk_name(person.user)) continue;  // a kiosk is not a person
+    if (is_kiosk_name(person.user)) continue;  // a kiosk is not a user
     protocol::PresenceUser user;
     user.session = person.session;
     user.name = std::move(person.user);
@@ -634,7 +636,7 @@ void LiveSession::resolve_pointer() {
       pointer = *std::exchange(pointer_, std::nullopt);
       here = member_;
     }
-    // the position only, without values
+    // Finds only the position, without layer values.
     auto point = room_->queries().pick(pointer.camera, pointer.pixel.x, pointer.pixel.y, {});
     here->pointer(point && point->hit
                       ? std::optional(room::Pointing{point->position, pointer.radius})

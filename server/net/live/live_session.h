@@ -34,29 +34,29 @@
 
 namespace strata::net {
 
-// The connection as a session uses it. Thread-safe; nothing blocks. The connection is closed if
-// messages are sent faster than the client reads them.
+// The interface of a connection for a session. Thread-safe and never blocks. Closes the connection
+// if messages are queued faster than the client reads them.
 class LiveSocket {
  public:
   virtual ~LiveSocket() = default;
   virtual void send_text(std::string text) = 0;
   virtual void send_frame(stream::FrameBytes frame) = 0;
   virtual void close(int code, std::string reason) = 0;
-  // runs on the socket's strand
+  // Runs `work` on the strand of the socket.
   virtual void run_after(std::chrono::milliseconds delay, std::function<void()> work) = 0;
 };
 
 class LiveSockets;
 
-// Returns 404 (`table`, `key`) if the project does not have the record. May block.
+// Returns 404 (field `table` or `key`) if the project does not have the record. May block.
 using CheckRecord =
     std::function<Result<void>(ProjectId project_id, const app::RecordEditLocks::Record& record)>;
 
-// Shared by all sessions. Callbacks of rooms keep it alive.
+// Objects that all sessions share. The callbacks passed to rooms keep them alive.
 struct LiveShared {
   std::shared_ptr<Metrics> metrics;
   std::shared_ptr<app::StrokeTracker> strokes;
-  std::shared_ptr<WorkerPool> queries;  // for picks, which may be slow the first time
+  std::shared_ptr<WorkerPool> queries;  // for picks, because the first pick may be slow
   std::shared_ptr<LiveSockets> sockets;
   std::shared_ptr<app::RecordEditLocks> editors;
   store::Store* store = nullptr;
@@ -65,27 +65,29 @@ struct LiveShared {
   LiveLimits limits;
 };
 
-// One user at one model: subprotocol strata.v1, see protocol/messages. Call `on_text` and
-// `on_closed` on the socket's strand; the room calls the Listener functions on its own.
+// The session of one user in one model. Implements the subprotocol strata.v1 (see
+// protocol/messages). Call `on_text` and `on_closed` on the strand of the socket. The room calls
+// the Listener functions on its own strand.
 class LiveSession final : public room::Listener, public std::enable_shared_from_this<LiveSession> {
  public:
-  // `personal_view`: the user's stored layer settings (net/api/models/personal_view.h).
+  // `personal_view` contains the user's stored layer settings (net/api/models/personal_view.h).
   LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
               std::string project_slug, Principal principal, room::Portrait portrait,
               std::optional<protocol::PersonalView> personal_view,
               std::weak_ptr<LiveSocket> socket);
   ~LiveSession() override;
 
-  // Run the returned work on a worker, and finish it before passing the next message.
+  // Run the returned work on a worker, and finish it before you pass the next message.
   using Work = std::function<void()>;
   Work on_text(const std::string& text);
   void on_binary();
   void on_closed();
   ModelId model_id() const { return owner_.model_id; }
-  ProjectId project_id() const { return room_->model().project_id; }  // of the model; any thread
+  // Returns the project of the model. Any thread.
+  ProjectId project_id() const { return room_->model().project_id; }
   const std::string& user() const { return principal_.user; }
-  Role role() const { return principal_.role; }  // in that project
-  // Sends a message about the site or project, once the session is welcomed. Any thread.
+  Role role() const { return principal_.role; }  // the user's role in the project
+  // Sends a message about the site or the project, if the session has been welcomed. Any thread.
   void tell(const protocol::ServerMessage& message);
 
   // --- room::Listener
@@ -153,18 +155,18 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   const app::StrokeTracker::Owner owner_;
   const std::weak_ptr<LiveSocket> socket_;
 
-  // On the socket's strand.
+  // Used only on the strand of the socket.
   TokenBucket bucket_;
   int refusals_ = 0;
   std::map<int, Camera> cameras_;
-  bool shows_past_ = false;  // view 0
+  bool shows_past_ = false;  // whether view 0 shows a past state
 
   mutable std::mutex mutex_;
   std::shared_ptr<room::Participant> member_;
-  std::unordered_map<Uuid, bool> own_edits_;  // not yet durable; true: applied
+  std::unordered_map<Uuid, bool> own_edits_;  // edits that are not yet durable; true: applied
   bool presence_scheduled_ = false;
   std::optional<std::chrono::steady_clock::time_point> presence_sent_;
-  int people_sent_ = 0;  // number of people in the last presence message
+  int people_sent_ = 0;  // number of users in the last presence message
   struct Pointer {
     Camera camera;
     glm::dvec2 pixel;

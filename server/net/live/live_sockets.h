@@ -16,28 +16,30 @@ namespace strata::net {
 class LiveSession;
 class LiveSocket;
 
-// The open WebSockets. Sends messages to all or some of them, closes all when the server stops, and
-// closes those of a user who signs out. Thread-safe.
+// The open WebSockets. Sends messages to all or some of them. Closes all of them when the server
+// stops, and closes the connections of a user who signs out. Thread-safe.
 class LiveSockets {
  public:
-  // `secret`: the credential with which the person connected.
+  // `secret` is the credential that the client used to connect.
   void add(std::weak_ptr<LiveSocket> socket, std::weak_ptr<LiveSession> session,
            std::string secret);
   // Sends to all sessions.
   void tell_all(const protocol::ServerMessage& message);
   // Sends to the sessions of the model.
   void tell_model(ModelId model_id, const protocol::ServerMessage& message);
-  // Only to those who see content of this visibility.
+  // Sends to the sessions of the model that can see content with this visibility.
   void tell_model(ModelId model_id, Visibility visibility, const protocol::ServerMessage& message);
-  // Only to those whose most restricted visible content has this visibility.
+  // Sends to the sessions of the model whose most restricted visible content has this visibility.
   void tell_sight(ModelId model_id, Visibility sight, const protocol::ServerMessage& message);
   // Sends to the sessions of the project's models.
   void tell_project(ProjectId project_id, const protocol::ServerMessage& message);
-  // The same, only to those whose most restricted visible columns have this visibility.
+  // Sends to the sessions of the project's models whose most restricted visible columns have this
+  // visibility.
   void tell_project(ProjectId project_id, Visibility sight, const protocol::ServerMessage& message);
   void close_all(int code, const std::string& reason);
   void close_those_of(const std::string& secret, int code, const std::string& reason);
-  // Closes a user's sessions. Clients with access reconnect automatically, with the new role.
+  // Closes a user's sessions. Clients that still have access reconnect automatically with the new
+  // role.
   void close_user(const std::string& user, int code, const std::string& reason);
 
  private:

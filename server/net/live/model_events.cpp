@@ -12,13 +12,13 @@
 namespace strata::net {
 namespace {
 
-// A transaction has the time of its begin but becomes visible at its end. Transactions up to this
-// length are reported.
+// A transaction has the time of its start but becomes visible at its end. The events of longer
+// transactions may be missed.
 constexpr std::chrono::microseconds kMaxLength = std::chrono::seconds(30);
 constexpr std::chrono::seconds kCheckEvery{10};
 constexpr int kFirstPage = 20;  // usually there are no new events
 constexpr int kPage = 200;
-constexpr int kMaxPages = 51;  // for the events that a reconnecting reader missed
+constexpr int kMaxPages = 51;  // enough for the events that a reconnecting client missed
 
 std::int64_t microseconds(const store::Activity& line) {
   return std::chrono::duration_cast<std::chrono::microseconds>(line.time.time_since_epoch())
@@ -48,7 +48,7 @@ bool ModelEvents::is_still_welcome() {
          net::is_still_welcome(context_.auth, secret_, project_, role_);
 }
 
-// Newest first; nothing: the database is unreachable.
+// Returns the newest line first. Returns nothing if the database is unreachable.
 std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us) {
   store::ActivityQuery query;
   query.model = model_;
@@ -67,7 +67,7 @@ std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us)
   return lines;
 }
 
-// Earlier events are not sent.
+// Marks these lines as sent.
 void ModelEvents::remember(const Lines& lines) {
   last_ = store::ActivityPlace{};
   if (!lines.empty()) last_ = {microseconds(lines.front()), lines.front().id};
@@ -99,7 +99,7 @@ std::optional<std::string> ModelEvents::next() {
   if (!lines) return std::string();
   if (last_) return tell(*lines);
   remember(*lines);
-  // The place from which a reader continues that is disconnected before the first event.
+  // The position for a client that is disconnected before the first event.
   last_->time_us = std::max<std::int64_t>(last_->time_us, now.count());
   return "id: " + to_text(*last_) + "\n\n";
 }

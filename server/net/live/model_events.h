@@ -14,17 +14,17 @@
 
 namespace strata::net {
 
-// The events of a model, for scripts: lines of the activity that are made or extended, once they
-// are durable. Each has a place in time, which a reconnecting reader names (Last-Event-ID); events
-// near that time may be sent twice.
+// The events of a model, for scripts. An event is a durable line of the activity that is new or
+// extended. Each event has a position in time, and a reconnecting client sends its last position
+// (Last-Event-ID). Events near that time may be sent twice.
 class ModelEvents {
  public:
-  // Begins after `after`, or now.
+  // Starts after `after` or, if it is empty, at the current time.
   ModelEvents(const RouteContext& context, const Request& request, const Model& model,
               const std::optional<store::ActivityPlace>& after);
 
-  // Returns the new events as `text/event-stream`; may be empty. Nothing: the reader has lost
-  // access. Queries the database: call on a worker.
+  // Returns the new events as `text/event-stream`. The text may be empty. Returns nothing if the
+  // reader has lost access. Queries the database, so call it on a worker.
   std::optional<std::string> next();
 
  private:
@@ -39,10 +39,10 @@ class ModelEvents {
   const Role role_;
   const ProjectId project_;
   const ModelId model_;
-  // end of the known events; nothing: `next` was not called yet
+  // Position after the last known event. Empty until the first call to `next`.
   std::optional<store::ActivityPlace> last_;
-  std::map<std::int64_t, std::int64_t> sent_us_;  // sent lines by id, with their time
-  // time of the last check of access
+  std::map<std::int64_t, std::int64_t> sent_us_;  // time of each sent line, by id
+  // The time of the last check of access.
   std::chrono::steady_clock::time_point checked_ = std::chrono::steady_clock::now();
 };
 

@@ -5,7 +5,7 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMaxRecords = 100;  // more are sent as a change of the table
+constexpr std::size_t kMaxRecords = 100;  // with more records, one event of the table is sent
 constexpr Visibility kSights[] = {Visibility::everyone, Visibility::team, Visibility::curators};
 
 }  // namespace

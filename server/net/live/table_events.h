@@ -9,15 +9,16 @@
 
 namespace strata::net {
 
-// Sends the event to the participants of the project's models, with the columns that they see.
+// Sends the event to the participants of the project's models. Each receives only the columns that
+// are visible to that participant.
 void tell_table(LiveSockets& sockets, protocol::TableEventEvent event, const Table& table,
                 const std::string& user);
 
-// Notifies open rooms and connected users of changed records: one event per record, or one of the
-// table if its columns changed too or there are too many records.
+// Notifies open rooms and connected users of changed records. Sends one event per record. Sends one
+// event for the table instead if its columns also changed or too many records changed.
 class TableEvents final : public app::ChangeNotifier {
  public:
-  // Both must outlive it.
+  // `rooms` and `sockets` must outlive the object.
   TableEvents(room::Rooms& rooms, LiveSockets& sockets) : rooms_(rooms), sockets_(sockets) {}
   void records_changed(const store::TableChange& change, const std::string& user) const override;
 

@@ -42,7 +42,7 @@ std::string to_text(const store::ActivityPlace& place) {
   return std::to_string(place.time_us) + "-" + std::to_string(place.id);
 }
 
-// At most 16 and 15 digits, so that both are far below the limits of their columns.
+// Limits the numbers to 16 and 15 digits, far below the limits of their database columns.
 std::optional<store::ActivityPlace> place_of(std::string_view text) {
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos) return std::nullopt;

@@ -11,7 +11,8 @@ namespace strata::net {
 
 nlohmann::json to_json(const store::Activity& line);
 
-// "1777896570120000-7": where the next page or the next events begin.
+// Converts a position in the activity to text such as "1777896570120000-7". The next page or the
+// next events begin there.
 std::string to_text(const store::ActivityPlace& place);
 std::optional<store::ActivityPlace> place_of(std::string_view text);
 

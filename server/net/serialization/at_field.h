@@ -7,7 +7,7 @@
 
 namespace strata::net {
 
-// An entity that the request body names but that does not exist is a 422 on that field.
+// Changes not_found to invalid at `field` (422), for a missing entity that the request body names.
 inline tl::unexpected<Error> at_field(Error problem, std::string field) {
   if (problem.code == ErrorCode::not_found) problem.code = ErrorCode::invalid;
   problem.field = std::move(field);

@@ -34,7 +34,7 @@ bool is_tool(const protocol::ToolShape& shape) {
   return !word || (*word != "disc" && *word != "square");
 }
 
-// Returns nothing for discs and squares.
+// Returns an empty tool for discs and squares.
 Result<app::FoundTool> tool_of(const protocol::ToolShape& shape, const app::FindTool& find_tool) {
   if (!is_tool(shape)) return app::FoundTool{};
   const std::string ref = protocol::to_ref(shape);
@@ -46,7 +46,7 @@ Result<app::FoundTool> tool_of(const protocol::ToolShape& shape, const app::Find
               "shape");
 }
 
-// Reads the brush members that EditStroke and StrokeBegin share.
+// Reads the members for the brush, which EditStroke and StrokeBegin share.
 template <class Stroke>
 Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model,
                              const app::FoundTool& tool) {

@@ -9,10 +9,10 @@ namespace strata::net {
 namespace {
 
 constexpr std::size_t kPieceBytes = 1u << 16;
-constexpr int kDecimals = 6;  // a micrometer for a model in meters
+constexpr int kDecimals = 6;  // a micrometer if the model is in meters
 
 void append_number(std::string& text, double value) {
-  char digits[400];  // the widest double has 309 digits before its decimal point
+  char digits[400];  // the largest double has 309 digits before the decimal point
   char* end =
       std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, kDecimals).ptr;
   while (end[-1] == '0') --end;

@@ -6,7 +6,7 @@
 
 namespace strata::net {
 
-// Converts to the contract's MapContents.
+// Converts to MapContents of the API.
 nlohmann::json to_json(const app::MapContents& contents);
 
 }  // namespace strata::net

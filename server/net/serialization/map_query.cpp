@@ -11,9 +11,9 @@ constexpr const char* kMapUpload =
     "Send the map as the body (GeoJSON, TIFF, PNG, JPEG, or a zip), or send its files together "
     "(such as .shp, .dbf and .prj) in a multipart/form-data form.";
 constexpr double kMaxFloat = 3.4028234663852886e38;
-constexpr int kMaxBands = 65535;  // of a TIFF
+constexpr int kMaxBands = 65535;  // maximum number of bands in a TIFF
 
-// Nothing: it is absent.
+// Returns nothing if the parameter is absent.
 std::optional<std::string> text_of(const Request& request, const std::string& name) {
   const auto found = request.query.find(name);
   return found == request.query.end() ? std::nullopt : std::optional(found->second);

@@ -10,7 +10,7 @@
 namespace strata::net {
 namespace {
 
-// Visits every object in `json` that names a person.
+// Visits every object in `json` that names a user.
 void each_with_user(nlohmann::json& json,
                     const std::function<void(nlohmann::json&, const std::string&)>& found) {
   if (json.is_array() || json.is_object())

@@ -12,19 +12,19 @@
 
 namespace strata::net {
 
-// Returns a person's display name and color.
+// Returns the display name and the color of a user.
 room::Portrait portrait_of(const store::Person& person);
 
-// Adds `color` to the object that names this person.
+// Adds `color` to the object that names the user.
 void add_color(nlohmann::json& json, const store::Person& person);
 
-// The accounts of the people that an answer names. A person without an account is shown by the name
-// only.
+// The accounts of the users that a response names. A user without an account is shown only by the
+// user name.
 class People {
  public:
   static Result<People> load(store::Store& store, const std::vector<std::string>& names);
-  // Loads the people that `answer` names as `user` anywhere, and adds `full_name` (if set) and
-  // `color` next to each.
+  // Loads each user whose name is a member `user` in `answer`. Adds `full_name` (if set) and
+  // `color` next to that member.
   static Result<void> add_to(store::Store& store, nlohmann::json& answer);
 
   void add(nlohmann::json& answer) const;

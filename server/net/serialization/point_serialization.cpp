@@ -22,14 +22,14 @@ protocol::SurfacePoint to_protocol(const query::SurfacePoint& point) {
   out.position = point.position;
   out.normal = glm::dvec3(point.normal);
   out.uv = glm::dvec2(point.uv);
-  // The contract's limit; a camera may be farther from the surface.
+  // The maximum in the API. A camera may be farther from the surface.
   out.distance = std::clamp(point.distance, 0.0, 1e15);
   out.values.emplace();
   for (const auto& value : point.values) {
     protocol::SurfaceValue& entry = (*out.values)[value.layer];
     entry.valid = value.valid;
-    // Only a raster can bring a value that JSON cannot represent into a float layer; such a texel
-    // is valid in the answer, without a value.
+    // An imported raster can contain values that JSON cannot represent. Such a texel is valid in
+    // the response but has no value.
     if (value.valid && std::isfinite(value.value)) entry.value = value.value;
   }
   return out;
@@ -57,17 +57,17 @@ std::string point_header(const std::vector<std::string>& layers) {
   return csv_line(cells, ',');
 }
 
-// Writes each row into a buffer and then appends it: the text has hundreds of thousands of rows
-// with ten numbers each.
+// Writes each row into a buffer and then appends the buffer to the text. This is fast enough for
+// hundreds of thousands of rows with ten numbers each.
 class RowWriter {
  public:
-  // Writes a float with the digits of a float only.
+  // Writes a float with only as many digits as a float needs.
   template <class Number>
   void number(Number value) {
     end_ = std::to_chars(end_, digits_.data() + digits_.size(), value).ptr;
   }
   void comma() { *end_++ = ','; }
-  // Call before the buffer may be full.
+  // Call it before the buffer can overflow.
   void move_to(std::string& text) {
     text.append(digits_.data(), end_);
     end_ = digits_.data();

@@ -23,11 +23,11 @@ protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional
 nlohmann::json to_json(const query::Profile& profile, Unit unit);
 nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers,
                               const Model& model);
-// Write many points in the formats of GET …/position and POST …/positions. `layers`: slugs, one
-// column each.
+// Write many points in the formats of GET …/position and POST …/positions. `layers` contains the
+// slugs of the layers, with one column for each.
 std::string points_csv(const std::vector<query::SurfacePoint>& points,
                        const std::vector<std::string>& layers);
-// Adds a column `along_mm` before those of points.
+// Adds a column `along_mm` before the columns of `points_csv`.
 std::string profile_csv(const query::Profile& profile, Unit unit,
                         const std::vector<std::string>& layers);
 

@@ -42,7 +42,7 @@ Result<glm::dvec3> parse_point(std::string_view text) {
     if (error != std::errc() || !std::isfinite(point[i])) return wrong();
     const auto used = static_cast<std::size_t>(end - text.data());
     text.remove_prefix(used);
-    // Refuses "1 2.3.4", which would parse as three numbers.
+    // Refuses "1 2.3.4", which would otherwise parse as three numbers.
     if (i < 2 && (text.empty() || (text.front() != ' ' && text.front() != '\t'))) return wrong();
   }
   skip_spaces(text);

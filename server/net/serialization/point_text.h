@@ -8,12 +8,13 @@
 
 namespace strata::net {
 
-// Parses well-known text of one point with three coordinates: `POINT Z(1 2 3)`, `POINT Z (1 2 3)`,
-// `POINTZ(1 2 3)` or `POINT(1 2 3)`, in any case. Numbers must be finite.
+// Parses the well-known text of a point with three coordinates: `POINT Z(1 2 3)`, `POINT Z (1 2
+// 3)`, `POINTZ(1 2 3)` or `POINT(1 2 3)`. Case does not matter. Refuses numbers that are not
+// finite.
 Result<glm::dvec3> parse_point(std::string_view text);
 
-// Parses a length on the object with its unit, "5mm", "2.5 cm", "1m"; returns meters, from a
-// micrometer to 1000 km. Refused: 422 at `field`.
+// Parses a length on the object with its unit, such as "5mm", "2.5 cm" or "1m". Returns meters. The
+// length must be between a micrometer and 1000 km. Returns 422 at `field` for invalid text.
 Result<double> parse_length(std::string_view text, const std::string& field);
 
 }  // namespace strata::net

@@ -33,7 +33,7 @@ nlohmann::json to_json(const query::Statistics& statistics) {
   json["histogram"] = std::move(bins);
   nlohmann::json keys = nlohmann::json::array();
   for (const auto& [key, entry] : statistics.keys) {
-    nlohmann::json of_key{{"key", static_cast<std::int64_t>(key)},  // integer layers only
+    nlohmann::json of_key{{"key", static_cast<std::int64_t>(key)},  // only for integer layers
                           {"texels", entry.texels},
                           {"area_m2", entry.area_m2},
                           {"centroid", vec3(entry.centroid)},

@@ -18,8 +18,8 @@ nlohmann::json bounds_json(const glm::dvec3& low, const glm::dvec3& high);
 nlohmann::json to_json(const query::Statistics& statistics);
 nlohmann::json to_json(const room::SelectedArea& area);
 nlohmann::json to_json(const query::CrossTable& table);
-// Returns areas in m²: one line per row's value, one column per column's value, `-` for texels
-// where a layer has no value; the corner names both layers.
+// Returns areas in m² with one line for each value of `rows` and one column for each value of
+// `columns`. `-` stands for texels where a layer has no value. The first cell names both layers.
 std::string cross_table_csv(const query::CrossTable& table, const std::string& rows,
                             const std::string& columns);
 

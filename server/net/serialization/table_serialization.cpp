@@ -100,7 +100,7 @@ nlohmann::json to_json(const Attachment& attachment) {
 
 Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text) {
   if (is_all_digits(text)) return parse_integer(text, 0, table.sequence, "at");
-  // A plus in a query is a space.
+  // A plus in a query is decoded as a space.
   std::string plain = text;
   if (const auto blank = plain.rfind(' '); blank != std::string::npos && blank > 11)
     plain[blank] = '+';

@@ -12,7 +12,8 @@
 // Converts tables between the protocol and the domain.
 namespace strata::net {
 
-// Returns the project's table `ref`, as curators see it; 422 with `field` if it does not exist.
+// Returns the project's table `ref` as curators see it. Returns 422 at `field` if the table does
+// not exist.
 Result<Table> table_of_project(store::Store& store, ProjectId project_id,
                                const protocol::TableRef& ref, const std::string& field);
 
@@ -22,7 +23,8 @@ Result<Column> new_column(store::Store& store, ProjectId project_id,
 Result<std::vector<Column>> new_columns(store::Store& store, ProjectId project_id,
                                         const std::vector<protocol::ColumnCreate>& requested);
 
-// Reads a body's values by slug or id of a column; 422 if the table has no such column.
+// Reads the values in a request body. Their names are slugs or ids of columns. Returns 422 if the
+// table has no such column.
 Result<std::map<ColumnId, nlohmann::json>> values_by_column(const Table& table,
                                                             const nlohmann::json& values,
                                                             const std::string& field);
@@ -30,7 +32,8 @@ Result<std::map<ColumnId, nlohmann::json>> values_by_column(const Table& table,
 nlohmann::json to_json(const store::TableEditRow& row);
 nlohmann::json to_json(const Attachment& attachment);
 
-// Returns a sequence of the table, or its sequence at a time (RFC 3339).
+// Returns the sequence in the text, or the sequence of the table at the time in the text (RFC
+// 3339).
 Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text);
 
 }  // namespace strata::net

@@ -11,7 +11,7 @@ struct Type {
   std::string_view media_type;
   Kind kind;
 };
-// What the browsers of kiosks show and play.
+// The types that the browsers of kiosks can show or play.
 constexpr std::array kTypes{Type{"image/jpeg", Kind::picture}, Type{"image/png", Kind::picture},
                             Type{"image/webp", Kind::picture}, Type{"audio/mpeg", Kind::sound},
                             Type{"audio/mp4", Kind::sound},    Type{"audio/wav", Kind::sound},

@@ -100,7 +100,7 @@ Result<nlohmann::json> stored_names(const std::vector<protocol::TourClassName>& 
   return stored;
 }
 
-// Checks that `words` (by language) use only languages of the tour.
+// Checks that `words`, which are keyed by language, use only languages of the tour.
 Result<void> check_words(const nlohmann::json& words, const nlohmann::json& languages,
                          const std::string& field) {
   for (const auto& [language, text] : words.items())
@@ -148,7 +148,7 @@ Result<void> check_class_names(const nlohmann::json& all, const nlohmann::json& 
   return {};
 }
 
-// Reads the entities that tours name, each of them once.
+// Reads each entity that the tours name once.
 class Seen {
  public:
   static Result<Seen> of(const RouteContext& context, ModelId model_id, Role role) {
@@ -160,7 +160,7 @@ class Seen {
     return seen;
   }
 
-  // Without the layers that were deleted or that the role cannot see.
+  // Leaves out layers that are deleted or invisible to the role.
   nlohmann::json classes(const nlohmann::json& stored) const {
     nlohmann::json shown = nlohmann::json::array();
     for (const nlohmann::json& each : stored)
@@ -203,7 +203,7 @@ class Seen {
     return shown;
   }
 
-  // Nothing: it was deleted.
+  // Returns nothing if the table is deleted.
   Result<std::optional<Table>> find_table(TableId id) {
     const auto known = tables_.find(id);
     if (known != tables_.end()) return known->second;
@@ -214,8 +214,8 @@ class Seen {
 
   const RouteContext* context_;
   Role role_;
-  std::map<NamedPartId, std::string> views_;  // slugs, by id
-  std::map<LayerId, std::string> layers_;     // likewise
+  std::map<NamedPartId, std::string> views_;  // slug by id
+  std::map<LayerId, std::string> layers_;     // slug by id
   std::map<TableId, std::optional<Table>> tables_;
 };
 

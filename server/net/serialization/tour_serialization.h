@@ -9,23 +9,24 @@
 
 namespace strata::net {
 
-// The stored content of a tour: languages, the time until it plays by itself, and
-// stops, which name views, layers, tables and columns by id, since slugs change. Tours that were
-// stored before there were media, themes and names of classes have none of these members.
+// The stored content of a tour contains the languages, the time until the tour plays automatically,
+// and the stops. It refers to views, layers, tables and columns by id because slugs can change.
+// Tours from older versions have no members for media, themes and names of classes.
 
-// Returns the stored form of the stops. 422 at the member that names an entity twice, or one that
-// is missing in the project or invisible to the role.
+// Converts the stops to their stored format. Returns 422 at a member that names an entity twice.
+// Also returns 422 at a member whose entity is missing in the project or invisible to the role.
 Result<nlohmann::json> stored_stops(const RouteContext& context, const Model& model, Role role,
                                     const std::vector<protocol::TourStopCreate>& stops,
                                     const TourFilesById& files);
-// The same for the names of classes.
+// Converts the names of classes in the same way.
 Result<nlohmann::json> stored_classes(const RouteContext& context, const Model& model, Role role,
                                       const std::vector<protocol::TourClasses>& all);
-// 422: a language occurs twice, a stop has no title in the first language, or it has texts in other
-// languages. If only the languages are new, the error names them.
+// Returns 422 if a language occurs twice, a stop has no title in the first language, or a stop has
+// texts in other languages. If only the languages are new, the error refers to the languages.
 Result<void> check_languages(const nlohmann::json& content, bool stops_are_new);
 
-// Returns the protocol's Tour with the named entities that the role can see. `user` is copied.
+// Returns the tour as Tour of the protocol. Includes only the entities that the role can see.
+// `user` is copied to the result.
 Result<nlohmann::json> to_json(const RouteContext& context, const store::NamedPart& tour, Role role,
                                const std::string& user);
 nlohmann::json tour_entry(const store::NamedPart& tour, const std::string& user);

@@ -8,7 +8,7 @@
 namespace strata::net {
 namespace {
 
-// The same values are in web-client/src/domain/tour-theme.ts.
+// Keep these values equal to those in web-client/src/domain/tour-theme.ts.
 struct ModeColors {
   const char *ink, *background, *accent;
 };
@@ -16,7 +16,8 @@ constexpr ModeColors kLight{"#20292a", "#dedad3", "#2c6a63"},
     kDark{"#ebe6da", "#14181a", "#7fc0b5"};
 constexpr double kMinTextContrast = 7, kMinAccentContrast = 3;
 
-// One decimal, rounded down: a refused contrast never reads as the one that is needed.
+// Rounds down to one decimal, so the text of an insufficient contrast always differs from the text
+// of the required contrast.
 std::string ratio(double contrast) {
   char text[16];
   std::snprintf(text, sizeof text, "%.1f:1", static_cast<int>(contrast * 10) / 10.0);

@@ -16,7 +16,7 @@
 namespace strata::net {
 namespace {
 
-// Removes names of columns that do not exist for the role.
+// Removes settings with columns that are deleted or invisible to the role.
 void leave_out_columns(store::Store& store, Role role, TableId table_id, nlohmann::json& shown) {
   if (const auto palette = shown.find("palette");
       palette != shown.end() && palette->contains("column")) {
@@ -35,7 +35,7 @@ void leave_out_columns(store::Store& store, Role role, TableId table_id, nlohman
   }
 }
 
-// Removes the elements whose `member` names no existing entity.
+// Removes the elements whose `member` refers to an entity that is not in `there`.
 template <class There>
 void leave_out(nlohmann::json& list, const char* member, const There& there) {
   list.erase(std::remove_if(list.begin(), list.end(),

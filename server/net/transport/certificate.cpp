@@ -31,7 +31,7 @@ Result<void> check_readable(const fs::path& file, const char* option) {
 }  // namespace
 
 Certificate::Times Certificate::written() const {
-  std::error_code gone;  // ignored: a missing file has the minimum time
+  std::error_code gone;  // ignored: a missing file gets the minimum time
   return {fs::last_write_time(chain_, gone), fs::last_write_time(key_, gone)};
 }
 
@@ -42,17 +42,19 @@ Result<std::shared_ptr<ssl::context>> Certificate::read() const {
   boost::system::error_code error;
   context->set_options(
       ssl::context::default_workarounds | ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1, error);
-  // Limits TLS 1.2 to methods of 1.3: ephemeral keys and authenticated encryption (RFC 9325, 4.2).
+  // Allows only those TLS 1.2 ciphers that correspond to TLS 1.3: ephemeral keys with authenticated
+  // encryption (RFC 9325, 4.2).
   SSL_CTX_set_cipher_list(context->native_handle(), "ECDHE+AESGCM:ECDHE+CHACHA20");
   if (!error) context->use_certificate_chain_file(chain_.string(), error);
   if (error)
     return tl::unexpected(unusable(
         chain_, "it contains no certificate in PEM format: " + error.message(), "--tls-cert"));
-  // OpenSSL would ask for the passphrase of a key at a terminal that nobody watches.
+  // Without this callback, OpenSSL would wait at the terminal for the passphrase of an encrypted
+  // key.
   context->set_password_callback(
       [](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
   context->use_private_key_file(key_.string(), ssl::context::pem, error);
-  // OpenSSL accepts a key of another kind as that of a second, missing certificate.
+  // OpenSSL accepts a key of a different type because it could belong to a second certificate.
   const bool is_its_key = !error && SSL_CTX_check_private_key(context->native_handle()) == 1;
   ERR_clear_error();
   if (!is_its_key)

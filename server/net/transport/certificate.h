@@ -9,16 +9,16 @@
 
 namespace strata::net {
 
-// The server's identity for clients that use TLS (1.2 or later): a certificate chain and its key,
-// PEM files as Let's Encrypt writes them.
+// The server certificate for TLS clients (1.2 or later). Consists of a certificate chain and its
+// key in PEM files, as Let's Encrypt writes them.
 class Certificate {
  public:
-  // 422 `--tls-cert` or `--tls-key`: a file is unreadable or has other content, or the key belongs
-  // to another certificate.
+  // Returns 422 for `--tls-cert` or `--tls-key` if a file is unreadable or has other content, or if
+  // the key does not belong to the certificate.
   static Result<Certificate> load(std::filesystem::path chain, std::filesystem::path key);
 
-  // Returns the context for a new connection. Reads the files again if they changed; if they are
-  // invalid, logs the error and keeps the previous context.
+  // Returns the TLS context for a new connection. Reads the files again if they have changed. If
+  // they are invalid, logs the error and keeps the previous context.
   std::shared_ptr<boost::asio::ssl::context> context();
 
  private:
@@ -26,7 +26,7 @@ class Certificate {
 
   Certificate(std::filesystem::path chain, std::filesystem::path key)
       : chain_(std::move(chain)), key_(std::move(key)) {}
-  Times written() const;  // times of modification
+  Times written() const;  // modification times of the files
   Result<std::shared_ptr<boost::asio::ssl::context>> read() const;
 
   std::filesystem::path chain_, key_;

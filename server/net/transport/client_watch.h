@@ -9,13 +9,13 @@
 
 namespace strata::net {
 
-// While the server works on a client's question, checks the socket a few times a second, and ends
-// the question when the client is gone. Asks the operating system and reads nothing, so TLS and
-// pipelined requests do not matter. A client that only shuts down its sending side counts as gone.
-// Belongs to the connection's strand.
+// Checks the socket a few times a second while the server works on a client's question. Ends the
+// question when the client has disconnected. Queries the operating system without reading from the
+// socket, so TLS and pipelined requests do not matter. A client that only shuts down its sending
+// side counts as disconnected. Use it only on the strand of the connection.
 class ClientWatch {
  public:
-  // `socket`: of a connection that stays open as long as the watch.
+  // `socket` belongs to a connection that must stay open during the lifetime of this object.
   ClientWatch(const boost::asio::any_io_executor& executor, int socket,
               std::shared_ptr<Question> question, std::function<void()> on_gone);
   ~ClientWatch();
@@ -27,7 +27,7 @@ class ClientWatch {
   const std::shared_ptr<Watched> watched_;
 };
 
-// Whether the other end has closed the connection, or the connection broke.
+// Returns whether the other end has closed the connection or the connection is broken.
 bool has_gone(int socket);
 
 }  // namespace strata::net

@@ -30,7 +30,7 @@ asio::awaitable<std::tuple<beast::error_code, std::size_t>> ConnectionStream::st
 asio::awaitable<void> ConnectionStream::end_tls() {
   Tls& tls = std::get<Tls>(stream_);
   auto [error] = co_await tls.async_shutdown(kUseResult);
-  (void)error;  // the client may be gone already
+  (void)error;  // the client may have disconnected already
 }
 
 void ConnectionStream::read_some(const SomeBuffers<asio::mutable_buffer>& into, Done done) {

@@ -18,8 +18,9 @@
 
 namespace strata::net {
 
-// A completion handler of one type for every read and write. Otherwise each operation of HTTP and
-// WebSocket would compile TLS again, which took longer than all other units of the module.
+// A completion handler with one type for every read and write. With different types, each HTTP and
+// WebSocket operation would compile TLS again. That took longer than compiling all other units of
+// the module.
 class IoDone {
  public:
   template <class Handler>
@@ -40,7 +41,7 @@ class IoDone {
   std::unique_ptr<Held> held_;
 };
 
-// The first non-empty pieces of a sequence of buffers: enough to read or write *some*.
+// The first non-empty buffers of a sequence, which are enough to read or write some bytes.
 template <class Buffer>
 class SomeBuffers {
  public:
@@ -62,8 +63,8 @@ class SomeBuffers {
   std::size_t count_ = 0;
 };
 
-// A TCP connection with or without TLS, as an asynchronous stream. Move it only while no operation
-// is pending.
+// A TCP connection with or without TLS, as an asynchronous stream. Move it only if no operation is
+// pending.
 class ConnectionStream {
  public:
   using next_layer_type = boost::beast::tcp_stream;
@@ -75,11 +76,11 @@ class ConnectionStream {
   next_layer_type& next_layer() noexcept;
 
   bool has_tls() const noexcept { return std::holds_alternative<Tls>(stream_); }
-  // Starts TLS on the connection. `first`: bytes of the client that were read already; returns how
-  // many of them were used.
+  // Starts TLS on the connection. `first` contains the bytes that were already read from the
+  // client. Returns the number of these bytes that were used.
   boost::asio::awaitable<std::tuple<boost::beast::error_code, std::size_t>> start_tls(
       boost::asio::ssl::context& context, boost::asio::const_buffer first);
-  // Sends TLS's end of the connection (close_notify).
+  // Sends close_notify to end TLS on the connection.
   boost::asio::awaitable<void> end_tls();
 
   template <class Buffers, class Token>
@@ -99,7 +100,7 @@ class ConnectionStream {
         token, SomeBuffers<boost::asio::const_buffer>(buffers));
   }
 
-  // Called by Beast to close the connection under a WebSocket.
+  // Beast calls it to close the connection below a WebSocket.
   template <class Handler>
   friend void async_teardown(boost::beast::role_type role, ConnectionStream& connection,
                              Handler&& handler) {

@@ -35,9 +35,10 @@ constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kEventPause{1}, kEventPing{15};
 constexpr int kMaxEventStreams = 256;
 constexpr std::uint32_t kMaxHead = 8192;
-// of a larger body; the default is the size of its head, some kilobytes
+// The number of bytes per read of a large body. The default is the size of the header buffer, a few
+// kilobytes.
 constexpr std::size_t kReadAtOnce = 64 * 1024;
-// of a refused request, read so that the connection can stay open
+// A body of a refused request up to this size is read, so the connection can stay open.
 constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;
 constexpr std::string_view kSubprotocol = "strata.v1";
 
@@ -63,7 +64,7 @@ Result<Request> request_of(const http::request<http::empty_body>& head) {
   return request;
 }
 
-// Refuses requests that two parsers could read differently (RFC 9112, sections 3.2 and 6.1).
+// Refuses requests that two parsers could interpret differently (RFC 9112, sections 3.2 and 6.1).
 Result<void> check_framing(const Request& request, unsigned version) {
   const auto count = [&](std::string_view name) {
     return std::ranges::count_if(request.headers,
@@ -88,7 +89,8 @@ std::string rate_policy(const ServerOptions& options) {
          ";w=" + std::to_string(window_s);
 }
 
-// Limits the time for a body: a fixed time, and a second more for each received kilobyte.
+// Limits the time to receive a body. The limit is a fixed time plus one second for each received
+// kilobyte.
 class BodyClock {
  public:
   explicit BodyClock(seconds at_least) : at_least_(at_least) {}
@@ -162,7 +164,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
  private:
   const Timeouts& timeouts() const { return api_.options().timeouts; }
 
-  // Returns false if the connection ends. Redirects a client that speaks plain HTTP here.
+  // Returns false if the connection must end. Redirects a client that uses plain HTTP on this port.
   asio::awaitable<bool> start_tls() {
     connection().expires_after(timeouts().head);
     auto [error, speaks_tls] = co_await beast::async_detect_ssl(connection(), buffer_, kUseResult);
@@ -194,8 +196,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return false;
   }
 
-  // GCC 12 destroys some objects twice that are built inside a co_await expression, so the
-  // arguments of these functions are named locals of the caller, passed by reference.
+  // GCC 12 destroys some objects twice if they are created inside a co_await expression. The
+  // callers of these functions therefore pass named locals by reference.
   asio::awaitable<void> refuse_head(beast::error_code error) {
     Response refusal;
     if (error == http::error::header_limit) {
@@ -215,7 +217,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_await send(refusal, Method::get, false);
   }
 
-  // Serves one request; false: the connection ends.
+  // Serves one request. Returns false if the connection must end.
   asio::awaitable<bool> serve(http::request_parser<http::empty_body>& head) {
     const CountAtWork at_work(connections_->requests_at_work);
     const bool keep_alive = head.keep_alive() && !connections_->stopping;
@@ -276,7 +278,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       buffer_.shrink_to_fit();  // an idle connection needs little memory
       if (!is_read) {
         remove_body_file(*request);
-        if (problem.title.empty()) co_return false;  // the connection broke
+        if (problem.title.empty()) co_return false;  // the connection is broken
         response = problem_response(problem);
         co_return co_await send(response, request->method, false);
       }
@@ -299,7 +301,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response = co_await on_worker(connections_, stream_.get_executor(), handle, at_desk);
     watch.reset();
     remove_body_file(*request);
-    // While an answer is streamed, the sending detects that the client left.
+    // While a response is streamed, the failing write detects that the client has disconnected.
     if (question) question->let_take_time();
     stream_question_ = response.stream ? std::move(question) : nullptr;
     co_return co_await send(response, request->method, keep_alive);
@@ -316,7 +318,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     std::filesystem::remove(request.body_file, gone_already);
   }
 
-  // Answers without using the body. Reads a small body, so that the connection can stay open.
+  // Sends a response without using the body. Reads a small body, so the connection can stay open.
   asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request,
                                Response& response, bool keep_alive) {
     const Method method = request.method;
@@ -340,7 +342,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // False: see the problem; one without a title means that the connection broke.
+  // Returns false and sets `problem` on failure. A problem without a title means that the
+  // connection is broken.
   asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head,
                                        Request& request, std::uint64_t max_body, Error& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
@@ -408,7 +411,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     parser.get().body().close();
     std::error_code size_error;
-    // excludes the framing of a chunked body
+    // The size does not include the framing of a chunked body.
     request.body_bytes = std::filesystem::file_size(request.body_file, size_error);
     co_return true;
   }
@@ -431,7 +434,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     message.set(http::field::server, "strata");
     for (const auto& [key, value] : security_headers())
       if (response.header(key).empty()) message.insert(key, value);
-    // From then on browsers use https only (RFC 6797), for http links, too.
+    // Browsers then use HTTPS for all later requests, even for http links (RFC 6797).
     if (by_https_) message.set(http::field::strict_transport_security, "max-age=31536000");
     const auto now = TokenBucket::Clock::now();
     message.insert("RateLimit-Policy", policy_);
@@ -455,7 +458,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return message.keep_alive();
   }
 
-  // Returns false if the connection ends.
+  // Returns false if the connection must end.
   asio::awaitable<bool> send(Response& response, Method method, bool keep_alive) {
     api_.metrics().count_request(response.status);
     if (response.stream) co_return co_await send_stream(response, method, keep_alive);
@@ -500,7 +503,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return co_await write(message);
   }
 
-  // Sends the head of a chunked body, without the body.
+  // Sends the head of a chunked response without the body.
   asio::awaitable<bool> send_chunked_head(const Response& response) {
     http::response<http::empty_body> message;
     put_head(message, response, true);
@@ -511,9 +514,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // A worker makes the bytes and waits until each piece is sent; only a few at once, so that slow
-  // readers leave workers for others. A body of unknown length is sent in chunks; a client of
-  // HTTP/1.0, which has no chunks, reads until the connection ends.
+  // A worker produces the bytes and waits until each piece is sent. The number of simultaneous
+  // streams is limited, so slow clients cannot occupy all workers. A body of unknown length is sent
+  // in chunks. A client of HTTP/1.0, which has no chunks, reads until the connection ends.
   asio::awaitable<bool> send_stream(Response& response, Method method, bool keep_alive) {
     const auto length = response.stream->length;
     if (method == Method::head) co_return co_await send_head(response, length, keep_alive);
@@ -550,7 +553,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           return true;
         });
       } catch (const QuestionEnded&) {
-        // The server stops: the client detects that the answer is incomplete.
+        // The server is stopping. The client detects that the response is incomplete.
       }
       *whole = written && (!stream.length || sent == *stream.length) &&
                (!in_chunks || send_piece({}, true));
@@ -561,8 +564,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return done.status == 200 && *whole&& framed&& keep_alive;
   }
 
-  // Uses no thread while there are no events. Sends something from time to time in any case, so
-  // that proxies keep the connection and a broken one is detected.
+  // Occupies no thread while there are no events. Sends a comment line from time to time, so
+  // proxies keep the connection and the server detects a broken one.
   asio::awaitable<bool> send_events(Response& response, Method method, bool keep_alive) {
     response.with("Content-Type", "text/event-stream")
         .with("Cache-Control", "no-store")
@@ -593,7 +596,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     for (;;) {
       const Response reply = co_await on_worker(connections_, stream_.get_executor(), ask);
       if (reply.status == 204 || connections_->stopping) break;
-      // the server is too busy: retry
+      // Another status means that the server is too busy, so the loop tries again.
       std::string text = reply.status == 200 ? reply.body : std::string();
       if (text.empty() && std::chrono::steady_clock::now() - last_sent >= kEventPing)
         text = ":\n\n";
@@ -623,7 +626,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // Runs on a worker and waits until the piece is sent. An empty chunk ends the body.
+  // Runs on a worker and waits until the piece is sent. An empty chunk marks the end of the body.
   bool send_piece(std::span<const std::uint8_t> bytes, bool in_chunks) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto data = std::make_shared<std::string>(in_chunks ? as_chunk(text) : std::string(text));
@@ -668,8 +671,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return false;
   }
 
-  // Shuts down the sending side, and reads pending data for a moment: closing at once could destroy
-  // the answer before the client has read it.
+  // Shuts down the sending side and reads pending data for a moment. An immediate close could
+  // destroy the response before the client has read it.
   asio::awaitable<void> say_goodbye() {
     connection().expires_after(seconds(2));
     if (stream_.has_tls()) co_await stream_.end_tls();
@@ -692,12 +695,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   Api& api_;
   beast::flat_buffer buffer_;
   TokenBucket bucket_;
-  const std::string policy_;    // name of `bucket_` in RateLimit-Policy
-  std::string peer_;            // address of the other end
+  const std::string policy_;    // RateLimit-Policy header for `bucket_`
+  std::string peer_;            // address of the client
   unsigned http_version_ = 11;  // of the request: 10 or 11
-  bool by_https_ = false;       // the request used https, to this server or to a proxy
+  bool by_https_ = false;       // the request used HTTPS, to this server or to a proxy
   bool handed_over_ = false;
-  std::shared_ptr<Question> stream_question_;  // the question whose answer is being streamed
+  std::shared_ptr<Question> stream_question_;  // the question whose response is being streamed
 };
 
 }  // namespace

@@ -10,9 +10,9 @@
 
 namespace strata::net {
 
-// Shared by all connections of one server. Pending answers hold `io`, so that an answer that
-// arrives after the server has stopped can still be discarded safely; connections do not, since
-// `io` owns their coroutine frames.
+// The state that all connections of one server share. A pending response locks `io`, so the server
+// can discard it safely after it has stopped. Connections hold only a weak pointer because `io`
+// owns their coroutine frames.
 struct Connections {
   std::weak_ptr<boost::asio::io_context> io;
   Api& api;
@@ -22,8 +22,8 @@ struct Connections {
   std::atomic<bool> stopping{false};
 };
 
-// Serves one TCP connection until it ends or becomes a WebSocket. The socket's executor is a
-// separate strand. `tls`: null for plain HTTP.
+// Serves one TCP connection until it ends or becomes a WebSocket. The executor of the socket must
+// be a separate strand. `tls` is null for plain HTTP.
 void start_http_session(boost::asio::ip::tcp::socket socket,
                         std::shared_ptr<Connections> connections,
                         std::shared_ptr<boost::asio::ssl::context> tls);

@@ -14,9 +14,10 @@ namespace strata::net {
 
 using Work = std::function<void(const Respond&)>;
 
-// Runs `work(respond)` on a worker and resumes on `executor` with the answer; 503 if the queue is
-// full. A question runs on the question desk (net/http/question_desk.h), or not at all if it ended
-// before its turn. Pass a named function, not a lambda inside the co_await: GCC 12 destroys
+// Runs `work(respond)` on a worker and resumes on `executor` with the response. The response is 503
+// if the queue is full. If `question` is set, the question desk runs the work
+// (net/http/question_desk.h). The work does not run if the question has ended before its turn. Pass
+// a named function, not a lambda inside the co_await expression, because GCC 12 destroys the
 // captures of such temporaries twice.
 template <class Executor>
 boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections,

@@ -29,8 +29,8 @@ using asio::ip::tcp;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr seconds kGoodbye{3};  // for live connections to close
-constexpr seconds kAnswers{5};  // for running requests
+constexpr seconds kGoodbye{3};  // time for live connections to close
+constexpr seconds kAnswers{5};  // time for running requests to finish
 
 template <class Done>
 void wait_until(Done done, milliseconds limit) {
@@ -39,7 +39,7 @@ void wait_until(Done done, milliseconds limit) {
     std::this_thread::sleep_for(milliseconds(5));
 }
 
-// Deletes the uploads that a killed server left.
+// Deletes the files that a killed server left in the upload folder.
 Result<void> prepare_upload_dir(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -95,14 +95,16 @@ struct Server::Impl {
       auto [error] = co_await acceptor.async_accept(socket, asio::as_tuple(asio::use_awaitable));
       if (connections->stopping) co_return;
       if (error) {
-        // Mostly the limit of descriptors: waits until some are closed.
+        // The usual reason is the limit of file descriptors. Waits until other connections have
+        // closed.
         log::warning("a connection could not be accepted: " + error.message());
         asio::steady_timer pause(*io, milliseconds(100));
         co_await pause.async_wait(asio::as_tuple(asio::use_awaitable));
         continue;
       }
       const auto open = api.metrics().open_connections.load() + api.metrics().open_sockets.load();
-      if (open >= static_cast<std::int64_t>(api.options().max_connections)) continue;  // closes it
+      // Closes the socket of a connection above the limit.
+      if (open >= static_cast<std::int64_t>(api.options().max_connections)) continue;
       start_http_session(std::move(socket), connections,
                          certificate ? certificate->context() : nullptr);
     }
@@ -112,7 +114,7 @@ struct Server::Impl {
   std::shared_ptr<asio::io_context> io;
   std::shared_ptr<Connections> connections;
   tcp::acceptor acceptor;
-  std::optional<Certificate> certificate;  // only `accept` uses it
+  std::optional<Certificate> certificate;  // used only by `accept`
   std::vector<std::thread> threads;
   std::uint16_t port = 0;
   bool stopped = false;
@@ -146,7 +148,7 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
   Impl& impl = *server->impl_;
   auto acceptor = listen(*impl.io, host, port);
   if (!acceptor) {
-    impl.stopped = true;  // nothing runs yet
+    impl.stopped = true;  // no thread is running yet
     return tl::unexpected(acceptor.error());
   }
   impl.acceptor = std::move(*acceptor);

@@ -13,19 +13,21 @@
 
 namespace strata::net {
 
-// The server's sockets: HTTP, the live connections and the page. The arguments must outlive it.
+// The sockets of the server, for HTTP, the live connections and the page. The arguments must
+// outlive the object.
 class Server {
  public:
-  // Listens when it returns. Refuses with advice: an address in use, a short owner token, an
-  // invalid certificate, an upload folder without write permission.
+  // The server accepts connections when the call returns. Returns an error with advice for an
+  // address in use, a short owner token, an invalid certificate, or an upload folder without write
+  // permission.
   static Result<std::unique_ptr<Server>> start(ServerOptions options, store::Store& store,
                                                room::Rooms& rooms, jobs::JobQueue& jobs,
                                                render::Renderer& renderer);
   ~Server();
 
   std::uint16_t port() const;
-  // Accepts no more connections, asks live clients to reconnect later, finishes running requests,
-  // and joins. The owner of the rooms drains them afterwards. Idempotent.
+  // Stops accepting connections, notifies live clients to reconnect later, finishes the running
+  // requests and joins the threads. The owner of the rooms must drain them afterwards. Idempotent.
   void stop();
 
  private:

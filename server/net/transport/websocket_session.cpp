@@ -26,13 +26,13 @@ using std::chrono::seconds;
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kHandshake{10};
 constexpr seconds kClosing{5};
-// The server refuses a message above the protocol's limit with a problem, and closes the connection
-// above this one.
+// Above this size, the connection is closed. Above the smaller limit of the protocol, the server
+// refuses the message with a problem.
 constexpr std::size_t kMaxMessage = 4u << 20;
 constexpr std::size_t kMaxQueuedTexts = 4096;
 constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-// Limit that the client's credit implies: 3 frames of 16 rectangles for each of 4 views, or whole
-// frames of the largest size.
+// The limits that follow from the client's credit: 3 frames of 16 rectangles for each of 4 views,
+// or whole frames of the largest size.
 constexpr std::size_t kMaxQueuedFrames = 256;
 constexpr std::size_t kMaxQueuedFrameBytes = 64u << 20;
 
@@ -69,7 +69,7 @@ class WebSocketSession final : public LiveSocket,
     --connections_->api.metrics().open_sockets;
   }
 
-  // --- LiveSocket, from any thread
+  // --- LiveSocket, called from any thread
   void send_text(std::string text) override {
     asio::post(ws_.get_executor(), [self = shared_from_this(), text = std::move(text)]() mutable {
       self->queue_text(std::move(text));
@@ -117,7 +117,7 @@ class WebSocketSession final : public LiveSocket,
       auto [error, size] = co_await ws_.async_read(buffer, kUseResult);
       if (error) co_return;
       if (closing_) {
-        // Reads until the client closes, too.
+        // Continues to read until the client also closes the connection.
       } else if (!ws_.got_text()) {
         live_->on_binary();
       } else if (auto work = live_->on_text(beast::buffers_to_string(buffer.data()))) {
@@ -132,10 +132,11 @@ class WebSocketSession final : public LiveSocket,
     }
   }
 
-  // Another server may end the session or revoke the token, or it may expire.
+  // Ends the connection when the session ends. The session or token may expire, and another server
+  // may revoke it.
   asio::awaitable<void> watch_sign_in(std::string secret, ProjectId project_id, Role role) {
     auto self = shared_from_this();
-    // The first check is at once: accounts may have changed while the model was opened.
+    // Checks immediately because accounts may have changed while the model was opened.
     while (!over_ && !closing_) {
       const Work ask = [&api = connections_->api, secret, project_id,
                         role](const Respond& respond) {
@@ -207,7 +208,8 @@ class WebSocketSession final : public LiveSocket,
     closing_ = true;
     reason_ = websocket::close_reason(static_cast<websocket::close_code>(code),
                                       beast::string_view(reason));
-    // The last messages say why: the model was deleted, an edit is saved before the server stops.
+    // With kCloseGoingAway, keeps the queued messages because they contain the reason. For example,
+    // the model was deleted, or an edit was saved before the server stopped.
     if (code != kCloseGoingAway) texts_.clear();
     frames_.clear();
     close_timer_.expires_after(kClosing);
@@ -223,7 +225,7 @@ class WebSocketSession final : public LiveSocket,
     ws_.async_close(reason_, [self = shared_from_this()](beast::error_code) {});
   }
 
-  // The reader detects this and ends the session.
+  // The reading coroutine detects the closed connection and ends the session.
   void drop() { beast::get_lowest_layer(ws_).close(); }
 
   websocket::stream<ConnectionStream> ws_;

@@ -9,7 +9,7 @@
 
 namespace strata::net {
 
-// Takes over a connection whose upgrade request was accepted, until it closes.
+// Takes over a connection whose upgrade request was accepted. Serves it until it closes.
 void start_websocket(ConnectionStream stream,
                      boost::beast::http::request<boost::beast::http::empty_body> request,
                      std::shared_ptr<Connections> connections, Api::LiveEntry entry);

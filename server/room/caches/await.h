@@ -9,8 +9,8 @@
 
 namespace strata::room {
 
-// Starts a call that answers by callback and waits for the answer. Must not run on the thread that
-// answers.
+// Starts a call that passes its result to a callback, and waits for this result. Must not run on
+// the thread that calls the callback.
 template <class T, class Start>
 Result<T> await(Start start) {
   auto promise = std::make_shared<std::promise<Result<T>>>();
@@ -19,7 +19,7 @@ Result<T> await(Start start) {
   return future.get();
 }
 
-// The same, but the current question may end while it waits (QuestionEnded). The answer is then
+// The same, but the wait ends if the current question ends (QuestionEnded). The result is then
 // dropped, so it must not be a resource that the caller has to release.
 template <class T, class Start>
 Result<T> await_for_question(Start start) {

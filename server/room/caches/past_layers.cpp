@@ -13,7 +13,7 @@ namespace {
 
 std::uint64_t tile_bytes(const TileData& tile) { return sizeof(TileData) + tile.values.size(); }
 
-// The bytes of the tiles that only `snapshot` holds.
+// Returns the bytes of the tiles that only `snapshot` holds, and not `newest`.
 std::uint64_t own_bytes(const TileMirror::Snapshot& snapshot,
                         const std::optional<TileMirror::Snapshot>& newest) {
   std::uint64_t bytes = 0;
@@ -44,9 +44,9 @@ PastLayer::~PastLayer() {
 
 class PastLayers::Place {
  public:
-  Request wanted;  // under the mutex of PastLayers, as all members
+  Request wanted;  // all members are protected by the mutex of PastLayers
   Found found;
-  // The last request that failed, which is not tried again.
+  // The last request that failed. It is not tried again.
   std::optional<std::pair<std::int64_t, render::ModelHandle>> failed;
   bool running = false;
 };
@@ -101,7 +101,7 @@ void PastLayers::run(const std::shared_ptr<Place>& place) {
         place->running = false;
         return;
       }
-      if (model != model_) continue;  // the GPU lost it
+      if (model != model_) continue;  // the context was lost
       if (made) {
         place->found = {std::move(*made), nullptr};
         place->failed.reset();
@@ -124,7 +124,7 @@ Result<std::shared_ptr<const PastMoment>> PastLayers::make(const Request& reques
   moment->model = model;
   const auto sequences = STRATA_TRY(store_.journal().layer_sequences(model_id_, request.at));
   for (const Layer& layer : request.layers) {
-    // A layer that did not exist yet has nothing to show.
+    // A layer that did not exist at that time is empty.
     const auto last = sequences.find(layer.id);
     auto content = STRATA_TRY(layer_at(layer, last == sequences.end() ? 0 : last->second, model));
     moment->layers.emplace(layer.id, std::move(content));
@@ -187,7 +187,7 @@ void PastLayers::keep(Kept kept) {
 }
 
 void PastLayers::set_model(render::ModelHandle model) {
-  std::list<Kept> gone;  // destroyed without the lock
+  std::list<Kept> gone;  // destroyed after the mutex is released
   std::lock_guard lock(mutex_);
   model_ = model;
   gone.swap(kept_);

@@ -22,8 +22,8 @@
 
 namespace strata::room {
 
-// A layer as it was after one of its edits: a copy on the GPU that nobody paints. The destructor
-// removes it from there.
+// The state of a layer after one of its edits: a copy on the GPU that is never painted. The
+// destructor removes the copy.
 struct PastLayer {
   PastLayer(render::Renderer& on, TileMirror::Snapshot content)
       : renderer(on), snapshot(std::move(content)) {}
@@ -34,10 +34,10 @@ struct PastLayer {
   render::Renderer& renderer;
   const TileMirror::Snapshot snapshot;
   render::LayerHandle handle = 0;
-  MemoryLedger::Share memory;  // of the tiles that the newest state does not share
+  MemoryLedger::Share memory;  // for the tiles that the newest state does not share
 };
 
-// Layers and features of a model after an edit.
+// The layers and features of a model after an edit.
 struct PastMoment {
   std::int64_t sequence = 0;
   render::ModelHandle model = 0;
@@ -45,18 +45,19 @@ struct PastMoment {
   std::map<TableId, RecordFeatures::SurfaceFeatures> features;
 };
 
-// Past states of an open model, for views that show the model as it was. A worker reads them from
-// the journal. Only tiles that differ from a known state are read, and all others are shared with
-// it, so that a step through the history costs what changed in it. Unused states stay within
-// kKeptBytes, which the ledger counts. Thread-safe.
+// The past states of an open model, for views that show the model as it was. A worker reads them
+// from the journal. It reads only the tiles that differ from a known state, and shares all others
+// with that state. So a step through the history costs only the tiles that changed in it. Unused
+// states need at most kKeptBytes, which the ledger counts. Thread-safe.
 class PastLayers : public std::enable_shared_from_this<PastLayers> {
  public:
   static constexpr std::size_t kKeptLayers = 24;
   static constexpr std::uint64_t kKeptBytes = 128u << 20;
 
-  // Returns the newest state of a layer, if all of it is in the journal and of the layer's type.
+  // Returns the newest state of a layer if the journal contains all of it and it has the type of
+  // the layer.
   using Newest = std::function<std::optional<TileMirror::Snapshot>(const Layer&)>;
-  // `ready` is called, on any thread, whenever a requested moment is there or has failed.
+  // `ready` is called, on any thread, when a requested moment is ready or has failed.
   PastLayers(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
              MemoryLedger& memory, std::shared_ptr<RecordFeatures> features, ModelId model_id,
              Newest newest, std::function<void()> ready);
@@ -64,27 +65,28 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
 
   struct Request {
     std::int64_t at = 0;
-    std::vector<Layer> layers;                // to show
-    Visibility sight = Visibility::everyone;  // the most restricted visibility of columns
+    std::vector<Layer> layers;  // the layers that are shown
+    // The most restricted visibility of the columns that may be read.
+    Visibility sight = Visibility::everyone;
   };
   struct Found {
-    std::shared_ptr<const PastMoment> moment;  // null: none yet
-    std::shared_ptr<const Error> problem;      // why the requested moment cannot be shown
+    std::shared_ptr<const PastMoment> moment;  // null if no moment is ready yet
+    std::shared_ptr<const Error> problem;      // reason why the requested moment cannot be shown
   };
   // The requests of one view.
   class Place;
   std::shared_ptr<Place> new_place();
-  // Returns the last moment that is ready, which may be that of an earlier request. A worker makes
-  // the newest request of each place; requests in between are left out.
+  // Returns the last moment that is ready. It may belong to an earlier request. A worker processes
+  // the newest request of each place, and skips the requests before it.
   Found find(const std::shared_ptr<Place>& place, const Request& request);
 
-  // Forgets the copies on the GPU, which were deleted with the old model.
+  // Drops the copies on the GPU, which were deleted together with the old model.
   void set_model(render::ModelHandle model);
-  bool drop_unused();  // false: nothing was dropped
-  void stop();         // reads nothing more, and does not call `ready`
+  bool drop_unused();  // returns false if nothing was dropped
+  void stop();         // stops reading, and no longer calls `ready`
 
  private:
-  // The last one is the layer's last edit.
+  // The last element is the sequence of the layer's last edit.
   using Key = std::tuple<LayerId, ValueType, std::int64_t>;
   struct Kept {
     Key key;
@@ -94,7 +96,7 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
   Result<std::shared_ptr<const PastMoment>> make(const Request& request, render::ModelHandle model);
   Result<std::shared_ptr<const PastLayer>> layer_at(const Layer& layer, std::int64_t sequence,
                                                     render::ModelHandle model);
-  void keep(Kept kept);  // with the mutex held
+  void keep(Kept kept);  // call while holding the mutex
 
   store::Store& store_;
   render::Renderer& renderer_;
@@ -105,7 +107,7 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
   const Newest newest_;
   const std::function<void()> ready_;
   std::mutex mutex_;
-  std::list<Kept> kept_;  // last used first
+  std::list<Kept> kept_;  // in order of last use, the newest first
   render::ModelHandle model_ = 0;
   bool stopped_ = false;
 };

@@ -49,7 +49,7 @@ Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(TableId table_id,
     std::lock_guard lock(mutex_);
     Entry& entry = entries_[key];
     if (entry.known && !entry.outdated && !entry.reading) return entry.features;
-    if (!entry.known) entry.outdated = false;  // later changes of records set it again
+    if (!entry.known) entry.outdated = false;  // a later change to records sets it again
   }
   auto features = read(key);
   std::lock_guard lock(mutex_);
@@ -58,7 +58,7 @@ Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(TableId table_id,
     entry.outdated = true;
     return entry.known ? Result<SurfaceFeatures>(entry.features) : features;
   }
-  // If a worker has read them in the meantime, its result is at least as new.
+  // If a worker has read the features in the meantime, its result is at least as new.
   if (!entry.known) {
     entry.features = *features;
     entry.known = true;
@@ -84,7 +84,7 @@ void RecordFeatures::run(const Key& key) {
     if (stopped_) return;
     Entry& entry = entries_[key];
     entry.reading = false;
-    // Features that cannot be read stay unchanged until records change again.
+    // If the features cannot be read, they stay unchanged until records change again.
     entry.known |= features.has_value();
     if (features && !(!entry.features && !*features) &&
         !(entry.features && *features && *entry.features == **features)) {

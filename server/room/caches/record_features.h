@@ -18,43 +18,43 @@ namespace strata::room {
 
 struct LayerFeatures;
 
-// The lines and points that records have on an open model, by table and by the most restricted
-// visibility of the columns that are read (`sight`). A worker reads them when a view first needs
-// them, and again when records change. Thread-safe.
+// The lines and points of records on an open model, by table and by the most restricted visibility
+// of the columns that are read (`sight`). A worker reads them when a view first needs them, and
+// again when records change. Thread-safe.
 class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
  public:
   using SurfaceFeatures =
       std::shared_ptr<const std::vector<KeyFeature>>;  // by key; compared by address
 
-  // `ready` is called, on any thread, whenever requested features were read and differ from before.
+  // `ready` is called, on any thread, when requested features were read and have changed.
   RecordFeatures(store::Store& store, boost::asio::thread_pool& workers, ModelId model_id,
                  std::function<void()> ready);
   ~RecordFeatures();
 
-  // Returns the newest features that were read; null: none known.
+  // Returns the newest features that were read, or null before the first reading.
   SurfaceFeatures find(TableId table_id, Visibility sight);
-  // Returns the present features, and reads them on the calling thread if they are not known. If
-  // the database is unreachable, returns the last known ones. Blocks.
+  // Returns the present features. Reads them on the calling thread if they are not in memory. If
+  // the database is unreachable, returns the last known features. Blocks.
   Result<SurfaceFeatures> newest(TableId table_id, Visibility sight);
-  // Returns the features at the time of an edit of the model. Blocks.
+  // Returns the features after an edit of the model. Blocks.
   Result<SurfaceFeatures> when(TableId table_id, Visibility sight, std::int64_t sequence) const;
   void records_changed(TableId table_id);
-  // Returns the result of `show_features` as one object for all views that show the same features,
-  // so that views can compare pictures by it.
+  // Returns the result of `show_features`. Views that show the same features get the same object,
+  // so they can use it to compare frames.
   render::FeaturesShown shown(const std::vector<LayerFeatures>& layers);
-  void stop();  // reads nothing more, and does not call `ready`
+  void stop();  // stops reading, and no longer calls `ready`
 
  private:
   struct Entry {
     SurfaceFeatures features;
-    bool known = false;  // they were read once
+    bool known = false;  // the features were read at least once
     bool reading = false;
     bool outdated = true;
   };
   using Key = std::pair<TableId, Visibility>;
-  void start(const Key& key, Entry& entry);  // with the mutex held
+  void start(const Key& key, Entry& entry);  // call while holding the mutex
   void run(const Key& key);
-  // `at` of the table
+  // Reads the features. `at` is a sequence of the table.
   Result<SurfaceFeatures> read(const Key& key, std::optional<std::int64_t> at = {}) const;
 
   store::Store& store_;
@@ -68,15 +68,15 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
   bool stopped_ = false;
 };
 
-// SurfaceFeatures of one layer's records, drawn like the layer: in the colors of their keys, with
-// its opacity.
+// The features of the records of one layer. They are drawn like the layer: in the colors of their
+// keys, and with its opacity.
 struct LayerFeatures {
   RecordFeatures::SurfaceFeatures features;
   std::shared_ptr<const Palette> palette;  // by key
   float opacity = 1;
   bool operator==(const LayerFeatures&) const = default;
 };
-// Returns the features to draw; null: nothing to draw.
+// Returns the features to draw, or null if there is nothing to draw.
 render::FeaturesShown show_features(const std::vector<LayerFeatures>& layers);
 
 }  // namespace strata::room

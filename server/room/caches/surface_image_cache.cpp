@@ -13,8 +13,8 @@
 namespace strata::room {
 namespace {
 
-constexpr int kMaxSide = 16384, kMinSide = 512;  // texels of a surface image on the GPU
-constexpr int kMaxDivided = 8;                   // limit of libjpeg-turbo for dividing the sides
+constexpr int kMaxSide = 16384, kMinSide = 512;  // texels per side on the GPU
+constexpr int kMaxDivided = 8;  // libjpeg-turbo can divide the sides by at most this number
 
 }  // namespace
 
@@ -173,7 +173,7 @@ Result<SurfaceImageCache::Bytes> SurfaceImageCache::encoded_bytes(SurfaceImageId
 
 Result<int> SurfaceImageCache::reserve_pixels(SurfaceImageId id, const PictureInfo& info) {
   for (int divisor = 1;; divisor *= 2) {
-    // Four bytes a pixel, and a third more for the coarser levels.
+    // Four bytes per pixel, plus one third for the coarser levels.
     const auto pixels = static_cast<std::uint64_t>(info.width / divisor + 1) *
                         static_cast<std::uint64_t>(info.height / divisor + 1);
     auto share = memory_.reserve(pixels * 16 / 3, "a model's picture");
@@ -222,7 +222,7 @@ void SurfaceImageCache::on_added(SurfaceImageId id, render::ModelHandle model, i
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
-    // it was made for a lost context
+    // The texture was made for a lost context.
     if (model != model_ && slots_.contains(id)) return load(id, largest_side);
   }
   if (!handle && handle.error().code == ErrorCode::out_of_memory && largest_side > kMinSide)

@@ -19,19 +19,19 @@
 
 namespace strata::room {
 
-// Returns the surface images that are visible by default, bottom to top; the topmost ones if a view
-// cannot show all.
+// Returns the surface images that are visible by default, from bottom to top. If a view cannot show
+// all of them, returns the topmost images.
 std::vector<SurfaceImageView> surface_images_shown(const std::vector<SurfaceImage>& by_order);
 
 // The surface images of an open model. A worker makes the texture of an image when a view first
-// shows it; the texture stays while the room is open. Its encoded bytes are kept, too, so that
-// after a lost context the texture is made without the database. Textures have up to 16384² texels,
-// which OpenGL 4.5 guarantees, or fewer if the GPU's memory is insufficient. The pixels are
-// reserved in `memory` until they are on the GPU; if there is not enough, a JPEG is decoded at a
-// smaller size. Thread-safe.
+// shows the image. The texture stays while the room is open. The cache also keeps the encoded
+// bytes, so it can make the texture again after a lost context without the database. A texture has
+// up to 16384² texels, which OpenGL 4.5 guarantees, or fewer if the GPU has too little memory. The
+// pixels are reserved in `memory` until they are on the GPU. If `memory` is not sufficient, a JPEG
+// is decoded at a smaller size. Thread-safe.
 class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache> {
  public:
-  // `ready` is called, on any thread, whenever a requested texture is ready.
+  // `ready` is called, on any thread, when a requested texture is ready.
   SurfaceImageCache(store::Store& store, render::Renderer& renderer,
                     boost::asio::thread_pool& workers, MemoryLedger& memory,
                     std::function<void()> ready);
@@ -40,16 +40,16 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   void drop(SurfaceImageId id);
   std::vector<SurfaceImage> all() const;                           // by order
   std::optional<SurfaceImage> find(const std::string& ref) const;  // id or slug
-  // Discards the textures, which were deleted with the old handle; they are made again on request.
+  // Drops the textures, which were deleted with the old handle. They are made again on request.
   void set_model(render::ModelHandle model);
-  void stop();  // loads nothing more, and does not call `ready`
+  void stop();  // stops loading, and no longer calls `ready`
 
-  // Returns the images for a view out of `requested` (nothing: those visible by default, the
-  // topmost ones if there are too many). Leaves out textures that are not ready yet, and starts
-  // making them.
+  // Returns the images for a view. nullopt requests the images that are visible by default. If
+  // there are too many, only the topmost images are returned. Leaves out textures that are not
+  // ready yet, and starts to make them.
   std::vector<render::SurfaceImageStyle> styles(
       const std::optional<std::vector<SurfaceImageView>>& requested);
-  // The same, but waits until all are ready. Blocks.
+  // The same, but waits until all textures are ready. Blocks.
   Result<std::vector<render::SurfaceImageStyle>> wait(
       const std::optional<std::vector<SurfaceImageView>>& requested);
 
@@ -61,19 +61,19 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
     Bytes encoded;
     render::SurfaceImageHandle handle = 0;
     bool loading = false;
-    MemoryLedger::Share memory;   // of its pixels while it loads
-    std::optional<Error> damage;  // the picture can never be shown
+    MemoryLedger::Share memory;   // for the pixels while the image is loading
+    std::optional<Error> damage;  // the reason why the image can never be shown
     std::vector<Loaded> waiting;
   };
-  // under the mutex
+  // Call while holding the mutex.
   std::vector<SurfaceImage> by_order() const;
-  // under the mutex
+  // Call while holding the mutex.
   std::vector<SurfaceImageView> shown(
       const std::optional<std::vector<SurfaceImageView>>& requested) const;
   void request(SurfaceImageId id, const Loaded& loaded);
   void load(SurfaceImageId id, int largest_side);
   Result<Bytes> encoded_bytes(SurfaceImageId id);
-  // divisor of its sides
+  // Returns the number by which the sides must be divided.
   Result<int> reserve_pixels(SurfaceImageId id, const PictureInfo& info);
   Result<std::shared_ptr<const render::MipmappedPicture>> read(SurfaceImageId id, int largest_side);
   void add(SurfaceImageId id, int largest_side,

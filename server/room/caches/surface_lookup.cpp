@@ -5,14 +5,14 @@
 namespace strata::room {
 
 std::shared_ptr<const mesh::SearchTree> SurfaceLookup::tree() {
-  const Question::Aside aside;  // other questions share the result
+  const Question::Aside aside;  // questions of other users share the result
   std::call_once(tree_once_, [&] { tree_ = std::make_shared<const mesh::SearchTree>(geometry_); });
   return tree_;
 }
 
 Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh::SurfaceMap& map) {
   auto graph = STRATA_TRY(find_or_build(map));
-  // Without the lock: the reservation may drop graphs.
+  // Reserves without the lock, because the reservation may drop graphs.
   auto share = memory_.reserve(graph->bytes(), "the neighbors of a surface map's texels");
   std::lock_guard lock(graphs_mutex_);
   const auto found = graphs_.find(map.resolution);
@@ -28,8 +28,8 @@ Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh:
 Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(
     const mesh::SurfaceMap& map) {
   const Question::Aside aside;
-  std::lock_guard lock(graphs_mutex_);  // held during the build: concurrent callers need the same
-                                        // graph
+  // Held during the build, because concurrent callers need the same graph.
+  std::lock_guard lock(graphs_mutex_);
   if (const auto found = graphs_.find(map.resolution); found != graphs_.end())
     return found->second.graph;
   auto built = STRATA_TRY(mesh::build_texel_graph(*geometry_, map, progress_));

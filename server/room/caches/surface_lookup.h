@@ -11,8 +11,8 @@
 
 namespace strata::room {
 
-// Data for questions about a model's surface, built on first use. The calls block during the build,
-// so they are for worker threads. Thread-safe.
+// The data that questions about a model's surface need. It is built on first use. The calls block
+// during the build, so call them from worker threads. Thread-safe.
 class SurfaceLookup {
  public:
   // `memory` must outlive this object.
@@ -21,9 +21,10 @@ class SurfaceLookup {
 
   const mesh::Geometry& geometry() const { return *geometry_; }
   std::shared_ptr<const mesh::SearchTree> tree();
-  // An Error `unavailable` beyond the budget of main memory.
+  // Returns the error `out_of_memory` if the budget of main memory is too small.
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(const mesh::SurfaceMap& map);
-  // dropped graphs are built again on use; false if there is no graph, or one is being built
+  // Dropped graphs are built again on use. Returns false if there is no graph or one is being
+  // built.
   bool drop_graphs();
   void stop() { progress_.cancel(); }
 
@@ -36,7 +37,7 @@ class SurfaceLookup {
 
   struct Graph {
     std::shared_ptr<const mesh::TexelGraph> graph;
-    MemoryLedger::Share share;  // empty until it was reserved
+    MemoryLedger::Share share;  // empty until the memory was reserved
   };
   MemoryLedger& memory_;
   std::mutex graphs_mutex_;

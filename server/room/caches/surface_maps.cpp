@@ -118,8 +118,8 @@ void SurfaceMaps::finish(int resolution, const Result<MapPtr>& result, render::M
   {
     std::unique_lock lock(mutex_);
     Entry& entry = entries_[resolution];
-    // The model's handle may have changed during the upload (lost context): then repeat it with the
-    // new handle.
+    // The handle of the model may have changed during the upload (lost context). In this case, the
+    // upload is repeated with the new handle.
     if (entry.baked && model_ != model) {
       model = model_;
       const MapPtr again = entry.baked;

@@ -16,8 +16,8 @@
 
 namespace strata::room {
 
-// The surface maps of one model, baked on first use (a second or so) on a background thread and
-// uploaded to the GPU. Thread-safe.
+// The surface maps of one model. A background thread bakes a map on first use, in about a second,
+// and uploads it to the GPU. Thread-safe.
 class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
  public:
   using MapPtr = std::shared_ptr<const mesh::SurfaceMap>;
@@ -27,39 +27,40 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
               MemoryLedger& memory, boost::asio::thread_pool& workers)
       : geometry_(std::move(geometry)), renderer_(renderer), memory_(memory), workers_(workers) {}
 
-  // Returns the map if it is baked and on the GPU, otherwise null (and starts nothing).
+  // Returns the map if it is baked and on the GPU. Otherwise returns null, and starts no work.
   MapPtr get(int resolution) const;
-  // Calls `ready` when the map is ready, on any thread; at once if it is ready already.
+  // Calls `ready` when the map is ready, on any thread. Calls it immediately if the map is already
+  // ready.
   void request(int resolution, Ready ready);
-  // Blocks; for worker threads.
+  // Blocks. For worker threads.
   Result<MapPtr> wait(int resolution);
 
-  // Sets the model's handle, which is new after a lost context: baked maps are uploaded again.
+  // Sets the handle of the model, which is new after a lost context. Baked maps are uploaded again.
   void set_model(render::ModelHandle model);
-  // Maps can be dropped to free memory; they are baked again on use.
+  // Maps can be dropped to free memory, and are baked again on use.
   using Clock = std::chrono::steady_clock;
-  // of the map that was unused for the longest time
+  // Returns the last use of the map that was unused for the longest time.
   std::optional<Clock::time_point> oldest_use() const;
-  // Drops that map; false if there is no map. Call only while nothing is being painted, because
-  // painting needs the map on the GPU.
+  // Drops the map that was unused for the longest time. Returns false if there is no map. Call only
+  // while nothing is being painted, because painting needs the map on the GPU.
   bool drop_oldest();
-  // Drops the maps of at least `at_least_bytes` that were unused since `since`; false if there is
-  // no such map. The same restriction applies.
+  // Drops maps of at least `at_least_bytes` that were unused since `since`. Returns false if there
+  // is no such map. The same restriction applies.
   bool drop_unused(Clock::time_point since, std::uint64_t at_least_bytes);
   void stop() { progress_.cancel(); }
 
  private:
   struct Entry {
     MapPtr baked;
-    MemoryLedger::Share share;  // of `baked`
+    MemoryLedger::Share share;  // for `baked`
     mutable Clock::time_point last_use{};
     bool on_gpu = false;
     bool working = false;
     std::vector<Ready> waiting;
   };
   using Entries = std::map<int, Entry>;
-  Entries::const_iterator oldest() const;  // with the lock held
-  void start(int resolution);              // with the lock held
+  Entries::const_iterator oldest() const;  // call while holding the mutex
+  void start(int resolution);              // call while holding the mutex
   void upload(int resolution, const MapPtr& map, render::ModelHandle model);
   void finish(int resolution, const Result<MapPtr>& result, render::ModelHandle model);
 

@@ -34,8 +34,8 @@ Result<LayerState> read_layer_state(store::Store& store, Layer layer) {
 Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held) {
   JournalContents contents;
-  // Read before the tiles: if the tiles contain later edits, the next commit detects that, and
-  // everything is read again.
+  // Read before the tiles. If the tiles contain later edits, the next commit detects the
+  // difference, and everything is read again.
   auto last = STRATA_TRY(store.journal().last_sequence(model_id));
   contents.last_sequence = last;
   auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
@@ -78,7 +78,7 @@ Result<std::vector<Level>> read_coarser_levels(store::Store& store, ModelId mode
 }  // namespace
 
 Result<render::ModelGeometry> read_geometry(store::Store& store, ModelId model_id) {
-  // Together, the coarser levels take about as long as the full mesh.
+  // In total, the coarser levels take about as long as the full mesh.
   auto coarser_later =
       std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });
   auto bytes = STRATA_TRY(store.models().geometry(model_id));

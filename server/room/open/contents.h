@@ -13,36 +13,36 @@
 
 namespace strata::room {
 
-// The contents of an open room: layers as in the journal, and their copies on the GPU. All
+// The contents of an open room: the layers as in the journal, and their copies on the GPU. All
 // functions block.
 
-LayerState new_state(Layer layer);  // empty, and not on the GPU
+LayerState new_state(Layer layer);  // empty and not on the GPU
 
 struct JournalContents {
   std::int64_t last_sequence = 0;
   std::vector<LayerState> layers;  // with mirrors, without handles
-  // by layer: the tiles that differ from `held`
+  // By layer: the tiles that differ from `held`.
   std::map<LayerId, std::vector<TileAddress>> differing;
 };
 Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held);
 
-// with mirrors, without handles
+// The result has mirrors, but no handles.
 Result<LayerState> read_layer_state(store::Store& store, Layer layer);
 
-// Returns the model's mesh and its coarser copies.
+// Returns the mesh of the model and its coarser copies.
 Result<render::ModelGeometry> read_geometry(store::Store& store, ModelId model_id);
 
 struct GpuContents {
   render::ModelHandle model = 0;
   std::map<LayerId, LayerHandles> layers;  // by id
 };
-// Uploads a model and its layers, from their mirrors: all or nothing.
+// Uploads a model, and its layers from their mirrors. On failure, uploads nothing.
 Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
                              const std::vector<LayerState>& layers);
 Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,
                                       std::shared_ptr<const TileMirror> mirror);
-// Adds a layer and the mask of its texels that wait for review: both or neither.
+// Adds a layer and the mask of its texels that wait for review. On failure, adds neither.
 Result<LayerHandles> add_layer(render::Renderer& renderer, render::ModelHandle model,
                                const LayerState& layer);
 void remove_layer(render::Renderer& renderer, const LayerHandles& handles);

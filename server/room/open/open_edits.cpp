@@ -18,7 +18,7 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
         fail(ErrorCode::unavailable, "Server is stopping",
              "The server is saving its edits and will then stop. Send the edit again when it is "
              "running again."));
-  // Count before posting: the queue of the strand has no limit.
+  // Counts before posting, because the queue of the strand has no limit.
   if (++room_.unanswered_ > room_.services_.options.max_waiting_edits) {
     --room_.unanswered_;
     return saved(fail(ErrorCode::too_many_requests, "Too many edits",
@@ -31,7 +31,7 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
           --room->unanswered_;
           return saved(tl::unexpected(free.error()));
         }
-        // The callback keeps the room alive until the answer.
+        // The callback keeps the room alive until the edit has a result.
         room->pipeline_->edit(std::move(request), std::move(applied),
                               [room, saved = std::move(saved)](Result<EditAnswer> answer) {
                                 --room->unanswered_;
@@ -40,8 +40,8 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
       });
 }
 
-// Runs in the order of edits: the deletion of a record changes its texels only after every accepted
-// edit.
+// Runs in the order of edits, because the deletion of a record changes its texels only after every
+// accepted edit.
 Result<void> OpenRoom::EditsPart::check_not_retired(const EditRequest& request) const {
   const LayerState* state = room_.find_layer(request.layer_id);
   if (!state || !state->layer.table ||

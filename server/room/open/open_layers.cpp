@@ -1,5 +1,5 @@
-// The layers of an open room. Each change is written to the database first, or not made at all; a
-// change of their content runs in the order of edits.
+// The layers of an open room. A change takes effect only after the database has stored it. A change
+// to the content of layers runs in the order of edits.
 #include "room/open/open_layers.h"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ Result<Layer> OpenRoom::LayersPart::create(Layer layer,
   layer.model_id = room_.model_id_;
   STRATA_TRY(check_layer(layer, room_.model()));
   auto created = room_.exclusively<Layer>([this, layer, answer, columns]() -> Result<Layer> {
-    // The GPU first: if it refuses the layer, the database stays unchanged.
+    // The GPU comes first. If it refuses the layer, the database stays unchanged.
     LayerState state = new_state(layer);
     auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
     if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
@@ -84,8 +84,8 @@ Result<Layer> OpenRoom::LayersPart::update(Layer layer,
     lock_falls = updated.locked && before && !before->layer.locked;
     return replace(updated);
   });
-  // The answer to a lock comes when the edits in progress are durable: after it, no edit follows.
-  // If the database is unreachable, these edits cannot be saved; the lock stays.
+  // The lock is confirmed when the edits in progress are durable, so no edit follows the
+  // confirmation. If the database is unreachable, these edits cannot be saved, but the lock stays.
   if (lock_falls)
     if (const auto still = room_.settle(); !still)
       log::warning("a layer was locked while its edits could not be saved: " +
@@ -136,10 +136,10 @@ void OpenRoom::LayersPart::outdate(const std::function<bool(const LayerFormula&)
 void OpenRoom::LayersPart::records_changed(TableId table_id) {
   room_.record_colors_->records_changed(table_id);
   room_.record_features_->records_changed(table_id);
-  // Layers that take their colors from the terms of the table.
+  // Updates the layers that take their colors from the terms of the table.
   for (const Layer& layer : room_.layer_list()) {
     if (!layer.palette_of_terms || layer.table != table_id) continue;
-    // A layer that was deleted, or cannot be read now, keeps its colors.
+    // A layer that was deleted, or that cannot be read at present, keeps its colors.
     if (auto stored =
             room_.services_.store.layers().find(room_.model_id_, to_string(layer.id), Role::owner))
       run_on(room_.strand_, [&] { return replace(*stored); });
@@ -175,7 +175,8 @@ Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
                 "type");
   return room_.exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
     const auto held = STRATA_TRY(room_.state(to_string(layer.id)));
-    // The GPU first, as for a new layer. No edit is pending: the mirror equals the journal.
+    // The GPU comes first, as for a new layer. No edit is pending, so the mirror equals the
+    // journal.
     TileMirror::Snapshot content = held.mirror->snapshot();
     for (auto& [address, tile] : content.tiles)
       tile = std::make_shared<const TileData>(widened(*tile, type));
@@ -220,7 +221,8 @@ Result<void> OpenRoom::LayersPart::put_in_trash(LayerId id,
 
 Result<void> OpenRoom::LayersPart::unload(LayerId id,
                                           const std::function<Result<void>()>& in_store) {
-  // In the order of edits: no edit of the layer may be on its way to a journal that has deleted it.
+  // Runs in the order of edits, because no edit of the layer may reach a journal that has deleted
+  // the layer.
   return room_.exclusively<void>([this, id, in_store]() -> Result<void> {
     STRATA_TRY(in_store());
     run_on(room_.strand_, [&] {
@@ -249,12 +251,12 @@ Result<void> OpenRoom::LayersPart::unload(LayerId id,
 
 Result<store::TrashRestored> OpenRoom::LayersPart::restore(
     const store::TrashEntry& entry, const store::IdempotentResponse<store::TrashRestored>& answer) {
-  // In the order of edits: the sequences of the journal must not change.
+  // Runs in the order of edits, because the sequences of the journal must not change.
   auto restored = room_.exclusively<store::TrashRestored>(
       [this, entry, answer]() -> Result<store::TrashRestored> {
         auto back = STRATA_TRY(room_.services_.store.trash().restore(entry, answer));
         if (auto known = load(LayerId(entry.id)); !known) {
-          // The layer exists in the database: the room reads everything again until it has the
+          // The layer exists in the database, so the room reads everything again until it has the
           // layer.
           log::warning("layer " + std::to_string(entry.id) +
                        " was restored and could not be loaded: " + known.error().detail);
@@ -282,7 +284,7 @@ Result<void> OpenRoom::LayersPart::load(LayerId id) {
     room_.participants_part_->tell_layer(std::nullopt, state.layer);
     room_.participants_part_->styles_changed();
   });
-  // Layers that are computed from it may be up to date again.
+  // Layers that are computed from the restored layer may be up to date again.
   for (const Layer& other : room_.layer_list()) {
     if (!other.formula || std::ranges::none_of(other.formula->inputs, [&](const auto& input) {
           return input.layer == id;

@@ -31,14 +31,14 @@ class OpenRoom::LayersPart final : public Layers {
   Result<void> check_expression(const Expression& expression, const std::string& field,
                                 Visibility layer) const override;
 
-  // On the strand: marks computed layers that match `reads` as stale, and notifies listeners.
+  // Marks computed layers that match `reads` as stale, and notifies listeners. Runs on the strand.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);
 
  private:
-  // on the strand: replaces the layer here by the stored one, and notifies listeners
+  // Replaces the layer of the room by the stored one, and notifies listeners. Runs on the strand.
   Layer replace(const Layer& stored);
   Result<void> unload(LayerId id, const std::function<Result<void>()>& in_store);
-  // of a restored layer; runs exclusively, as in `exclusively`
+  // Loads a restored layer. Must run within `exclusively`.
   Result<void> load(LayerId id);
 
   OpenRoom& room_;

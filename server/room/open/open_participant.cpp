@@ -65,7 +65,7 @@ OpenParticipant::Appearance OpenParticipant::appearance(std::uint32_t view_id, V
         state.layer.blend};
     if (past) {
       const auto then = past->layers.find(state.layer.id);
-      if (then == past->layers.end()) continue;  // its state is being read
+      if (then == past->layers.end()) continue;  // its past state is being read
       shown.layer = then->second->handle;
     }
     add_styles(shown, past ? std::nullopt : state.waiting(), style.layers);
@@ -154,7 +154,7 @@ Result<void> OpenParticipant::show(std::uint32_t view_id, ViewSettings settings)
   for (auto& own : settings.layers) {
     if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
     if (own.highlight) {
-      // An unchanged highlight keeps its object, so that its records are not searched again.
+      // An unchanged highlight keeps its object, so its records are not searched again.
       const auto known = before.find(own.layer_id);
       v->highlights[own.layer_id] =
           known != before.end() && *known->second == *own.highlight
@@ -170,7 +170,7 @@ Result<void> OpenParticipant::show(std::uint32_t view_id, ViewSettings settings)
   else if (!v->past)
     v->past = room_->past_layers().new_place();
   restyle(view_id, *v);
-  // Edits did not reach the view while it showed the past.
+  // The view did not receive edits while it showed the past.
   if (returns) v->viewer->changed_everywhere(room_->edits().sequence());
   return {};
 }

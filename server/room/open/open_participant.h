@@ -19,7 +19,7 @@ namespace strata::room {
 class OpenRoom;
 struct LayerState;
 
-// One connection of a user: their views, and the settings of each view.
+// One connection of a user, with its views and the settings of each view.
 class OpenParticipant final : public Participant {
  public:
   OpenParticipant(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait, Listener* listener,
@@ -48,29 +48,30 @@ class OpenParticipant final : public Participant {
   struct View {
     std::shared_ptr<stream::Viewer> viewer;
     std::map<LayerId, LayerView> overrides;
-    // Of overrides, by layer.
+    // The palettes and highlights of the overrides, by layer.
     std::map<LayerId, std::shared_ptr<const Palette>> palettes;
     std::map<LayerId, std::shared_ptr<const Highlight>> highlights;
-    std::map<LayerId, std::shared_ptr<const Palette>>
-        by_record;                      // last made from records, drawn until the next is ready
-    std::vector<LayerFeatures> marked;  // source of `features`
+    // The palettes that were last made from records. Each is drawn until the next one is ready.
+    std::map<LayerId, std::shared_ptr<const Palette>> by_record;
+    std::vector<LayerFeatures> marked;  // the source of `features`
     render::FeaturesShown features;
     std::set<std::shared_ptr<const Error>> reported;  // reasons why a palette cannot be made
     std::optional<std::vector<SurfaceImageView>> images;
     Light light;
     Background background;
     At at;
-    std::shared_ptr<PastLayers::Place> past;  // not null while `at` is set
+    std::shared_ptr<PastLayers::Place> past;  // not null if `at` is set
   };
   View* view(std::uint32_t view_id, bool make);
   void restyle(std::uint32_t view_id, View& view) const;
-  // A picture of the model, and the edit after which it shows the model; nothing: the newest.
+  // The style of a frame, and the edit after which the frame shows the model. nullopt: the newest
+  // state.
   struct Appearance {
     render::ViewStyle style;
     At at;
   };
   Appearance appearance(std::uint32_t view_id, View& view) const;
-  // The moment that the view shows; null: the newest state.
+  // Returns the moment that the view shows. Null: the newest state.
   std::shared_ptr<const PastMoment> moment(std::uint32_t view_id, View& view,
                                            const std::vector<LayerState>& shown) const;
   std::shared_ptr<const Palette> palette(std::uint32_t view_id, View& view,
@@ -85,7 +86,7 @@ class OpenParticipant final : public Participant {
   mutable std::mutex mutex_;
   std::map<std::uint32_t, View> views_;
   std::optional<Pointing> pointer_;
-  std::optional<Camera> camera_;  // of view 0, without its section
+  std::optional<Camera> camera_;  // camera of view 0 without its section
   bool leading_ = false;
 };
 

@@ -25,20 +25,20 @@ class OpenRoom::ParticipantsPart final : public Participants {
                                     stream::SendFrames send) override;
   std::vector<Presence> presence(const Uuid& receiver) const override;
 
-  // --- for each of them
+  // --- for each participant
   void leave(OpenParticipant* participant);
   void announce_presence();
-  // Replaces the former leader; nothing: follow nobody. Refused (not_found): no participant has
-  // that session; other refusals as in Followers.
+  // Replaces the former leader. nullopt: the follower has no leader. Returns the error `not_found`
+  // if no participant has that session, and the same errors as Followers.
   Result<void> follow(const Uuid& follower, const std::optional<Uuid>& leader);
-  void camera_moved(const Uuid& session);  // notifies its followers
+  void camera_moved(const Uuid& session);  // notifies the followers of the session
 
   // --- for the room
-  void tell(const std::function<void(Listener&)>& tell);  // every listener
-  // listeners who see the layer
+  void tell(const std::function<void(Listener&)>& tell);  // notifies every listener
+  // Notifies the listeners who see the layer.
   void tell_seen(const Layer& layer, const std::function<void(Listener&)>& tell);
-  // Listeners who begin to see the layer are notified of its creation, those who no longer see it
-  // of its deletion. `before`: nothing for a new layer.
+  // Sends a creation to listeners who begin to see the layer, and a deletion to listeners who no
+  // longer see it. `before` is nullopt for a new layer.
   void tell_layer(std::optional<Visibility> before, const Layer& layer);
   void tell_unsaved(const std::vector<Listener::Edit>& edits, const Error& why);
   void content_changed(LayerId layer_id, const std::optional<render::FrameRequest::Box>& box,
@@ -50,7 +50,7 @@ class OpenRoom::ParticipantsPart final : public Participants {
 
  private:
   OpenRoom& room_;
-  // recursive: a listener may read the presence during a notification
+  // Recursive, because a listener may read the presence during a notification.
   mutable std::recursive_mutex mutex_;
   std::vector<OpenParticipant*> here_;
   std::size_t left_ = 0;

@@ -1,4 +1,4 @@
-// Rendered pictures for scripts: each is drawn once, in a separate view.
+// Images for scripts. Each image is drawn once, in a separate view.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,15 +14,16 @@
 namespace strata::room {
 namespace {
 
-// Larger pictures are drawn in bands of about this many pixels: a tenth of a second on a CPU, 32 MB
-// of buffers of a view.
+// Larger images are drawn in bands of about this many pixels. A band needs a tenth of a second on a
+// CPU, and 32 MB for the buffers of a view.
 constexpr int kPixelsOfBand = 1 << 21;
-// Rows of the window above and below a band that are drawn with it and left out: a pixel depends on
-// its neighbors (outlines), and drawn features are wider than their line.
+// Rows of the window above and below a band. They are drawn with the band and then left out. They
+// are necessary because a pixel depends on its neighbors (outlines), and drawn features are wider
+// than their line.
 constexpr int kRowsAround = 16;
 constexpr int kRowsEncoded = 32;
 
-// Removes the GPU objects of a picture, also on failure.
+// Removes the GPU objects of an image, also on failure.
 struct Borrowed {
   render::Renderer& renderer;
   render::ViewHandle view = 0;
@@ -42,7 +43,7 @@ Result<std::vector<std::uint8_t>> Pictures::draw_file(const PictureRequest& requ
   const PicturePart part{camera};
   auto seen = draw(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
     if (!writer) writer.emplace(format, band.width, band.height, jpeg);
-    // Encode a few rows at a time, so that other questions are computed in between.
+    // Encodes a few rows at a time, so the server can work on other questions in between.
     const std::size_t row = band.rgba.size() / static_cast<std::size_t>(band.rows);
     const QuestionTurn turn;
     for (int top = 0; top < band.rows; top += kRowsEncoded) {
@@ -116,7 +117,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& picture,
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
     add_styles(style, waiting, request.style.layers);
     if (!item.layer.table) continue;
-    // After the newest edit, the present records apply, also those that changed since.
+    // For the newest edit, the present records apply, including later changes to them.
     const bool is_past = picture.at && *picture.at < room_.durable_;
     auto features = is_past ? room_.record_features_->when(*item.layer.table, sight, *picture.at)
                             : room_.record_features_->newest(*item.layer.table, sight);
@@ -156,7 +157,7 @@ Result<void> OpenRoom::PicturesPart::draw_in_bands(render::FrameRequest request,
         ErrorCode::invalid, "Size out of range",
         "Each side of a picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels long.",
         "width");
-  // Bands are whole rows of the camera's window, so that each band has a window of whole rows.
+  // Bands consist of whole rows of the camera's window, so the window of each band has whole rows.
   const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
   const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));
   const int step = is_large ? std::clamp(most, 1, camera.height) : camera.height;

@@ -10,7 +10,7 @@
 
 namespace strata::room {
 
-// Draws each picture once, in a separate view.
+// Draws each image once, in a separate view.
 class OpenRoom::PicturesPart final : public Pictures {
  public:
   explicit PicturesPart(OpenRoom& room) : room_(room) {}
@@ -25,7 +25,7 @@ class OpenRoom::PicturesPart final : public Pictures {
                                                     At at) override;
 
  private:
-  // `request` has all but the camera and the size.
+  // Draws one image. The camera and the size in `request` are not set.
   Result<void> draw_in_bands(render::FrameRequest request, const PicturePart& part,
                              std::size_t number, const SeePicture& see);
 

@@ -1,5 +1,5 @@
-// Questions to an open model, answered from mirrors and maps in main memory, in parallel to
-// painting.
+// Questions to an open model. They are answered from mirrors and maps in main memory, in parallel
+// with painting.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -25,7 +25,7 @@
 namespace strata::room {
 namespace {
 
-// Returns a mask's surface texels, one word for each slot.
+// Returns the surface texels of a mask, as one word for each slot.
 query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMap& map) {
   query::TexelSelection selection(map.block_of_slot.size(), 0);
   for (const auto& [address, mask] : masks)
@@ -41,7 +41,7 @@ query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMa
   return selection;
 }
 
-// Returns whether nothing is painted on the layer: then the answer does not need the surface.
+// Returns whether nothing is painted on the layer. Then the answer does not need the surface.
 bool is_empty(const query::LayerView& view) {
   return std::ranges::none_of(view.snapshot.tiles,
                               [](const auto& tile) { return tile.second != nullptr; });
@@ -131,8 +131,8 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::texels_withi
                             static_cast<float>(around.radius));
 }
 
-// The state of a layer that is far back differs in few tiles from a near one: the journal reads
-// only these.
+// The journal reads only the tiles that differ from a state near the requested one. Even for a
+// layer far in the past, these are few.
 Result<OpenRoom::QueriesPart::ChangedLayer> OpenRoom::QueriesPart::changed_layer(
     const std::string& slug, const ChangedSequences& last) {
   const auto found = STRATA_TRY(room_.state(slug));
@@ -190,8 +190,8 @@ Result<std::vector<std::optional<query::TexelSelection>>> OpenRoom::QueriesPart:
   return selected;
 }
 
-// A condition is evaluated only within the place and the changed texels, so that a small place is
-// answered quickly.
+// Evaluates the condition only within the area and the changed texels, so a small area needs little
+// time.
 Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texels(
     const Selection& selection, const mesh::SurfaceMap& map, const query::TexelSelection* changed) {
   auto inside = texels_within(selection, map);
@@ -210,7 +210,7 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texel
       candidates.push_back({layer, {}});
     }
   const std::vector<std::string> named = layers_of(*selection.where);
-  // The evaluator refuses layers that do not exist, with the field.
+  // The evaluator rejects layers that do not exist, and names the field.
   std::erase_if(slugs,
                 [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
   const auto views = STRATA_TRY(room_.layer_views(slugs, selection.at));
@@ -278,7 +278,7 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
     std::optional<query::TexelSelection> texels;
     const query::TexelSelection* within() const { return texels ? &*texels : nullptr; }
   };
-  std::map<int, Selected> of_resolution;  // layers of one resolution share it
+  std::map<int, Selected> of_resolution;  // the selection for each resolution, shared by its layers
   std::set<int> resolutions{area.resolution};
   for (const auto& view : views) resolutions.insert(view.layer.resolution);
   std::vector<std::shared_ptr<const mesh::SurfaceMap>> maps;

@@ -13,7 +13,7 @@
 
 namespace strata::room {
 
-// Answers from mirrors and maps in main memory, in parallel to painting.
+// Answers questions from mirrors and maps in main memory, in parallel with painting.
 class OpenRoom::QueriesPart final : public Queries {
  public:
   explicit QueriesPart(OpenRoom& room) : room_(room) {}
@@ -48,13 +48,13 @@ class OpenRoom::QueriesPart final : public Queries {
     std::shared_ptr<const mesh::TexelGraph> graph;
   };
   Result<LayerGraph> layer_graph(const std::string& layer, At at);
-  // Contents of the layers of Selection::Changed then and later; only what they do not share takes
-  // memory of its own.
+  // The earlier and later content of a layer in Selection::Changed. Only the tiles that differ need
+  // additional memory.
   struct ChangedLayer {
     Layer layer;
     TileMirror::Snapshot from, to;
   };
-  // The last edit of each layer up to the two states.
+  // The last edit of each layer before or at the two states.
   struct ChangedSequences {
     std::map<LayerId, std::int64_t> from, to;
   };
@@ -62,20 +62,20 @@ class OpenRoom::QueriesPart final : public Queries {
   // Returns a selection for each map. Reads one layer at a time, once for all maps.
   Result<std::vector<query::TexelSelection>> changed_texels(
       const Selection::Changed& states, std::span<const mesh::SurfaceMap* const> maps);
-  // Returns nothing for the whole surface.
+  // Returns nullopt for the whole surface.
   Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
-  // The same for each map.
+  // The same, for each map.
   Result<std::vector<std::optional<query::TexelSelection>>> select_texels(
       const Selection& selection, std::span<const mesh::SurfaceMap* const> maps);
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
-  // `changed`: null if the selection does not ask for changes.
+  // `changed` is null if the selection does not depend on changes.
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,
                                                              const mesh::SurfaceMap& map,
                                                              const query::TexelSelection* changed);
-  // `within` is null for the whole surface; `is_now`: the view is the newest, whose sums are
-  // cached.
+  // `within` is null for the whole surface. `is_now` is true if the view is the newest state, whose
+  // sums are cached.
   Result<query::Statistics> count(const query::LayerView& view, const mesh::SurfaceMap& map,
                                   const query::TexelSelection* within, bool is_now,
                                   const StatisticsOptions& options);

@@ -75,7 +75,8 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   const auto restyle = [weak = std::weak_ptr<OpenRoom>(room)] {
     auto open = weak.lock();
     if (!open) return;
-    const Strand strand = open->strand_;  // not on the GPU thread
+    // This is the GPU thread, and styles_changed must run on the strand.
+    const Strand strand = open->strand_;
     boost::asio::post(strand,
                       [open = std::move(open)] { open->participants_part_->styles_changed(); });
   };
@@ -101,7 +102,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
                           services.readers, room->strand_, room->maps_, room->surface_lookup_,
                           services.memory},
       *room, journal->last_sequence);
-  // Painting needs the maps of the existing layers; bake them in the background.
+  // Painting needs the maps of the existing layers, so they are baked in the background.
   for (const auto& state : room->layer_states())
     room->maps_->request(state.layer.resolution, [](auto) {});
   return room;
@@ -155,7 +156,7 @@ std::optional<TileMirror::Snapshot> OpenRoom::durable_tiles(const Layer& layer) 
   const auto state = layer_state(layer.id);
   if (!state || state->mirror->type() != layer.type) return std::nullopt;
   auto newest = state->mirror->snapshot();
-  // The journal may still refuse its last edits.
+  // The journal may still reject the last edits of this state.
   if (newest.sequence > durable_) return std::nullopt;
   return newest;
 }
@@ -204,7 +205,7 @@ Result<Model> OpenRoom::update_model(Model model, const store::IdempotentRespons
       model_ = updated;
     }
     participants_part_->tell([&](Listener& l) { l.model_changed(updated); });
-    participants_part_->styles_changed();  // patterns are spaced in millimeters
+    participants_part_->styles_changed();  // the spacing of patterns is in millimeters
   });
   return updated;
 }

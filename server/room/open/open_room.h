@@ -36,28 +36,28 @@
 
 namespace strata::room {
 
-// Objects that all rooms share.
+// The objects that all rooms share.
 struct RoomServices {
   store::Store& store;
   store::JournalWriter& writer;
   render::Renderer& renderer;
   stream::StreamContext stream;
-  boost::asio::thread_pool& strands;  // room strands run here: short work that does not wait
-  boost::asio::thread_pool& workers;  // bakes, history, loading: long work
-  MemoryLedger& memory;               // of the rooms' data, without the GPU's
-  // questions to the journal before each edit: they wait for the database only
+  boost::asio::thread_pool& strands;  // run the strands of rooms: short work that does not wait
+  boost::asio::thread_pool& workers;  // run long work: baking, history, loading
+  MemoryLedger& memory;               // budget for the data of the rooms, without data on the GPU
+  // Read from the journal before each edit. They wait only for the database.
   boost::asio::thread_pool& readers;
   const RetiredKeys& retired_keys;
   RoomOptions options;
 };
 
-// The implementation of a room: its state, its lifetime, and its recovery. Its services are in its
-// parts, each in separate files of this folder.
+// The implementation of a room: its state, its lifetime, and its recovery. The parts of the room
+// provide its services. Each part has its own files in this folder.
 class OpenRoom final : public Room,
                        public PipelineHost,
                        public std::enable_shared_from_this<OpenRoom> {
  public:
-  // Loads everything; blocks.
+  // Loads all data. Blocks.
   static Result<std::shared_ptr<OpenRoom>> open(const RoomServices& services,
                                                 const std::string& model_ref);
   OpenRoom(const RoomServices& services, Model model, render::ModelGeometry geometry);
@@ -97,21 +97,22 @@ class OpenRoom final : public Room,
 
   // --- for Rooms
   void gpu_lost();
-  bool is_idle(std::chrono::steady_clock::time_point now) const;  // empty for `close_after`
+  // Returns whether the room has been empty for `close_after`.
+  bool is_idle(std::chrono::steady_clock::time_point now) const;
   void touch();
   std::size_t participant_count() const;  // number of connections
   std::size_t take_leave_count();         // number of connections that left since the last call
   const SurfaceMaps& maps() const { return *maps_; }
-  // drops past states that no view shows, or the map that was unused for the longest time, while
-  // nothing is being painted. Blocks
+  // Drops past states that no view shows, or else the texel graphs. If there is neither, drops the
+  // map that was unused for the longest time, but only while nothing is being painted. Blocks.
   bool drop_map();
-  // Releases maps of very fine layers that were unused for a while.
+  // Drops maps of very fine layers that were unused for a while.
   bool drop_large_unused_maps(std::chrono::steady_clock::time_point now);
-  void take_no_edits() { takes_edits_ = false; }          // new edits are refused
+  void take_no_edits() { takes_edits_ = false; }          // refuses new edits
   bool has_no_edits() const { return unanswered_ == 0; }  // every edit is durable or refused
-  // refuses waiting and later edits, releases the GPU objects; blocks
+  // Refuses waiting and later edits, and releases the GPU objects. Blocks.
   void close(const Error& why);
-  void close_deleted();  // after a deletion of the model: notifies listeners first
+  void close_deleted();  // call after the model was deleted; notifies listeners first
   ModelId id() const { return model_id_; }
 
  private:
@@ -122,22 +123,22 @@ class OpenRoom final : public Room,
   class PicturesPart;
   class SurfaceImagesPart;
 
-  // Runs `work` on a worker when every earlier edit is durable. During it, no edit and no recovery
-  // starts. Blocks.
+  // Runs `work` on a worker when every earlier edit is durable. No edit and no recovery starts
+  // while it runs. Blocks.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);
-  // recovery.cpp
+  // Defined in recovery.cpp.
   void recover();
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
   void on_journal_read(Result<JournalContents> contents);
   void retry_recovery(const Error& why);
-  // as in gpu_problem.h, unless the room is closed
+  // As in gpu_problem.h, unless the room is closed.
   Error gpu_problem(const Error& why) const;
-  std::uint64_t mirror_bytes() const;  // with `mutex_` held
+  std::uint64_t mirror_bytes() const;  // call while holding `mutex_`
   std::shared_ptr<const mesh::ContactShadow> make_contact_shadow(const std::string& up) const;
   std::vector<Layer> layer_list() const;
   Result<LayerState> state(const std::string& ref) const;
-  // Refused (invalid, `at`): a sequence that is not durable yet.
+  // Returns an error (invalid, at `at`) for a sequence that is not durable yet.
   Result<void> check_durable(At at) const;
   std::optional<TileMirror::Snapshot> durable_tiles(const Layer& layer) const;
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
@@ -148,7 +149,7 @@ class OpenRoom final : public Room,
   const RoomServices services_;
   const ModelId model_id_;
   const std::shared_ptr<const mesh::Geometry> geometry_;
-  // copies of it, for moving cameras
+  // Coarser copies of the mesh, for moving cameras.
   const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;
   const Strand strand_;
   const std::shared_ptr<SurfaceMaps> maps_;
@@ -159,23 +160,23 @@ class OpenRoom final : public Room,
   const std::shared_ptr<SurfaceLookup> surface_lookup_;
   std::shared_ptr<EditPipeline> pipeline_;
 
-  // Changed on the strand, under `mutex_`: the strand may read without it, other threads must hold
-  // it.
+  // Changed on the strand while holding `mutex_`. The strand may read without the mutex, and other
+  // threads must hold it.
   mutable std::mutex mutex_;
   Model model_;
   std::map<LayerId, LayerState> layers_;
   MemoryLedger::Share geometry_share_, mirrors_share_;
   render::ModelHandle model_handle_ = 0;
   std::shared_ptr<const mesh::ContactShadow> contact_shadow_;  // for `model_.up`
-  std::chrono::steady_clock::time_point last_used_;            // under `mutex_` everywhere
-  std::optional<Error> closed_;  // reason, once closed; under `mutex_`
-                                 // everywhere
+  std::chrono::steady_clock::time_point last_used_;            // all threads must hold `mutex_`
+  // The reason why the room is closed. All threads must hold `mutex_`.
+  std::optional<Error> closed_;
 
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
-  std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them
+  std::atomic<std::size_t> unanswered_{0};  // edits, and changes to layers that wait for edits
   std::atomic<bool> takes_edits_{true};
 
-  struct Recovery {  // on the strand
+  struct Recovery {  // used on the strand
     static constexpr std::chrono::milliseconds kFirstRetry{250}, kLastRetry{8000};
     explicit Recovery(const Strand& strand) : timer(strand) {}
     bool gpu_lacks_all = false;

@@ -1,5 +1,5 @@
-// Painting by maps and measurements: the tiles depend on the shape alone, not on the content of the
-// layer.
+// Painting from maps and measurements. The tiles depend only on the shape, and not on the content
+// of the layer.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "domain/layers/mask_texels.h"
@@ -12,8 +12,8 @@
 namespace strata::room {
 namespace {
 
-constexpr int kProjectionSide_px = 4096;  // of the depth buffer that finds the first visible
-                                          // surface
+// Side of the depth buffer that determines the first visible surface.
+constexpr int kProjectionSide_px = 4096;
 
 TileMap as_tile_map(std::map<TileAddress, TileData>&& written) {
   TileMap tiles;
@@ -22,7 +22,7 @@ TileMap as_tile_map(std::map<TileAddress, TileData>&& written) {
   return tiles;
 }
 
-// Returns a camera that sees all of the box, without perspective.
+// Returns a camera without perspective that sees all of the bounding box.
 Camera camera_along(const glm::dvec3& direction, const mesh::Geometry& geometry) {
   const glm::dvec3 low = glm::dvec3(geometry.box_min) + geometry.origin,
                    high = glm::dvec3(geometry.box_max) + geometry.origin;

@@ -1,7 +1,8 @@
-// Recovery of an open room: its copies on the GPU are made again after a lost context, and its
-// mirrors are read again when the journal contains more than they do. Both happen while the
-// pipeline is paused and no edit is in progress, so nothing else changes the layers. A failed
-// recovery is repeated until the room is closed; waiting edits are refused after each attempt.
+// Recovery of an open room. After a lost context, the room makes its copies on the GPU again. If
+// the journal contains more edits than the mirrors, the room reads the mirrors again. Both happen
+// while the pipeline is paused and no edit is in progress, so nothing else changes the layers. A
+// failed recovery is repeated until the room is closed. Waiting edits are refused after each
+// attempt.
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"
@@ -27,9 +28,9 @@ void OpenRoom::paused() { recover(); }
 void OpenRoom::recover() {
   if (recovery_.working || recovery_.closed) return;
   recovery_.timer.cancel();
-  if (recovery_.gpu_lacks_all) {  // first: viewing needs no database
+  if (recovery_.gpu_lacks_all) {  // comes first, because viewing needs no database
     recovery_.working = true;
-    services_.renderer.remove_model(model_handle());  // there may not be enough memory for both
+    services_.renderer.remove_model(model_handle());  // the memory may be too small for both
     boost::asio::post(
         services_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
           auto contents = fill_gpu(self->services_.renderer, {self->geometry_, self->coarser_},
@@ -65,18 +66,20 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
     for (auto& [id, state] : read) {
       auto known = layers_.find(id);
       if (known == layers_.end()) {
-        // made by a request whose answer was lost; rare enough to fill the GPU from the start
+        // The layer was made by a request whose response was lost. This is rare, so all data is
+        // uploaded again.
         recovery_.gpu_lacks_all = true;
         continue;
       }
       state.handles = known->second.handles;
-      // The GPU uses these mirror objects.
+      // The GPU uses these mirror objects, so they are updated in place.
       for (auto mirror : {&LayerState::mirror, &LayerState::provisional}) {
         auto tiles = (state.*mirror)->snapshot();
         (known->second.*mirror)->assign(std::move(tiles.tiles), tiles.sequence);
         state.*mirror = known->second.*mirror;
       }
-      if (known->second.layer.version > state.layer.version) {  // changed since it was read
+      // The layer has changed since it was read.
+      if (known->second.layer.version > state.layer.version) {
         const std::int64_t sequence = state.layer.sequence;
         state.layer = known->second.layer;
         state.layer.sequence = sequence;

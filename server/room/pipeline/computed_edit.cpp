@@ -13,9 +13,9 @@
 namespace strata::room {
 namespace {
 
-// The new state of edits. Empty members stay unchanged.
+// The new state of some edits. nullopt: this part of the state stays unchanged.
 struct Turn {
-  std::vector<std::int64_t> edits;  // ascending
+  std::vector<std::int64_t> edits;  // ascending sequences
   std::optional<bool> in_force, provisional;
 };
 

@@ -10,17 +10,17 @@
 
 namespace strata::room {
 
-// An edit that is computed from mirrors, and not painted by the GPU: fill, polygon, import, undo,
+// An edit that is computed from mirrors and not painted by the GPU: fill, polygon, import, undo,
 // redo, restore, review.
 struct ComputedEdit {
   std::vector<TileChange> changes;
-  std::vector<std::int64_t> disable, enable;  // edits that are no longer in force, or in force
-                                              // again
+  // Edits that are no longer in force, and edits that are in force again.
+  std::vector<std::int64_t> disable, enable;
   std::optional<store::JournalEntry::Reviewed> reviewed;
-  std::vector<std::string> authors;  // of the reviewed edits, by name
+  std::vector<std::string> authors;  // names of the authors of the reviewed edits
 };
 
-// Blocks: for worker threads. `layer` is the edited one.
+// Blocks. For worker threads. `layer` is the layer to edit.
 Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer,
                                   const RegionContext& context);
 

@@ -16,8 +16,9 @@
 namespace strata::room {
 namespace {
 
-constexpr int kStrokesInFlight = 8;  // keeps the GPU busy; more would only lengthen a rollback
-constexpr int kKeyTileEvery = 64;    // revisions of a tile between two key tiles
+// Keeps the GPU busy. A larger number would only make rollbacks longer.
+constexpr int kStrokesInFlight = 8;
+constexpr int kKeyTileEvery = 64;  // revisions of a tile between two key tiles
 constexpr auto kRepairPause = std::chrono::milliseconds(500);
 
 const char* op_name(const EditRequest& request) {
@@ -31,19 +32,19 @@ const char* op_name(const EditRequest& request) {
       request.edit);
 }
 
-// Undo, redo, reviews and restore read the journal, so every earlier edit must be in it.
+// Undo, redo, reviews and restore read the journal, so the journal must contain every earlier edit.
 bool reads_journal(const EditRequest& request) {
   return !paints(request) || std::holds_alternative<RestoreEdit>(request.edit);
 }
 
-// Returns whether the content is computed from other layers, too.
+// Returns whether the content also depends on other layers.
 bool reads_layers(const EditRequest& request) {
   if (std::holds_alternative<ComputeEdit>(request.edit)) return true;
   const auto* fill = std::get_if<FillEdit>(&request.edit);
   return fill && std::holds_alternative<FillEdit::Where>(fill->region);
 }
 
-// Returns the box of the surface under the changed tiles.
+// Returns the bounding box of the surface in the changed tiles.
 std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& changes,
                                                 const mesh::SurfaceMap& map) {
   render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()),
@@ -60,14 +61,15 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
   return box;
 }
 
-// The error for an id that another user's edit has: only the author of an edit gets its answer.
+// The error for an id that belongs to an edit of another user. Only the author of an edit may get
+// its result.
 Error taken_id() {
   return {ErrorCode::invalid, "Edit id already used",
           "Another edit of this model has this id. Use a new id for each edit.", "id"};
 }
 
-// Only computing writes a layer with an expression, until the layer is unlocked for editing by
-// hand; from then on, computing does not overwrite what was painted.
+// Only computations write a layer with an expression, until the layer is unlocked for editing by
+// hand. After that, computations do not overwrite painted texels.
 Result<void> check_formula(const Layer& layer, const EditRequest& request) {
   const auto* compute = std::get_if<ComputeEdit>(&request.edit);
   if (compute && !layer.formula)
@@ -131,11 +133,11 @@ void EditPipeline::when_idle(Work work) {
   step();
 }
 
-// --- looking up
+// --- look-up in the journal
 
-// Asks one question at a time, for all edits that have arrived. If `verify_` is set, also asks
-// whether the journal ends where the room expects it. If the last question had no answer, this is
-// asked only when an edit waits for it.
+// Sends one question at a time to the journal, for all edits that have arrived. If `verify_` is
+// set, also asks whether the journal ends at the sequence that the room expects. If the last
+// question failed, asks this only when an edit waits for it.
 void EditPipeline::ask_journal() {
   if (asking_) return;
   const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
@@ -155,8 +157,8 @@ void EditPipeline::ask_journal() {
                                      done = then([this, verifying](const State& state) {
                                        on_journal(verifying, state);
                                      })]() mutable {
-    // The pool waits for a database that restarts. One wait is enough: later callers get the error
-    // at once.
+    // The pool waits for a database that restarts. One wait is enough, so later callers get the
+    // error immediately.
     if (was_away && !store.ready())
       return done(
           State(fail(ErrorCode::unavailable, "Database unavailable",
@@ -171,8 +173,8 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   if (closed_) return;
   journal_away_ = !state;
   if (!state) {
-    // Refuse all edits that wait for the journal, not only those in the question: the edits of one
-    // stroke must stay in order.
+    // Refuses all edits that wait for the journal, not only those in the question, because the
+    // edits of one stroke must stay in order.
     std::deque<Waiting> all = std::exchange(waiting_, {});
     for (Waiting& item : all) {
       if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new))
@@ -182,10 +184,10 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
     }
     return;
   }
-  // A commit whose answer was lost may have happened: then the journal is right, and the room is
-  // behind it. Until the room contains everything in the journal, a repeat must not get the answer
-  // that its edit is saved, so all ids are asked again then. (The answer to a question from before
-  // `verify_` was set is not used.)
+  // A commit may have succeeded although its confirmation was lost. Then the journal is correct,
+  // and the room is behind it. Until the room contains everything in the journal, a repeated
+  // request must not get the result that its edit is saved. All ids are therefore sent to the
+  // journal again then. (If a question was sent before `verify_` was set, its result is not used.)
   if (verifying && state->last_sequence == durable_) verify_ = false;
   const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
   if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;
@@ -217,7 +219,7 @@ void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
   }
 }
 
-// --- starting
+// --- start of edits
 
 void EditPipeline::step() {
   roll_back_when_answered();
@@ -247,7 +249,7 @@ bool EditPipeline::start_front() {
   }
   if (front.lookup != Waiting::Lookup::is_new) return false;
   const LayerState* layer = host_->find_layer(front.request.layer_id);
-  // If the author no longer sees the layer, the answer is the same as for a deleted layer.
+  // An author who no longer sees the layer gets the same error as for a deleted layer.
   if (!layer || !sees(front.request.author.role, layer->layer.visibility)) {
     Waiting item = take();
     refuse(item, {ErrorCode::not_found, "Layer not found", "The layer was deleted.", "layer"});
@@ -367,7 +369,8 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
   });
 }
 
-// Applied only when the GPU has it: the next stroke is painted over the content of the mirror.
+// The edit is applied only after the upload, because the next stroke is painted over the content of
+// the mirror.
 void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
                                    Result<ComputedEdit> computed) {
   busy_ = false;
@@ -406,7 +409,7 @@ void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
   commit(item, *layer, std::move(computed), box);
 }
 
-// --- saving and rolling back
+// --- saving and rollback
 
 void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit computed,
                           const std::optional<render::FrameRequest::Box>& box) {
@@ -437,8 +440,8 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
         encode_revision(
             make_revision(change.address, *change.before, *change.after, change.written)),
         {}};
-    // The first revision of a tile in this room is stored with a key tile: chains stay short,
-    // however often rooms open and close.
+    // The first revision of a tile in this room is stored with a key tile. So chains of revisions
+    // stay short, even if rooms open and close often.
     auto [since, first] = since_key_tile.try_emplace(change.address, 0);
     if (first || ++since->second >= kKeyTileEvery) {
       revision.key_tile = encode_tile(*change.after);
@@ -547,7 +550,7 @@ void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
   answer(pending.event.id, pending.saved, pending.event.answer);
 }
 
-// No rollback while the room is paused: its reads and uploads must not see a change.
+// Does not roll back while the room is paused, because its reads and uploads must not see a change.
 void EditPipeline::roll_back_when_answered() {
   if (!failure_ || in_flight_ > 0 || busy_ || (paused_ && !closed_)) return;
   for (const Pending& pending : pending_)
@@ -575,10 +578,10 @@ void EditPipeline::roll_back_when_answered() {
     layer->mirror->put(before.tiles, before.sequence);
     put_provisional(*layer, before.provisional, before.sequence);
     host_->set_sequence(*layer, before.sequence);
-    since_key_tile_.erase(layer_id);  // unsaved edits may contain the key tiles
+    since_key_tile_.erase(layer_id);  // the key tiles may be in unsaved edits
     for (const auto& [address, data] : before.tiles) stale_[layer_id].insert(address);
   }
-  if (!closed_) repair();  // started before listeners are notified
+  if (!closed_) repair();  // starts before listeners are notified
   std::vector<Listener::Edit> events;
   for (const auto& pending : taken_back) events.push_back(pending.event);
   log::warning("undid " + std::to_string(events.size()) +
@@ -587,8 +590,8 @@ void EditPipeline::roll_back_when_answered() {
   for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
 }
 
-// Writes the content of the mirrors to the GPU where it may differ. Empty tiles come first: that
-// frees pages which the others may need.
+// Writes the content of the mirrors to the GPU where it may differ. Writes empty tiles first,
+// because they free pages that the other tiles may need.
 bool EditPipeline::repair() {
   std::erase_if(stale_, [&](const auto& entry) { return !host_->find_layer(entry.first); });
   if (stale_.empty()) return false;
@@ -626,7 +629,7 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
         host_->content_changed(*layer, std::nullopt, sequence_);
     return;
   }
-  if (paused_) return;  // a lost context: everything is uploaded again
+  if (paused_) return;  // the context was lost, so everything is uploaded again
   log::warning("tiles were not written to the GPU, trying again: " + failure->detail);
   refuse_waiting(gpu_problem(*failure));
   repair_waits_ = true;
@@ -663,7 +666,7 @@ void EditPipeline::answer(const Uuid& id, const Saved& saved, const Result<EditA
   }
 }
 
-// --- pausing, closing
+// --- pause and close
 
 void EditPipeline::pause() {
   paused_ = tell_paused_ = true;
@@ -671,7 +674,8 @@ void EditPipeline::pause() {
 }
 
 void EditPipeline::journal_read(std::int64_t last_sequence) {
-  sequence_ = durable_ = last_sequence;  // nothing is pending: the last rollback removed all edits
+  // No edit is pending, because the last rollback removed all pending edits.
+  sequence_ = durable_ = last_sequence;
   verify_ = false;
   since_key_tile_.clear();
 }

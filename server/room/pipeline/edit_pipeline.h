@@ -26,47 +26,48 @@
 
 namespace strata::room {
 
-// The room's functions that the pipeline uses. All calls are made on the strand.
+// The functions of the room that the pipeline uses. All calls are on the strand.
 class PipelineHost {
  public:
   virtual ~PipelineHost() = default;
   virtual LayerState* find_layer(LayerId id) = 0;
-  // of all layers, with the present content of their mirrors
+  // Returns all layers, with the present content of their mirrors.
   virtual std::vector<query::LayerView> layer_snapshots() = 0;
   virtual const Model& pipeline_model() const = 0;
   virtual render::ModelHandle model_handle() const = 0;
-  // called when the first texels of a layer begin to wait for review, or the last ones end to
+  // Called when the first texels of a layer begin to wait for review, and when no texels wait any
+  // longer.
   virtual void styles_changed() = 0;
-  // other threads may read the sequence
+  // Other threads may read the sequence.
   virtual void set_sequence(LayerState& layer, std::int64_t sequence) = 0;
   virtual void content_changed(const LayerState& layer,
                                const std::optional<render::FrameRequest::Box>& box,
-                               std::int64_t sequence) = 0;  // no box: everywhere
+                               std::int64_t sequence) = 0;  // without a box: everywhere
   virtual void edit_applied(const Listener::Edit& edit) = 0;
   virtual void edit_saved(const Listener::Edit& edit) = 0;
   virtual void edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) = 0;
-  // called when the journal differs from the room: the room must read it again. The host pauses the
-  // pipeline
+  // Called when the journal differs from the room, so the room must read the journal again. The
+  // host pauses the pipeline.
   virtual void journal_differs() = 0;
-  // called after a request to pause, when nothing is in progress
+  // Called after a request to pause, when nothing is in progress.
   virtual void paused() = 0;
 };
 
-// Orders the edits of one room. An edit is first looked up in the journal, which may contain it
-// from an earlier connection. Then strokes go to the GPU, several at a time, in sequence order;
-// edits that are computed from the tile mirror (fill, polygon, import, undo, restore) wait until
-// the earlier strokes are read back, and are applied when the GPU has them. The read-back is
-// compared with the mirror once: the difference becomes the journal's revision, the counts and the
-// change on screen.
+// Orders the edits of one room. First, the pipeline looks up an edit in the journal, which may
+// contain it from an earlier connection. Then it sends strokes to the GPU in the order of their
+// sequences, several at a time. Some edits are computed from the tile mirror (fill, polygon,
+// import, undo, restore). They wait until the earlier strokes are read back, and are applied when
+// the GPU has them. The pipeline compares the read-back with the mirror once. The difference
+// determines the revision in the journal, the counts, and the change on screen.
 //
-// The mirrors are always right: they contain the edits in the journal and those on the way to it.
-// The GPU may be behind them (`stale_`); it is updated before anything else starts.
+// The mirrors are always correct: they contain the edits in the journal and those on the way to it.
+// The GPU may be behind them (`stale_`), and is updated before any other work starts.
 //
-// The lock of a layer is enforced here, and only here: before an edit begins, the lock is checked
-// again, regardless of the edit's source and of the time of the lock. An edit in the journal keeps
-// its first answer, and an edit that has begun is completed.
+// Only the pipeline enforces the lock of a layer. It checks the lock again before each edit begins,
+// regardless of the source of the edit and the time of the lock. An edit in the journal keeps its
+// first result, and an edit that has begun is completed.
 //
-// Lives on the room's strand: every method is called there, and nothing there waits. `readers` and
+// Runs on the strand of the room: every method is called there, and no method waits. `readers` and
 // `workers` do the work that blocks (journal, history), and post their results to the strand.
 class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
  public:
@@ -84,10 +85,10 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence);
 
   void edit(EditRequest request, Applied applied, Saved saved);
-  // nothing is being painted or computed
+  // Returns whether nothing is being painted or computed.
   bool is_still() const { return in_flight_ == 0 && !busy_; }
-  // Calls `work` on a worker, where it may block, when every earlier edit is durable; nothing else
-  // runs at the same time. If that cannot happen, calls it with the reason, on the strand.
+  // Calls `work` on a worker, where it may block, when every earlier edit is durable. No other work
+  // runs at the same time. If this is not possible, calls `work` with the reason, on the strand.
   using Work = std::function<void(const Result<void>&)>;
   void when_idle(Work work);
 
@@ -96,52 +97,54 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // edit that is known to be in the journal.
   TileMap durable_provisional(const LayerState& layer) const;
 
-  // Starts nothing more, and notifies the host when nothing is in progress: then the layers'
-  // handles and mirrors may be changed. Journal entries may still be on their way, but no rollback
-  // happens before `resume`.
+  // Starts no more work, and notifies the host when no work is in progress. Then the handles and
+  // mirrors of the layers may be changed. Journal entries may still be on their way, but no
+  // rollback happens before `resume`.
   void pause();
-  void gpu_filled() {  // while paused: from the mirrors
+  // Call while paused, after all data was uploaded from the mirrors.
+  void gpu_filled() {
     stale_.clear();
     stale_marks_.clear();
   }
-  // While paused: the mirrors now contain the journal up to `last_sequence`; the GPU does not have
-  // `tiles` of a layer yet.
+  // Call while paused, when the mirrors contain the journal up to `last_sequence`. `gpu_lacks`
+  // lists tiles of a layer that the GPU does not have yet.
   void journal_read(std::int64_t last_sequence);
   void gpu_lacks(LayerId layer_id, const std::vector<TileAddress>& tiles);
   void resume();
 
   void refuse_waiting(const Error& why);
-  void close(const Error& why);  // the host is being destroyed: refuses waiting and later edits
+  // Call before the host is destroyed. Refuses waiting and later edits.
+  void close(const Error& why);
 
  private:
   struct Waiting {
-    EditRequest request;  // unused if there is `work`
+    EditRequest request;  // unused if `work` is set
     Applied applied;
     Saved saved;
-    // of `when_idle`, instead of an edit
+    // The work of `when_idle`, instead of an edit.
     Work work;
-    // is_new: its id is not in the journal
+    // is_new means that the journal does not contain the id.
     enum class Lookup { none, requested, is_new } lookup = Lookup::none;
-    // of the mirror, while the GPU is ahead of it
+    // Holds the mirror while the GPU is ahead of it.
     std::shared_ptr<const void> hold = {};
   };
-  // An applied edit on its way to the journal, with the data for a rollback.
+  // An applied edit that is not yet in the journal, with the data for a rollback.
   struct Pending {
     Listener::Edit event;
     std::vector<TileChange> changes;
-    TileMap provisional;  // the tiles of texels that waited for review, before the edit
+    TileMap provisional;  // tiles of the texels that waited for review before the edit
     std::int64_t layer_sequence_before = 0;
     Saved saved;
     bool answered = false;
   };
 
-  // --- looking up
+  // --- look-up in the journal
   void ask_journal();
   void on_journal(bool verifying, const Result<store::JournalState>& state);
   void on_known(const std::vector<store::JournalRow>& known);
-  // --- starting
+  // --- start of edits
   void step();
-  bool start_front();  // false: it has to wait
+  bool start_front();  // returns false if the edit has to wait
   void start_work(Work work);
   bool map_ready(int resolution);
   void start_stroke(Waiting item, const LayerState& layer);
@@ -149,55 +152,56 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void start_computed(Waiting item, const LayerState& layer);
   void upload_computed(const std::shared_ptr<Waiting>& item, Result<ComputedEdit> computed);
   void computed_uploaded(Waiting& item, ComputedEdit computed, const Result<void>& uploaded);
-  // --- saving and rolling back
+  // --- saving and rollback
   void commit(Waiting& item, LayerState& layer, ComputedEdit computed,
               const std::optional<render::FrameRequest::Box>& box);
-  // Null: no texel of the tile waits for review.
+  // A null tile means that no texel of the tile waits for review.
   void put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence);
   void on_saved(std::int64_t sequence, const Result<void>& result);
   void roll_back_when_answered();
-  bool repair();  // false: the GPU is up to date
+  bool repair();  // returns false if the GPU is up to date
   void repaired(const std::optional<Error>& failure);
   void refuse(Waiting& item, const Error& why);
   void answer(const Uuid& id, const Saved& saved, const Result<EditAnswer>& result);
 
-  // Returns a callback that, on the strand, passes its argument to `handler` and then calls `step`.
+  // Returns a callback. It passes its argument to `handler` and then calls `step`, both on the
+  // strand.
   template <class Handler>
   auto then(Handler handler);
 
   Parts parts_;
-  PipelineHost* host_;     // null when closed
+  PipelineHost* host_;     // null when the pipeline is closed
   std::int64_t sequence_;  // of the last edit in the mirrors
   std::int64_t durable_;   // of the last edit in the journal
   std::deque<Waiting> waiting_;
   bool asking_ = false;  // a question to the journal is in progress
-  // the last question had no answer: the next does not wait for the database
+  // The last question failed, so the next one does not wait for the database.
   bool journal_away_ = false;
   int in_flight_ = 0;  // strokes on the GPU
   bool busy_ = false;  // a computed edit, `when_idle` work or a repair is in progress
   bool waits_for_map_ = false;
   bool paused_ = false;
-  bool tell_paused_ = false;     // the host waits for `paused`
-  std::optional<Error> closed_;  // the answer to later edits
-  // nothing starts before the room was compared with the journal, which may contain more
+  bool tell_paused_ = false;     // the host waits for a call of `paused`
+  std::optional<Error> closed_;  // the error for later edits
+  // No work starts before the room was compared with the journal, which may contain more edits.
   bool verify_ = false;
-  // commits failed: all pending edits are rolled back once they are answered
+  // The reason why commits failed. All pending edits are rolled back when each one has a result.
   std::optional<Error> failure_;
-  std::deque<Pending> pending_;  // sequence order
-  std::map<LayerId, std::set<TileAddress>>
-      stale_;  // by layer: tiles where the GPU may differ from the mirror
-  // The same for texels that wait for review. The upload is repeated with the layer's next one, and
-  // does not delay edits.
+  std::deque<Pending> pending_;  // in the order of sequences
+  // By layer: the tiles where the GPU may differ from the mirror.
+  std::map<LayerId, std::set<TileAddress>> stale_;
+  // The same for texels that wait for review. The upload is repeated together with the next one of
+  // the layer, and does not delay edits.
   std::map<LayerId, std::set<TileAddress>> stale_marks_;
   boost::asio::steady_timer repair_timer_;
-  bool repair_waits_ = false;  // for the timer
-  // By layer: revisions since the last key tile was stored, in this room.
+  bool repair_waits_ = false;  // waiting for the timer
+  // By layer: the number of revisions since the last key tile was stored, in this room.
   std::map<LayerId, std::unordered_map<TileAddress, int>> since_key_tile_;
   struct Running {
     std::string user;
-    std::vector<Saved> followers;  // callers that repeated it
+    std::vector<Saved> followers;  // callers that repeated the request
   };
-  std::unordered_map<Uuid, Running> running_;  // waiting and pending edits
+  std::unordered_map<Uuid, Running> running_;  // by id: waiting and pending edits
 };
 
 }  // namespace strata::room

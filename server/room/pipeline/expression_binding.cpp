@@ -11,7 +11,7 @@
 namespace strata::room {
 namespace {
 
-// Returns the part where the text first names the layer, for the message.
+// Returns the part where the text first names the layer, for the error message.
 const Expression& first_name(const Expression& e) {
   if (e.is_column() || e.parts.empty()) return e;
   const Expression* first = &e;
@@ -28,8 +28,9 @@ bool has_layer(const std::vector<query::LayerView>& layers, const std::string& s
 
 constexpr std::array<std::string_view, 4> kPlaceNames{"x", "y", "z", "area"};
 
-// Returns names of `layers` for which `wrong` may be a typing mistake: their slugs, also for their
-// names, and those of the surface. `wet-dry` may be a subtraction without spaces.
+// Returns the names for which `wrong` may be a typing mistake: slugs of `layers` and values of the
+// surface. The name of a layer also leads to its slug. `wet-dry` may be a subtraction without
+// spaces.
 std::vector<std::string> similar_layers(const std::string& wrong,
                                         const std::vector<query::LayerView>& layers) {
   for (auto hyphen = wrong.find('-'); hyphen != std::string::npos;
@@ -56,7 +57,7 @@ std::vector<std::string> similar_layers(const std::string& wrong,
   return similar;
 }
 
-// The error for a layer that does not exist.
+// Returns the error for a layer that does not exist.
 Error unknown_layer(const std::string& name, Expression::Position position,
                     const std::vector<query::LayerView>& candidates, const std::string& field) {
   return expression_problem("This model has no layer '" + name.substr(0, 100) +
@@ -65,7 +66,7 @@ Error unknown_layer(const std::string& name, Expression::Position position,
                             similar_layers(name, candidates));
 }
 
-// The error for columns of a layer that does not exist.
+// Returns the error for columns of a layer that does not exist.
 Error no_record_layer(const query::RecordPart& part, const Expression& first,
                       const std::vector<query::LayerView>& candidates, const std::string& field) {
   std::vector<std::string> similar;
@@ -78,7 +79,8 @@ Error no_record_layer(const query::RecordPart& part, const Expression& first,
                             first.position, field, mistake::kUnknownLayer, std::move(similar));
 }
 
-// The part of an expression that reads the records of a layer does not contain the layer's name.
+// Adds the name of the layer to the suggestions, because the part of an expression that reads
+// records does not contain it.
 Error with_layer(Error problem, const std::string& slug) {
   if (problem.reason == mistake::kUnknownColumn)
     for (std::string& path : problem.suggestions)
@@ -86,7 +88,8 @@ Error with_layer(Error problem, const std::string& slug) {
   return problem;
 }
 
-// Replaces names of layers that do not exist by the names of the surface.
+// Replaces the names of surface values by the values. Rejects other names of layers that do not
+// exist.
 Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& layers,
                           const std::vector<query::LayerView>& candidates,
                           const std::string& field) {

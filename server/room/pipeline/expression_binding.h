@@ -14,34 +14,35 @@
 
 namespace strata::room {
 
-// Names of surface values in a formula, for names that are not layers: `x y z` (world, model units)
-// and `area` (of the texel, m²) everywhere; values that need the whole mesh (kShapeNames) only if
-// they are given as a layer `surface.…`.
+// Names in a formula that are not layers refer to surface values. `x y z` (world, model units) and
+// `area` (of the texel, m²) are always available. Values that need the whole mesh (kShapeNames) are
+// only available if they are given as a layer `surface.…`.
 inline constexpr std::array kShapeNames{"nx", "ny", "nz", "height", "slope", "curvature"};
 inline constexpr std::string_view kShapePrefix = "surface.";
 
-// Returns those of kShapeNames that the formula reads: it names them, and no layer has that name.
+// Returns the kShapeNames that the formula names and that are not names of layers.
 std::vector<std::string> shapes_read(const Expression& expression,
                                      const std::vector<query::LayerView>& layers);
 
-// Returns the layers that the role sees; the others do not exist for it.
+// Returns the layers that the role sees.
 std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>& layers,
                                              Role role);
 
-// Binds a formula over layers to the records behind their keys, read from the database: the present
+// Binds a formula over layers to the records of their keys. Reads from the database the present
 // records, or those at the time of the model's edit `at`, with the columns that `seen_by` sees.
-// Blocks. Refused (invalid at `field`, with the character): a layer without records, a column that
-// does not exist or has another kind. Suggestions name only layers of `candidates` (null:
-// `layers`), which every reader of the error may see.
+// Blocks. Returns an error (invalid, at `field`, with the character) for a layer without records
+// and for a column that is missing or has another type. Suggestions contain only layers in
+// `candidates` (null: `layers`), and every reader of the error must be allowed to see these.
 Result<query::BoundExpression> bind_expression(
     const Expression& expression, const std::vector<query::LayerView>& layers, store::Store& store,
     Role seen_by, std::optional<std::int64_t> at, const std::string& field,
     const std::vector<query::LayerView>* candidates = {});
 
-// The same for a formula whose result is written into a layer with that visibility: it may read
-// only data that is visible to every user who sees the layer, so that no hidden data shows through.
-// `layers` are all layers of the model; the result contains those that the formula may read. Also
-// refused (invalid at `field`): data that only `author` and similar roles see.
+// The same for a formula whose result is written into a layer with visibility `layer`. The formula
+// may read only data that every user of the layer can see, so the result reveals no hidden data.
+// `layers` are all layers of the model. The result contains the layers that the formula may read.
+// Also returns an error (invalid, at `field`) for data that `author` can see but not every user of
+// the layer.
 struct BoundForLayer {
   query::BoundExpression expression;
   std::vector<query::LayerView> layers;

@@ -4,8 +4,8 @@
 
 namespace strata::room {
 
-// A room has only valid handles, so a handle that the renderer does not find belongs to a lost
-// context.
+// Converts an error of the renderer. A room has only valid handles, so a handle that the renderer
+// does not find belongs to a lost context.
 inline Error gpu_problem(const Error& why) {
   if (why.code != ErrorCode::not_found) return why;
   return {ErrorCode::gpu_lost,

@@ -14,7 +14,7 @@ Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
   const auto written = STRATA_TRY(store.journal().written_by(layer, sequences));
   TileMap tiles;
   for (const auto& [tile, texels] : written) {
-    // the values of the texels do not matter here
+    // The values of the texels do not affect the result.
     TileResolver resolver(TileData(layer.type), texels);
     STRATA_TRY(walk_back(resolver, layer, tile, store, [](PastRevision&) {}));
     if (resolver.provisional().any())
@@ -38,8 +38,8 @@ std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const Til
 }
 
 std::shared_ptr<const Palette> provisional_palette() {
-  // Dark lines that stay distinct in grayscale and on colors of any palette, and leave the content
-  // below readable.
+  // Dark lines. They are distinct in grayscale and on the colors of any palette, and leave the
+  // content below readable.
   static const auto kHatch =
       std::make_shared<const Palette>(Palette{.mode = PaletteMode::categorical,
                                               .points = {{.at = 1,

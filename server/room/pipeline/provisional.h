@@ -13,20 +13,20 @@
 
 namespace strata::room {
 
-// The texels of a layer that wait for review, as the content of a layer of u8: 1 if a texel waits,
-// and no value elsewhere. A texel waits if the newest edit in force that wrote it waits, also if
-// that edit has erased it.
+// The texels of a layer that wait for review, as the content of a layer of u8. The value is 1 if
+// the texel waits, and there is no value elsewhere. A texel waits if the newest edit in force that
+// wrote it waits, even if that edit has erased it.
 
-// From the journal; blocks.
+// Reads these texels from the journal. Blocks.
 Result<TileMap> read_provisional(store::Store& store, const Layer& layer);
 
-// Returns the tile after the change; `before` may be null for an empty tile.
+// Returns the tile after the change. `before` may be null for an empty tile.
 std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,
                                                  const TileChange& change);
 
-// Returns the palette of such a layer of u8, which is drawn over the layer itself.
+// Returns the palette for such a layer of u8, which is drawn over the original layer.
 std::shared_ptr<const Palette> provisional_palette();
-// Appends a layer's style and, over it, the mask of the texels that wait.
+// Appends the style of a layer and, over it, the mask of the texels that wait for review.
 void add_styles(const render::LayerStyle& style, std::optional<render::LayerHandle> waiting,
                 std::vector<render::LayerStyle>& styles);
 

@@ -46,7 +46,7 @@ Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& ma
 
 namespace {
 
-// `outline`: an Outline without its steps, or a step.
+// `outline` is either an Outline (its steps are ignored) or a step.
 template <class Part>
 Result<TileMasks> texels_in_part(const Part& outline, const mesh::SurfaceMap& map,
                                  const SurfaceLookup& surface, render::Renderer& renderer,

@@ -10,8 +10,8 @@
 
 namespace strata::room {
 
-// Keys that can no longer be painted, since their records are being deleted or were. A stroke may
-// have begun before the deletion. Safe from any thread.
+// Keys that can no longer be painted, because their records were deleted or are being deleted. A
+// stroke may have begun before the deletion. Thread-safe.
 class RetiredKeys {
  public:
   void retire(TableId table_id, std::int64_t key) {
@@ -34,7 +34,7 @@ class RetiredKeys {
 
  private:
   mutable std::mutex mutex_;
-  std::set<std::pair<TableId, std::int64_t>> keys_;  // of tables
+  std::set<std::pair<TableId, std::int64_t>> keys_;  // by table
 };
 
 }  // namespace strata::room

@@ -7,10 +7,10 @@
 namespace strata::room {
 namespace {
 
-constexpr double kMargin_px = 1;  // rounding of the box must not cut off texels at its border
+constexpr double kMargin_px = 1;  // rounding must not cut off texels at the border of the box
 
-// A swept square covers exactly a box: its side is the box's shorter one, and its path runs along
-// the longer.
+// A swept square covers exactly a box. The side of the square is the shorter side of the box, and
+// its path is along the longer side.
 StrokeBatch box_stroke(const Camera& camera, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec2 window(camera.width, camera.height);
   const glm::dvec2 from = glm::clamp(low - kMargin_px, glm::dvec2(-kMargin_px), window);
@@ -29,8 +29,8 @@ StrokeBatch box_stroke(const Camera& camera, const glm::dvec2& low, const glm::d
 Result<TileMasks> seen_texels(render::Renderer& renderer, render::ModelHandle model, int resolution,
                               const Camera& camera, const glm::dvec2& low, const glm::dvec2& high,
                               bool through) {
-  // Erasing an empty layer changes nothing and needs no page, but the result still contains the
-  // covered texels.
+  // An erasure on an empty layer changes nothing and needs no page, but its result still contains
+  // the covered texels.
   auto scratch = STRATA_TRY(await<render::LayerHandle>(
       [&](auto done) { renderer.add_layer(model, ValueType::u8, resolution, std::move(done)); }));
   StrokeBatch stroke = box_stroke(camera, low, high);

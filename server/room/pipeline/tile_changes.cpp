@@ -10,7 +10,7 @@
 namespace strata::room {
 namespace {
 
-// Writes the texels of `mask_of(address)`.
+// Writes `value` to the texels of `mask_of(address)` in each tile.
 template <class MaskOf>
 std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
                              WrittenValue value, MaskOf mask_of) {

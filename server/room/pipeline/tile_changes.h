@@ -14,62 +14,62 @@
 
 namespace strata::room {
 
-// One tile before and after an edit. `before` and `after` are never null; an empty tile is a
+// One tile before and after an edit. `before` and `after` are never null. An empty tile is a
 // TileData without a valid texel.
 struct TileChange {
   TileAddress address;
   std::shared_ptr<const TileData> before, after;
   TileMask written;
-  TileMask provisional{};  // of `written`: texels that wait for review now
+  TileMask provisional{};  // texels of `written` that now wait for review
 };
 
-// Returns the tile of a snapshot, or an empty one of the type.
+// Returns the tile of a snapshot. If there is no such tile, returns an empty tile of the type.
 std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address,
                                               ValueType type);
 
 struct ChangeCount {
   std::uint64_t texels = 0;  // surface texels whose value or validity differs
-  double area = 0;           // their surface, unit²
+  double area = 0;           // area of these texels, in unit²
 };
 ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map);
 
-// Returns the sums of each key in the tiles, as the journal stores them.
+// Returns the sums for each key in the tiles, in the form that the journal stores.
 std::vector<store::TileKeys> sum_tiles(
     const Layer& layer, const mesh::SurfaceMap& map,
     const std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>& tiles);
 
-// A value's bits; nothing erases.
+// The bits of a value. nullopt erases.
 using WrittenValue = std::optional<std::uint32_t>;
 
 // Sets the value of every texel of the surface, or erases it.
 std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type,
                                         const mesh::SurfaceMap& map, WrittenValue value);
-// The same for the selected surface texels and the gutter texels that belong to them.
+// The same for the selected surface texels and their gutter texels.
 std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type,
                                       const mesh::SurfaceMap& map, query::TexelSelection selection,
                                       WrittenValue value);
-// The same for the texels of the masks, which belong to the surface or its gutter.
+// The same for the texels of the masks, which must belong to the surface or its gutter.
 std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
                                    const mesh::SurfaceMap& map,
                                    const std::map<TileAddress, TileMask>& masks,
                                    WrittenValue value);
 
-// Replaces the layer's content by `target`, on the texels of the surface. Only the differences are
-// written.
+// Replaces the content of the layer by `target`, on the texels of the surface. Writes only the
+// texels that differ.
 std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& target, ValueType type,
                                         const mesh::SurfaceMap& map);
 
-// Leaves out what the changes write outside the masks.
+// Removes changes outside the masks.
 std::vector<TileChange> only_within(std::vector<TileChange> changes,
                                     const std::map<TileAddress, TileMask>& masks);
 
-// Paints the valid texels of `written` over the content; skips texels that do not belong to the
+// Paints the valid texels of `written` over the content. Skips texels that do not belong to the
 // surface.
 std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
                                    const mesh::SurfaceMap& map);
 
-// Returns the change of a tile by a stroke: the texels that it wrote get the value of the GPU; all
-// other texels stay unchanged, regardless of the GPU's content.
+// Returns the change of a tile by a stroke. The texels that the stroke wrote get the value from the
+// GPU. All other texels stay unchanged, regardless of the content on the GPU.
 TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before,
                           const TileMask& written, const TileData& read_back);
 

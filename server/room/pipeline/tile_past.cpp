@@ -5,7 +5,7 @@
 
 namespace strata::room {
 
-constexpr int kRevisionsAtOnce = 32;  // limit for a tile's history in memory
+constexpr int kRevisionsAtOnce = 32;  // limits the part of a tile's history in memory
 
 Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
                        store::Store& store, const std::function<void(PastRevision&)>& turn) {

@@ -8,8 +8,8 @@
 
 namespace strata::room {
 
-// Walks back through a tile's history, but only until every texel of the resolver has its author.
-// `turn` may change the state of an edit before it is used. Blocks.
+// Reads the history of a tile backward, until the resolver has an edit for every texel. `turn` may
+// change the state of a revision's edit before the revision is used. Blocks.
 Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
                        store::Store& store, const std::function<void(PastRevision&)>& turn);
 

@@ -17,7 +17,7 @@ constexpr std::size_t kTrianglesPerBatch = 16384;
 constexpr int kBucketLevels = 3;  // cells are sorted in 8³ parts of the cube
 constexpr std::size_t kBuckets = std::size_t{1} << (3 * kBucketLevels);
 
-// Interleaves the bits of the coordinates: x lowest.
+// Spreads the bits of a coordinate, so the three coordinates can be interleaved.
 std::uint64_t spread(std::uint64_t x) {
   x = (x | x << 32) & 0x001f00000000ffffu;
   x = (x | x << 16) & 0x001f0000ff0000ffu;
@@ -32,10 +32,10 @@ std::uint64_t morton(const glm::ivec3& cell) {
          spread(static_cast<std::uint64_t>(cell.z)) << 2;
 }
 
-using Triangle = std::array<glm::vec3, 3>;  // in cells
+using Triangle = std::array<glm::vec3, 3>;  // in units of cells
 
-// Tests the separating axes of a triangle and the cell (Akenine-Möller 2001); the caller tests
-// those of the box.
+// Tests the separating axes of a triangle and the cell (Akenine-Möller 2001). The caller tests the
+// axes of the box.
 bool crosses(const Triangle& triangle, const glm::vec3& normal, const glm::ivec3& cell) {
   const glm::vec3 center = glm::vec3(cell) + 0.5f;
   const glm::vec3 a = triangle[0] - center, b = triangle[1] - center, c = triangle[2] - center;
@@ -52,8 +52,8 @@ bool crosses(const Triangle& triangle, const glm::vec3& normal, const glm::ivec3
   return true;
 }
 
-// Calls `found` with the cells of the columns along the axis that the triangle faces most: few in
-// each.
+// Calls `found` with the cells that the triangle crosses. Searches columns along the axis that the
+// triangle faces most, so each column has few such cells.
 template <class Found>
 void for_each_cell(const Triangle& triangle, int cells, Found&& found) {
   const glm::vec3 normal = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
@@ -65,7 +65,7 @@ void for_each_cell(const Triangle& triangle, int cells, Found&& found) {
   const auto cell_of = [&](float x) {
     return std::clamp(static_cast<int>(std::floor(x)), 0, cells - 1);
   };
-  const bool flat = facing[w] <= 0;  // triangle without area
+  const bool flat = facing[w] <= 0;  // the triangle has no area
   const float du = flat ? 0 : -normal[u] / normal[w], dv = flat ? 0 : -normal[v] / normal[w];
   const float reach = 0.5f * (std::abs(du) + std::abs(dv)) + 1e-3f;
   for (int i = cell_of(low[u]); i <= cell_of(high[u]); ++i) {
@@ -101,8 +101,8 @@ std::uint64_t available_bytes() {
   return ~std::uint64_t{0};
 }
 
-// The surface crosses about three times as many cells as its area would fill; sorting holds each
-// code some three times.
+// The surface crosses about three times as many cells as its area would fill. Sorting needs memory
+// for about three copies of each code.
 Result<void> check_memory(double area, double cell_side, int depth) {
   const double needed = 3 * area / (cell_side * cell_side) * 24;
   const double available = 0.8 * static_cast<double>(available_bytes());
@@ -159,7 +159,7 @@ Result<Octree> Octree::build(const mesh::Geometry& geometry, int depth, int thre
     return fail(ErrorCode::invalid, "Depth out of range", "An octree has 1 to 15 levels.", "depth");
   Octree tree;
   const glm::vec3 extent = geometry.box_max - geometry.box_min;
-  // Slightly larger, so that no vertex is on the far faces.
+  // Slightly larger than the model, so no vertex is on the far faces.
   tree.side_ = std::max({extent.x, extent.y, extent.z}) * 1.0001f;
   tree.low_ = (geometry.box_min + geometry.box_max - tree.side_) * 0.5f;
   const float cell_side = tree.side_ / static_cast<float>(1u << depth);
@@ -194,7 +194,7 @@ Result<Octree> Octree::build(const mesh::Geometry& geometry, int depth, int thre
       Node node{static_cast<std::uint32_t>(i), 0};
       for (; i < codes.size() && codes[i] >> 3 == parent; ++i) node.mask |= 1u << (codes[i] & 7);
       nodes.push_back(node);
-      codes[parents++] = parent;  // already read
+      codes[parents++] = parent;  // this element is already read
     }
     codes.resize(parents);
     nodes.shrink_to_fit();

@@ -27,16 +27,17 @@ void paint(const OctreeDab& dab, std::size_t leaf, OctreeLayer& layer) {
 }
 
 // -------------------------------------------------------------------------------------------------------------
-// rays
+// Painting by rays
 
-// The distances at which a ray that ascends on every axis enters and leaves a node, for each axis.
+// The distances along a ray at which it enters and leaves a node, one pair for each axis. The ray
+// ascends on every axis.
 struct Span {
   glm::vec3 enter, leave;
 };
 
 class RayWalk {
  public:
-  // `flipped`: bit i is set if the ray was mirrored on axis i to ascend.
+  // Bit i of `flipped` is set if the ray was mirrored on axis i to ascend.
   RayWalk(const Octree& tree, std::uint32_t flipped) : tree_(tree), flipped_(flipped) {}
 
   std::int64_t first_leaf(int depth, std::uint32_t node, const Span& span) const {
@@ -44,8 +45,8 @@ class RayWalk {
     if (depth == tree_.depth()) return node;
     const Octree::Node& here = tree_.level(depth)[node];
     const glm::vec3 middle = 0.5f * (span.enter + span.leave);
-    // The first child: in the upper half of each axis whose middle the ray passes before it enters
-    // the node.
+    // Selects the first child. On each axis it is in the upper half if the ray passes the middle
+    // before it enters the node.
     const float entered = std::max({span.enter.x, span.enter.y, span.enter.z});
     std::uint32_t child = 0;
     for (int axis = 0; axis < 3; ++axis) child |= middle[axis] < entered ? 1u << axis : 0u;
@@ -75,7 +76,7 @@ class RayWalk {
   const std::uint32_t flipped_;
 };
 
-// `from` and `to` are points of the ray, in units of the cube.
+// Returns the first leaf on a ray. `from` and `to` are points on the ray, in units of the cube.
 std::int64_t cast(const Octree& tree, const glm::dvec3& from, const glm::dvec3& to) {
   glm::dvec3 start = from, way = glm::normalize(to - from);
   std::uint32_t flipped = 0;
@@ -94,12 +95,12 @@ std::int64_t cast(const Octree& tree, const glm::dvec3& from, const glm::dvec3& 
 }
 
 // ----------------------------------------------------------------------------------------------------------
-// descent
+// Painting by descent
 
 constexpr int kPlanes = 8;  // an octagon around the disc
 
-// The values for a node's tests, linear in its center: eight distances from the planes, then clip
-// x, y, z, w.
+// The values for the tests of a node, which are linear in its center: the eight distances from the
+// planes, then clip x, y, z and w.
 struct alignas(16) Place {
   float planes[kPlanes];
   float clip[4];
@@ -109,7 +110,7 @@ struct Pending {
   Place place;
   std::uint32_t node;
   int depth;
-  bool inside;  // of all planes
+  bool inside;  // inside all planes
 };
 
 class Descent {
@@ -120,7 +121,7 @@ class Descent {
     const glm::dmat4 clip = clip_of(dab), rows = glm::transpose(clip);
     const double width = dab.camera.width, height = dab.camera.height;
     center_ = {static_cast<float>(dab.center.x), static_cast<float>(height - dab.center.y)};
-    // Window x · w is linear in the position, and so is each side of the octagon.
+    // The product of window x and w is linear in the position, and so is each side of the octagon.
     const glm::dvec4 window_x = 0.5 * width * (rows[0] + rows[3]),
                      window_y = 0.5 * height * (rows[1] + rows[3]);
     const double half = std::sqrt(0.5);
@@ -141,7 +142,7 @@ class Descent {
       const double reach = side * std::sqrt(3.0) * 0.5;
       radius_.push_back(static_cast<float>(reach * 1.001));
       w_reach_.push_back(static_cast<float>(reach * 1.001 * glm::length(glm::dvec3(rows[3]))));
-      auto& steps = steps_.emplace_back();  // from a parent of this level to its children
+      auto& steps = steps_.emplace_back();  // from a parent on this level to its children
       for (std::uint32_t child = 0; child < 8; ++child) {
         const glm::dvec3 sign(child & 1 ? 1 : -1, child & 2 ? 1 : -1, child & 4 ? 1 : -1);
         steps[child] = place_at(linear, sign * side * 0.25, 0);
@@ -158,7 +159,7 @@ class Descent {
   std::size_t run(int threads) const {
     std::vector<Pending> front{{root_, 0, 0, false}};
     std::atomic<std::size_t> painted{0};
-    // Until there is work for all threads.
+    // Descend level by level until there is work for all threads.
     while (!front.empty() && front.size() < 64 * static_cast<std::size_t>(threads) &&
            front[0].depth < tree_.depth()) {
       std::vector<Pending> next;
@@ -185,7 +186,7 @@ class Descent {
   }
 
   std::size_t walk(const Pending& first) const {
-    // Depth first: at most seven nodes wait on each level.
+    // Descend depth first, so at most seven nodes wait on each level.
     std::array<Pending, 8 * 16> stack;
     std::size_t waiting = 1, painted = 0;
     stack[0] = first;
@@ -200,7 +201,7 @@ class Descent {
     return painted;
   }
 
-  // Adds the children that the tool may reach.
+  // Adds the children that the tool may reach to `children`. Returns their number.
   int open(const Pending& pending, Pending* children) const {
     const Octree::Node& node = tree_.level(pending.depth)[pending.node];
     const auto& steps = steps_[static_cast<std::size_t>(pending.depth)];
@@ -231,7 +232,8 @@ class Descent {
     return child.depth == tree_.depth() || !is_hidden(child);
   }
 
-  // Whether the node is behind the coarse depth of its cells; tested only if these are few.
+  // Returns whether the node is behind the coarse depth of the depth cells that it covers. Returns
+  // false for a large node, which would need too many tests.
   bool is_hidden(const Pending& node) const {
     const float w = node.place.clip[3] - w_reach_[static_cast<std::size_t>(node.depth)];
     if (w <= 0) return false;
@@ -283,7 +285,7 @@ class Descent {
   OctreeLayer& layer_;
   Place root_;
   std::vector<std::array<Place, 8>> steps_;
-  std::vector<float> radius_, w_reach_;  // for a node of each level
+  std::vector<float> radius_, w_reach_;  // one value for each level
   glm::vec2 center_{0};
   float pixels_per_w_ = 0, tolerance_ = 0, depth_scale_ = 0, squared_radius_ = 0;
 };

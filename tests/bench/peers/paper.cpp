@@ -9,9 +9,9 @@
 namespace strata::bench {
 namespace {
 
-constexpr int kPaddingGroup = 16;  // texels along a side of a work group of texture_padding.comp
+constexpr int kPaddingGroup = 16;  // texels along one side of a work group of texture_padding.comp
 
-// Sets all texels of a texture to one number.
+// Sets all texels of a texture to the same number.
 void fill(const gl::Texture& texture, std::uint32_t value) {
   const GLenum type = texture.format() == GL_R8UI ? GL_UNSIGNED_BYTE : GL_UNSIGNED_INT;
   glClearTexImage(texture.id(), 0, GL_RED_INTEGER, type, &value);
@@ -66,7 +66,7 @@ Result<void> PaperEditor::make_textures() {
     *texture = std::move(*made);
     fill(*texture, 0);
   }
-  // Edit numbers instead of flags, so that the edited area needs no clearing before each edit.
+  // The edited area stores edit numbers instead of flags, so it needs no clearing before each edit.
   auto edited = gl::Texture::create_2d(GL_R32UI, resolution_, resolution_, "paper edited area");
   if (!edited) return tl::unexpected(edited.error());
   edited_ = std::move(*edited);

@@ -10,28 +10,30 @@
 
 namespace strata::bench {
 
-// The paper's "small bias", in window depth; the paper has no number. For cameras whose near and
-// far planes are as close around the model as those of `look_at`, this is 1.6 % of the model's
-// radius. A bias of 2e-4 would reject parts of every surface that is tilted by more than 13
-// degrees, because depth varies by more than that within a pixel: the edit is speckled, and at its
-// many thresholds rounding decides 3 to 11 texels of 100 000.
+// The "small bias" of the paper, in window depth; the paper gives no number. With a camera whose
+// near and far planes are as close to the model as those of `look_at`, this is 1.6 % of the model's
+// radius. A bias of 2e-4 would reject parts of every surface with a tilt of more than 13 degrees,
+// because the depth varies by more than that within a pixel. The edit would be speckled, and at its
+// many thresholds rounding would decide 3 to 11 of 100 000 texels.
 constexpr double kPaperDepthBias = 5e-3;
 
-// The paper's editing, literally: the Texture Editing Algorithm draws the whole mesh at its texture
-// coordinates into data, mask and edited-area textures, and discards fragments that fail the
-// window, depth (fixed bias) and tool tests. Then the Texture Padding Algorithm filters the whole
-// texture and sets outline texels (1 wide) next to the edited area. Its two passes make the outline
-// mask when the model is loaded. The tool is a disc by formula. The window → tool map is derived
-// here, because the printed translation factor has the wrong sign and lacks ½. GPU thread only; one
-// dab for each edit, values of 8 bits. The published padding is a raster pass; a compute pass
-// avoids the few multiprocessors that rasterize on H100-class GPUs.
+// The paper's method, implemented literally. The Texture Editing Algorithm draws the whole mesh at
+// its texture coordinates into data, mask and edited-area textures. It discards fragments that fail
+// the window test, the depth test (with a fixed bias) or the tool test. Then the Texture Padding
+// Algorithm filters the whole texture and sets the outline texels next to the edited area; the
+// outline is 1 texel wide. Two passes make the outline mask when the model is loaded. A formula
+// defines the tool as a disc. The map from window to tool is derived here, because the printed
+// translation factor has the wrong sign and lacks ½. Each edit is one dab with values of 8 bits.
+// The published padding is a raster pass. A compute pass avoids the few multiprocessors that
+// rasterize on H100-class GPUs. All functions run on the GPU thread only.
 class PaperEditor {
  public:
   enum class Padding { raster, compute };
   static Result<std::unique_ptr<PaperEditor>> create(const mesh::Geometry& geometry,
                                                      int resolution);
 
-  // `depth` is the system's depth texture: the mesh from this camera at its window's size.
+  // `depth` is the system's depth texture: the depth of the mesh from this camera, in the size of
+  // its window.
   void edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px,
             std::uint8_t value, Padding padding = Padding::raster);
   void clear();
@@ -39,10 +41,10 @@ class PaperEditor {
   int resolution() const { return resolution_; }
   std::vector<std::uint8_t> data() const { return read(data_); }
   std::vector<std::uint8_t> mask() const { return read(mask_); }
-  // 1 where the parametrization has texels
+  // Returns 1 where the parametrization has texels.
   std::vector<std::uint8_t> coverage() const { return read(coverage_); }
   std::uint64_t layer_bytes() const { return data_.bytes() + mask_.bytes(); }
-  // for one resolution
+  // The bytes for one resolution.
   std::uint64_t structure_bytes() const { return edited_.bytes() + outline_.bytes(); }
 
  private:

@@ -17,7 +17,7 @@ import time
 from paraview import simple
 from paraview.modules.vtkPVClientWeb import vtkPVWebApplication
 
-TURN_RAD = 0.008  # for each picture, as Strata's viewers turn
+TURN_RAD = 0.008  # for each frame, the rotation of Strata's viewers
 WARM_S = 1.0
 TICKS = os.sysconf("SC_CLK_TCK")
 

@@ -1,6 +1,6 @@
-// Measures a real server with many viewers over real WebSockets: pictures of turning cameras,
-// strokes until they are seen, viewers at rest, slow links, a stalled viewer; and one viewer
-// compared with ParaView's web engine on the same mesh.
+// Measures a real server with many viewers over real WebSockets: frames of turning cameras, the
+// time until viewers see strokes, resting viewers, slow links, and a stalled viewer. Also compares
+// one viewer with ParaView's web engine on the same mesh.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -32,9 +32,9 @@ struct Options {
   bool has(const std::string& part) const { return std::ranges::find(parts, part) != parts.end(); }
 };
 
-// One line of the results, with the function that makes one run of it.
+// One line of the results, and the function that makes one run of it.
 struct Row {
-  nlohmann::json json;  // collects its runs
+  nlohmann::json json;  // collects the runs
   std::function<nlohmann::json()> run;
 };
 
@@ -44,9 +44,9 @@ std::vector<Hands> hands_of(int active, bool can_paint) {
   return {Hands::turn, Hands::paint, Hands::turn_and_paint};
 }
 
-// Returns active viewers on each link, with the first number of idle ones; more idle viewers, and
-// the stalled viewer, on the first link. All combinations of the lists would take a day and add
-// little.
+// Returns the cases. Each link has cases with each number of active viewers and the first number of
+// idle ones. Only the first link has cases with more idle viewers and with the stalled viewer. All
+// combinations of the lists would take a day and give little more information.
 std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& options, bool can_paint) {
   std::vector<LinkQuality> links;
   for (const auto& link : options.links) links.push_back(*parse_link(link));
@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& option
       if (!stalls) continue;
       CrowdCase stalled = common;
       stalled.has_stalled = true;
-      add("stalled", stalled, link, active, all_hands.back());  // the same case without it, too
+      add("stalled", stalled, link, active, all_hands.back());  // also run without it
     }
   }
   for (const int idle : options.idle) {
@@ -130,7 +130,7 @@ void print(const nlohmann::json& row, const nlohmann::json& run) {
   std::fflush(stdout);
 }
 
-// A viewer uses one descriptor in this process, and three with a link.
+// A viewer uses one file descriptor in this process, or three with a link.
 void raise_descriptor_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -194,7 +194,7 @@ int run(Options options) {
   }
   if (peer) add_peer_rows(rows, site, *peer, options.seconds);
 
-  // A B B A: a drift of the machine affects all cases.
+  // The order is A B B A, so a drift of the machine's speed affects all cases.
   for (int round = 0; round < options.rounds; ++round) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       Row& row = rows[round % 2 == 0 ? i : rows.size() - 1 - i];
@@ -220,7 +220,7 @@ int run(Options options) {
   return 0;
 }
 
-// Sets the options of `--quick`, except options that the user gave.
+// Sets the options of `--quick`. Options from the command line take precedence.
 void make_quick(Options& options, const CLI::App& command) {
   const auto set = [&](const char* option, auto& value, auto quick) {
     if (command.count(option) == 0) value = quick;

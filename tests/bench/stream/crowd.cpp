@@ -17,13 +17,13 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr std::size_t kOpenAtOnce = 16;  // the server answers 503 beyond 256 concurrent requests
+constexpr std::size_t kOpenAtOnce = 16;  // the server allows 256 concurrent requests (then 503)
 constexpr double kMaxOpening_s = 600;
 constexpr double kQuiet_s = 0.5, kQuietAtRest_s = 2, kMaxSettling_s = 180;
 constexpr double kWarming_s = 1;
 constexpr double kMaxFinishing_s = 60;
 
-// All within 60°: the middle of one picture is also in the other pictures.
+// All directions are within 60°, so the middle of one frame is also in the other frames.
 constexpr double kMiddle_rad = 0.7;
 double direction(int number, int of) {
   return kMiddle_rad + (of < 2 ? 0 : (double(number) / (of - 1) - 0.5) * std::numbers::pi / 3);
@@ -85,8 +85,8 @@ void Crowd::open(std::vector<std::pair<LiveClient*, Camera>> clients) {
   std::exit(1);
 }
 
-// Runs until no message has come for `quiet_s`. Bytes of pings do not count: with hundreds of
-// connections there is always one.
+// Runs until no message has arrived for `quiet_s`. The bytes of pings do not count, because
+// hundreds of connections always exchange some.
 void Crowd::settle(double quiet_s) {
   const double limit_ms = now_ms() + 1e3 * kMaxSettling_s;
   std::uint64_t before;
@@ -144,7 +144,7 @@ nlohmann::json Crowd::measure(double seconds) {
   return json;
 }
 
-// The first stroke of a model that was just opened waits for data that later strokes reuse.
+// The first stroke of a newly opened model waits for data that later strokes reuse.
 bool Crowd::all_see_what_they_do() const {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const LiveClient& client = *active_[i];
@@ -159,8 +159,8 @@ bool Crowd::all_see_what_they_do() const {
   return true;
 }
 
-// Whether each painting viewer has sent a batch. On a very busy machine the first batches may wait
-// for longer than a short run.
+// Returns whether each painting viewer has sent a batch. On a very busy machine, the first batches
+// may wait longer than a short run takes.
 bool Crowd::has_painted_since(double begin_ms) const {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const auto& batches = active_[i]->batches();
@@ -170,7 +170,7 @@ bool Crowd::has_painted_since(double begin_ms) const {
   return true;
 }
 
-// Pixels of the last strokes may still be on their way.
+// Waits for the pixels of the last strokes, which may not have arrived yet.
 void Crowd::finish_strokes() {
   run_until(
       [&] {

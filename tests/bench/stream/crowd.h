@@ -12,17 +12,17 @@
 
 namespace strata::bench {
 
-// The viewers of one case, on this thread, which also runs their links. Active viewers have
-// different directions, close enough that each sees the strokes of all others.
+// The viewers of one case. They run on this thread, as do their links. Active viewers have
+// different directions, near enough to each other that each one sees the strokes of all others.
 class Crowd {
  public:
-  // Returns when each viewer has a picture and no more messages come. Ends the bench if a viewer is
-  // refused.
+  // Returns when each viewer has a frame and no more messages arrive. Ends the bench if the server
+  // refuses a viewer.
   Crowd(const CrowdCase& crowd, const Stage& stage, const ServerProcess& server);
   ~Crowd();
 
-  // Runs the viewers' actions until each sees its own, for one second more, and then for `seconds`;
-  // returns the figures of the latter (results/streaming-method.md explains them).
+  // Runs the viewers' actions until each viewer sees its own, then for one more second, then for
+  // `seconds`. Returns the figures of the last period, which results/streaming-method.md explains.
   nlohmann::json measure(double seconds);
 
  private:

@@ -6,16 +6,16 @@
 
 namespace strata::bench {
 
-// Actions of the active viewers of a case; `turn_and_paint`: every other one paints.
+// Actions of the active viewers of a case. With `turn_and_paint`, every other viewer paints.
 enum class Hands { rest, turn, turn_step_by_step, paint, turn_and_paint };
 const char* name(Hands hands);
 
 struct CrowdCase {
-  LinkQuality link;  // of each viewer
+  LinkQuality link;  // the link of each viewer
   int active = 1, idle = 0;
   Hands hands = Hands::turn;
-  bool is_same_view = false;  // of idle viewers; otherwise each has a different camera
-  // one more viewer, which turns the camera and reads nothing after its first picture
+  bool is_same_view = false;  // idle viewers share one camera; otherwise each has its own
+  // Adds a viewer that turns its camera and reads nothing after its first frame.
   bool has_stalled = false;
 
   nlohmann::json json() const;

@@ -17,8 +17,8 @@ std::uint64_t sum_of(const std::vector<LiveClient::Counts>& all,
       [&](std::uint64_t sum, const auto& counts) { return sum + counts.*member; });
 }
 
-// From a camera to the last byte of the first picture that shows it; later pictures of the same
-// camera show other changes.
+// Adds the times from a camera to the last byte of the first frame that shows it. Later frames of
+// the same camera show other changes.
 void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, Samples& times) {
   std::uint64_t shown = 0;
   for (const auto& frame : client.frames()) {
@@ -28,7 +28,8 @@ void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, 
   }
 }
 
-// From the last camera of a viewer that then stops to the last byte of its picture of full quality.
+// Adds the time from the last camera before the viewer stops to the last byte of the full-quality
+// frame.
 void add_refined_times(const LiveClient& client, Samples& times) {
   const auto refined = std::ranges::find_if(client.frames(), [&](const auto& frame) {
     return frame.still && frame.camera_seq == client.newest_camera();
@@ -37,8 +38,8 @@ void add_refined_times(const LiveClient& client, Samples& times) {
     times.add(refined->at_ms - client.camera_sent_ms(client.newest_camera()));
 }
 
-// From a batch to the last byte of the first picture of `viewer` that shows it; the sequence of the
-// shown edits only grows.
+// Adds the times from a batch to the last byte of the first frame of `viewer` that shows it. The
+// sequence of the shown edits never decreases.
 void add_batch_times(const LiveClient& painter, const LiveClient& viewer, double begin_ms,
                      double end_ms, Samples& times) {
   for (const auto& batch : painter.batches()) {

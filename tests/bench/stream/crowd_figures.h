@@ -12,17 +12,18 @@ namespace strata::bench {
 
 using Viewers = std::vector<std::unique_ptr<LiveClient>>;
 
-// The counts at one moment.
+// The counters at one moment.
 struct CrowdMoment {
   double at_ms = 0;
   ServerProcess::Used server;
-  double bench_s = 0;  // of processors, for viewers and links
+  double bench_s = 0;  // processor seconds for viewers and links
   std::vector<LiveClient::Counts> active, idle;
   std::uint64_t bytes() const;  // of all messages
 };
 
-// Returns the figures of a period, as results/streaming-method.md describes them: rates of frames
-// that came in it, times of messages that were sent in it, even if the answer came later.
+// Returns the figures of a period, as results/streaming-method.md describes them. Rates count the
+// frames that arrived within the period. Times belong to the messages that were sent within it,
+// even if the reply arrived later.
 nlohmann::json crowd_figures(const CrowdCase& crowd, const Viewers& active, const Viewers& idle,
                              const CrowdMoment& begin, const CrowdMoment& end);
 

@@ -15,7 +15,7 @@
 
 namespace strata::bench {
 
-// Replaces the socket: records the time at which a frame leaves, and acknowledges it as a client
+// Replaces the socket. Records the time at which a frame leaves, and acknowledges it like a client
 // that draws immediately.
 class FrameClient {
  public:
@@ -23,7 +23,7 @@ class FrameClient {
     double at_ms;
     protocol::FrameHeader header;
     std::size_t bytes;
-    std::size_t content;  // a hash of the header's payload
+    std::size_t content;  // a hash of the frame data after the header
   };
   void receive(const stream::FrameMessages& frame) {
     const double at = now_ms();

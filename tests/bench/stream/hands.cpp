@@ -21,7 +21,7 @@ constexpr auto kCameraEvery = 16ms;
 constexpr auto kBatchEvery = 30ms;
 constexpr int kBatchesOfStroke = 20;
 
-// Fires at regular times; does not repeat missed ones.
+// A timer with regular ticks. It does not repeat missed ticks.
 class Beat {
  public:
   Beat(asio::any_io_executor executor, Clock::duration every)

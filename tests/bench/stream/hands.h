@@ -9,28 +9,29 @@
 
 namespace strata::bench {
 
-// The scene of a case's viewers.
+// The scene that the viewers of a case show.
 struct Stage {
-  std::string model, layer;  // slugs; `layer` is the topmost, painted one; empty without layers
+  std::string model, layer;  // slugs; `layer`: the topmost, painted layer, or empty
   int layers = 0;
-  glm::dvec3 low{0}, high{0};  // world
+  glm::dvec3 low{0}, high{0};  // in world coordinates
   int width = 1280, height = 720;
   double radius_px = 40;
 
   Camera from(double angle, double elevation = 0.4) const;
 };
 
-// Actions of a viewer, until `stop`. As the page does, sends a camera for each refresh of the
-// screen (16 ms), without waiting for frames, and a batch of a stroke every 30 ms.
+// The actions of a viewer until `stop` is true. Like the page, a turning viewer sends a camera for
+// each refresh of the screen (16 ms) without waiting for frames. A painting viewer sends a batch of
+// a stroke every 30 ms.
 boost::asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle,
                                   const bool& stop);
-// Sends each camera after the picture of the previous one: measures a picture without its wait for
-// a turn.
+// Sends each camera after the frame of the previous one, so the times do not include the wait for
+// earlier frames.
 boost::asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle,
                                                const bool& stop);
-// Paints strokes of 20 batches with a camera at rest, each with another value. Waits while
-// kMaxUnanswered batches are not applied: more would only make the queue, and with it every time,
-// longer.
+// Paints strokes of 20 batches with a camera at rest. Each stroke has a new value. Waits while
+// kMaxUnanswered batches are not yet applied, because more batches would only lengthen the queue
+// and all times.
 constexpr int kMaxUnanswered = 16;
 boost::asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle,
                                    unsigned seed, const bool& stop);

@@ -23,7 +23,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 
-// So that the kernel does not queue megabytes in addition to the line's own full queue.
+// Limits the buffers of the socket, so the kernel does not queue megabytes in addition to the
+// line's own queue.
 void keep_short(tcp::socket& socket) {
   error_code ignored;
   socket.set_option(asio::socket_base::receive_buffer_size(int(Link::kQueueBytes)), ignored);
@@ -35,7 +36,7 @@ Clock::duration time_of(std::size_t bytes, double bits_per_second) {
       std::chrono::duration<double>(8.0 * double(bytes) / bits_per_second));
 }
 
-// Bytes on their way at the full rate.
+// Returns the number of bytes in transit at the full rate.
 std::size_t bytes_under_way(const LinkQuality& quality) {
   return std::size_t(quality.bits_per_second / 8 *
                      std::chrono::duration<double>(quality.round_trip).count() / 2);
@@ -67,7 +68,7 @@ struct Link::State {
   int full_ways = 0;
 };
 
-// One connection: two directions, each from one socket to the other.
+// One connection with two directions, each from one socket to the other.
 class Link::Line : public std::enable_shared_from_this<Link::Line> {
  public:
   Line(std::shared_ptr<State> state, tcp::socket viewer)
@@ -106,7 +107,7 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
   }
 
  private:
-  // A piece without bytes is the end of the sender's data.
+  // A piece without bytes marks the end of the sender's data.
   struct Piece {
     std::vector<char> bytes;
     Clock::time_point arrives;
@@ -125,7 +126,7 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
 
   static asio::awaitable<void> take(std::shared_ptr<Line> line, Way& way) {
     const LinkQuality& quality = line->state_->quality;
-    // when the last bit of the previous piece is on the wire
+    // The time at which the last bit of the previous piece leaves the sender.
     Clock::time_point sent_at = Clock::now();
     for (bool over = false; !over;) {
       Piece piece{std::vector<char>(kPieceBytes), {}};

@@ -11,40 +11,42 @@
 
 namespace strata::bench {
 
-// The link between a server and each of its viewers; the same in both directions.
+// The link between a server and each of its viewers, the same in both directions.
 struct LinkQuality {
-  std::string name = "loopback";  // the text of the option
+  std::string name = "loopback";  // text of the option
   std::chrono::microseconds round_trip{0};
   double bits_per_second = 0;  // 0: no link
   bool is_loopback() const { return bits_per_second == 0; }
 };
 
-// Parses "loopback", or a round trip and a rate: "20ms/50Mbit". Returns nothing for other texts.
+// Parses "loopback", or a round trip and a rate such as "20ms/50Mbit". Returns nothing for other
+// texts.
 std::optional<LinkQuality> parse_link(const std::string& text);
 
-// An emulator of slow links in user space, without special rights or kernel modules: viewers
-// connect to `endpoint`, which forwards each connection to the server over a separate line. In each
-// direction a line sends each byte when its rate allows, half a round trip later, in order. It
-// holds the bytes on their way and kQueueBytes more; then it stops reading until the kernel's
-// buffers are also full and the sender has to wait. Not emulated: loss, jitter, TCP's reaction to
-// them, and the handshake.
+// Emulates slow links in user space, without special rights or kernel modules. Viewers connect to
+// `endpoint`, which forwards each connection to the server over a separate line. In each direction,
+// a line sends each byte when its rate allows. The byte arrives half a round trip later, and the
+// order stays the same. The line holds the bytes in transit and kQueueBytes more. Then it stops
+// reading, so the kernel's buffers fill and the sender has to wait. Packet loss, jitter, TCP's
+// reaction to them, and the handshake are not emulated.
 //
 // Everything runs on the context's thread.
 class Link {
  public:
   static constexpr std::size_t kQueueBytes = 64 * 1024;
-  static constexpr std::size_t kPieceBytes = 4 * 1024;  // maximum for one read: 4 ms of 8 Mbit/s
+  static constexpr std::size_t kPieceBytes = 4 * 1024;  // maximum of one read: 4 ms at 8 Mbit/s
 
   // Throws boost::system::system_error if it cannot listen.
   Link(boost::asio::io_context& context, const LinkQuality& quality,
        boost::asio::ip::tcp::endpoint server);
-  ~Link();  // ends every line
+  ~Link();  // closes every line
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
   boost::asio::ip::tcp::endpoint endpoint() const;
 
-  // For tests: the number of bytes read from both sides of all lines, and of full directions.
+  // For tests: the number of bytes read from both ends of all lines, and the number of directions
+  // whose queue is full.
   std::uint64_t bytes_taken() const;
   int full_ways() const;
 

@@ -14,14 +14,14 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
-// Bytes that encode their position.
+// Returns bytes that encode their position.
 std::vector<std::uint8_t> numbered(std::size_t size) {
   std::vector<std::uint8_t> bytes(size);
   for (std::size_t i = 0; i < size; ++i) bytes[i] = std::uint8_t((i * 2654435761u) >> 24);
   return bytes;
 }
 
-// Two ends with a line between them.
+// Two sockets with a line between them.
 class LinkTest : public testing::Test {
  protected:
   void connect(const std::string& quality) {
@@ -40,7 +40,7 @@ class LinkTest : public testing::Test {
       context_.restart();
     }
   }
-  // Sends while the other end reads; returns the received bytes and the time.
+  // Sends while the other end reads. Returns the received bytes and the time.
   std::pair<std::vector<std::uint8_t>, double> carry(tcp::socket& from, tcp::socket& to,
                                                      const std::vector<std::uint8_t>& bytes) {
     std::vector<std::uint8_t> arrived(bytes.size());
@@ -75,7 +75,7 @@ TEST(LinkQualityTest, names_are_a_round_trip_and_a_rate) {
     EXPECT_FALSE(parse_link(bad)) << bad;
 }
 
-// No upper bounds of time: a busy machine is slower than any line.
+// Checks no upper limit of the time, because a busy machine is slower than any line.
 TEST_F(LinkTest, bytes_arrive_in_order_and_never_faster_than_the_rate) {
   connect("0ms/16Mbit");
   const auto bytes = numbered(500'000);
@@ -101,7 +101,8 @@ TEST_F(LinkTest, whoever_sends_to_one_who_does_not_read_is_held_back) {
                     [&](auto error, std::size_t) { is_sent = !error; });
   run_until([&] { return link_->full_ways() == 1; });
   EXPECT_FALSE(is_sent);
-  // The line's own queue, and the kernel's buffer for a viewer that does not read.
+  // The limit allows for the line's own queue and the kernel's buffer for a viewer that does not
+  // read.
   EXPECT_LT(link_->bytes_taken(), 32u << 20);
   std::vector<std::uint8_t> arrived(bytes.size());
   bool is_read = false;

@@ -118,7 +118,7 @@ void LiveClient::send(const protocol::ClientMessage& message) {
 }
 
 asio::awaitable<void> LiveClient::write() {
-  if (std::exchange(is_writing_, true)) co_return;  // two calls before the first one ran
+  if (std::exchange(is_writing_, true)) co_return;  // two calls came before the first one ran
   while (!is_lost_ && (!texts_.empty() || camera_)) {
     std::string text;
     if (texts_.empty()) {
@@ -146,7 +146,7 @@ asio::awaitable<void> LiveClient::read() {
   }
 }
 
-// Hundreds of viewers receive every edit: messages without use here are not parsed.
+// Hundreds of viewers receive every edit, so messages that this client does not use are not parsed.
 void LiveClient::on_text(const std::string& text) {
   const bool is_answer = text.find(R"("op":"applied")") != std::string::npos;
   if (!is_answer && text.find(R"("op":"problem")") == std::string::npos) return;
@@ -166,7 +166,7 @@ void LiveClient::on_text(const std::string& text) {
   }
 }
 
-// Returns the batch of an answer, and removes it from the unanswered ones.
+// Returns the batch that a reply belongs to, and removes it from the unanswered batches.
 template <class Matches>
 std::optional<std::size_t> LiveClient::answered(Matches matches) {
   const auto found = std::find_if(unanswered_.begin(), unanswered_.end(),

@@ -19,7 +19,7 @@
 
 namespace strata::bench {
 
-// Counts the bytes read from a socket, including WebSocket's own.
+// Counts the bytes read from a socket, including those of the WebSocket protocol.
 class WireCounter {
  public:
   std::uint64_t bytes_read() const { return bytes_read_; }
@@ -35,57 +35,57 @@ class WireCounter {
   std::uint64_t bytes_read_ = 0;
 };
 
-// A viewer that acts like the page, over a real WebSocket: the newest camera replaces a waiting
-// one, and a frame is acknowledged after its last rectangle. Pictures are not decoded, so that no
-// decoder takes time or processors of this machine. Records the times of events without evaluating
-// them. Everything runs on the context's thread.
+// A viewer that acts like the page over a real WebSocket. The newest camera replaces a waiting one,
+// and a frame is acknowledged after its last rectangle. Frames are not decoded, so no decoder uses
+// the processors of this machine. The client records the times of events without evaluating them.
+// Everything runs on the context's thread.
 class LiveClient {
  public:
-  struct Frame {  // complete
+  struct Frame {  // a complete frame
     double at_ms;
     std::uint64_t camera_seq, scene_sequence;
-    bool still;  // of full quality
+    bool still;  // full quality
   };
-  struct Batch {  // of a stroke
+  struct Batch {  // a batch of a stroke
     Uuid id, stroke;
     int number;
     double sent_ms;
-    std::optional<std::uint64_t> sequence = {};  // once it is applied
-    bool has_changed = false;                    // at least one texel
+    std::optional<std::uint64_t> sequence = {};  // set once the batch is applied
+    bool has_changed = false;                    // has changed at least one texel
   };
   struct Counts {
     std::uint64_t frames = 0, bytes = 0, wire_bytes = 0;  // bytes: of messages
   };
 
-  // `at`: the server, or a link to it.
+  // `at`: the endpoint of the server, or of a link to it.
   LiveClient(boost::asio::io_context& context, boost::asio::ip::tcp::endpoint at,
              std::uint16_t server_port);
 
-  // Connects, says hello and sends a camera; returns when the first picture of full quality has
-  // come, or the connection is lost.
+  // Connects, sends the hello message and a camera, and waits until the first frame of full quality
+  // has arrived or the connection is lost.
   boost::asio::awaitable<void> open(const std::string& model, const std::string& token,
                                     const Camera& camera);
   void image(const Camera& camera, bool moving);
-  // Returns when a frame with the newest camera has come, or the connection is lost.
+  // Waits until a frame with the newest camera has arrived or the connection is lost.
   boost::asio::awaitable<void> newest_camera_shown();
   void begin_stroke(const std::string& layer, const Camera& camera, double value, double radius_px);
   void extend_stroke(const std::vector<glm::dvec2>& path);
   void end_stroke();
-  void stop_reading() { is_reading_ = false; }  // later data stay in the kernel
+  void stop_reading() { is_reading_ = false; }  // later data stays in the kernel
 
-  void leave();  // as a closed page does
+  void leave();  // closes the connection as a closed page does
 
   bool has_picture() const { return has_picture_; }
   bool is_lost() const { return is_lost_; }
   const std::string& why_lost() const { return why_lost_; }
-  // batches that are neither applied nor refused
+  // The number of batches that are neither applied nor refused.
   int unanswered() const { return int(unanswered_.size()); }
   int refused() const { return refused_; }
   Counts counts() const { return {frames_.size(), bytes_, stream().rate_policy().bytes_read()}; }
   const std::vector<Frame>& frames() const { return frames_; }
   const std::vector<Batch>& batches() const { return batches_; }
   std::uint64_t newest_camera() const { return camera_sent_ms_.size(); }
-  // Returns the time at which `image` received the camera of this number.
+  // Returns the time at which `image` received the camera with this number.
   double camera_sent_ms(std::uint64_t camera_seq) const {
     return camera_sent_ms_.at(camera_seq - 1);
   }
@@ -109,16 +109,16 @@ class LiveClient {
   const std::uint16_t server_port_;
   boost::beast::flat_buffer buffer_;
   boost::asio::steady_timer has_news_;  // fires at every frame and at the end
-  std::deque<std::string> texts_;       // to send, in order
-  std::optional<std::string> camera_;   // to send before them: the newest
+  std::deque<std::string> texts_;       // messages to send, in order
+  std::optional<std::string> camera_;   // the newest camera, to send before the messages
   bool is_writing_ = false, is_reading_ = true, is_lost_ = false, has_picture_ = false;
   std::string why_lost_;
 
   std::vector<Frame> frames_;
   std::vector<double> camera_sent_ms_;
   std::vector<Batch> batches_;
-  std::vector<std::size_t> unanswered_;  // of `batches_`; a few
-  Uuid stroke_{};                        // the current one
+  std::vector<std::size_t> unanswered_;  // indices of a few elements of `batches_`
+  Uuid stroke_{};                        // the current stroke
   int next_number_ = 0, refused_ = 0;
   std::uint64_t bytes_ = 0;
 };

@@ -10,15 +10,15 @@
 
 namespace strata::bench {
 
-// ParaView's web engine (peers/paraview_frames.py) on a separate, invisible screen, as its server
-// runs on a machine without one.
+// ParaView's web engine (peers/paraview_frames.py) on a separate, invisible screen, which
+// ParaView's server uses on a machine without a screen.
 class ParaViewPeer {
  public:
-  // Returns nothing if a program is missing: `why` names it and the command that installs it.
+  // Returns nothing if a program is missing. Then `why` names it and the command that installs it.
   static std::optional<ParaViewPeer> find(std::string& why);
 
-  // Turns the camera around the mesh of a PLY file for `seconds`, and requests each picture after
-  // the previous one has come. Ends the bench if the peer fails. `folder`: for its logs.
+  // Turns the camera around the mesh of a PLY file for `seconds`. Requests each frame after the
+  // previous one has arrived. Ends the bench if the peer fails. The logs are written to `folder`.
   nlohmann::json measure(const std::filesystem::path& ply, int width, int height, double seconds,
                          const std::filesystem::path& folder) const;
 

@@ -9,21 +9,22 @@
 
 namespace strata::bench {
 
-// Runs `strata serve` as a site does: a separate process with a private PostgreSQL, a new data
+// Runs `strata serve` as on a real site: a separate process with a private PostgreSQL, a new data
 // folder and a free port of this machine.
 class ServerProcess {
  public:
-  // `binary`: of the server. Ends the bench with the end of the server's log if it does not start.
+  // `binary`: the path of the server. If the server does not start, prints the end of its log and
+  // ends the bench.
   explicit ServerProcess(const std::filesystem::path& binary);
   ~ServerProcess();
 
   std::uint16_t port() const { return port_; }
-  const std::string& token() const { return token_; }  // of the owner
+  const std::string& token() const { return token_; }  // token of the owner
   std::string renderer() const { return renderer_; }   // as the server's log names it
   const std::filesystem::path& folder() const { return folder_; }
   pid_t pid() const { return process_->pid(); }
 
-  // Seconds of processors since the start.
+  // Processor seconds since the start.
   struct Used {
     double server = 0, postgresql = 0;
   };

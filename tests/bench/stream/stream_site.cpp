@@ -26,8 +26,8 @@ using nlohmann::json;
 
 fs::path server_beside_us() { return fs::read_symlink("/proc/self/exe").parent_path() / "strata"; }
 
-// Returns a file that ParaView can also read. Writes a mesh that is generated in this process to
-// `folder`.
+// Returns a file that ParaView can also read. Writes the mesh to `folder` if this process generates
+// it.
 fs::path ply_of(const std::string& model, const fs::path& cache, const fs::path& folder) {
   if (!is_generated(model)) {
     const auto files = must(mesh_files(model, cache));

@@ -9,26 +9,26 @@
 
 namespace strata::bench {
 
-// A running server with the model of all viewers, made over HTTP as by any client.
+// A running server with the model of all viewers, made over HTTP as any client does.
 class StreamSite {
  public:
-  static constexpr int kResolution = 4096;  // of its layers
+  static constexpr int kResolution = 4096;  // of the layers
 
   struct Settings {
     std::filesystem::path server;  // empty: `strata` in this program's folder
-    std::string model;             // as for BenchMesh; one file
+    std::string model;             // a name as in BenchMesh, of one file
     std::filesystem::path cache;
     int layers = 0, width = 0, height = 0;
     double radius_px = 0;
-    bool has_plain = false;  // in addition the same model without layers
+    bool has_plain = false;  // also make the same model without layers
   };
   explicit StreamSite(const Settings& settings);
 
   const ServerProcess& server() const { return server_; }
   const Stage& painted() const { return painted_; }  // with all layers
-  // without layers; the same as `painted` unless requested
+  // Without layers. The same as `painted` unless `has_plain` was set.
   const Stage& plain() const { return plain_; }
-  const std::filesystem::path& mesh_file() const { return mesh_file_; }  // PLY
+  const std::filesystem::path& mesh_file() const { return mesh_file_; }  // a PLY file
   std::int64_t triangles() const { return triangles_; }
 
  private:

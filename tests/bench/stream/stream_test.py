@@ -36,7 +36,7 @@ def check_run(row, run):
     assert not row["idle"] or rates["idle"]["viewers"] == row["idle"], rates
     if turns:
         check_times(run["camera_to_last_byte"], "camera_to_last_byte")
-        # The camera and its picture both cross the link.
+        # The camera and its frame both cross the link.
         assert run["camera_to_last_byte"]["ms_min"] >= 20, run["camera_to_last_byte"]
         refined = run["last_camera_to_full_quality"]
         check_times(refined, "last_camera_to_full_quality")
@@ -65,7 +65,7 @@ def main():
     bench, server = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         result = Path(folder) / "stream.json"
-        # A slow machine would still refine pictures while the viewers rest.
+        # A slow machine would still refine frames when the viewers start to rest.
         subprocess.run(
             [bench, "stream", "--quick", "--server", server, "--json", result],
             check=True,
@@ -99,7 +99,7 @@ def main():
             "**A viewer that reads nothing**",
         ):
             assert title in drawn, drawn
-    # An invalid link is refused before the benchmark starts.
+    # The benchmark refuses an invalid link before it starts.
     refused = subprocess.run([bench, "stream", "--links", "80ms"], capture_output=True, text=True)
     assert refused.returncode == 2 and "80ms" in refused.stderr, refused
 

@@ -6,8 +6,8 @@
 
 namespace strata::bench {
 
-// A pointer that paints without end: 12 pixels a step (400 a second with steps of 30 ms), in the
-// middle of a window, where models are.
+// A pointer that paints endlessly in the middle of a window, where models are. It moves 12 pixels
+// in each step, which is 400 pixels a second with steps of 30 ms.
 class Wander {
  public:
   Wander(int width, int height, unsigned seed)

@@ -1,4 +1,5 @@
-// The recorded people of the demo: they paint for a lone visitor, and leave the model as it was.
+// The recorded annotators of the demo: they paint for a lone visitor, and leave the model
+// unchanged.
 #include "app/demo/demo_annotators.h"
 
 #include <chrono>
@@ -50,7 +51,7 @@ class Annotators : public test::RoomTest {
   std::unique_ptr<room::Participant> visit(const std::string& user) {
     return room_->participants().join(Author(user, Role::viewer), {}, nullptr, [](const auto&) {});
   }
-  // Waits until these users, and nobody else, are here; fails after two minutes.
+  // Waits until exactly these users are in the room. Fails after two minutes.
   void expect_here(const std::set<std::string>& users) {
     std::set<std::string> here;
     for (const auto end = std::chrono::steady_clock::now() + 2min;
@@ -62,7 +63,7 @@ class Annotators : public test::RoomTest {
     ADD_FAILURE() << here.size() << " people are here, the first is "
                   << (here.empty() ? "nobody" : *here.begin());
   }
-  // Waits until edits after `sequence` were made.
+  // Waits until `count` edits have followed `sequence`. Fails after two minutes.
   std::int64_t expect_edits_after(std::int64_t sequence, std::int64_t count = 1) {
     for (const auto end = std::chrono::steady_clock::now() + 2min;
          std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(5ms))
@@ -82,7 +83,7 @@ class Annotators : public test::RoomTest {
   TileMap before_;
 };
 
-// One story serves all three scenes, because it takes long to make.
+// One demo project serves all three scenes, because making it takes long.
 TEST_F(Annotators, paint_for_a_lone_visitor_and_take_it_back) {
   paint_and_leave();
   leave_when_a_second_person_comes();
@@ -113,7 +114,8 @@ void Annotators::leave_when_a_second_person_comes() {
   const auto otto = visit("otto");
   expect_here({"vera", "otto"});
   EXPECT_TRUE(test::equal(tiles(), before_));
-  // Nor do they come while both are here. A later visit is answered after this one.
+  // The annotators do not return while both visitors are in the room. `stop` returns after the
+  // later visit has been handled.
   const std::int64_t then = room_->edits().sequence();
   annotators.visited(pot_);
   annotators.stop();

@@ -1,4 +1,4 @@
-// The demo with its story: what a visitor finds, the times of the story, and the reset.
+// The demo with its story: its content for a visitor, the times of the story, and the reset.
 #include "app/demo/demo_story.h"
 
 #include <gtest/gtest.h>

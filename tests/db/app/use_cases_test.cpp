@@ -1,4 +1,4 @@
-// Use cases that run without HTTP: recomputed layers, the trash, measured figures.
+// Use cases without HTTP: recomputed layers, the trash, measured figures.
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -140,7 +140,7 @@ TEST_F(UseCases, a_figure_is_drawn_to_a_file_that_goes_with_its_last_owner) {
   EXPECT_EQ(beginning, "%PDF-");
   file = fail(ErrorCode::gone, {}, {});
   EXPECT_TRUE(fs::is_empty(folder));
-  request.section = {{0, 0, 1, -1e9}};  // cuts the whole model away
+  request.section = {{0, 0, 1, -1e9}};  // cuts off the whole model
   const auto refused = make_figure(*store_, budget, request, folder, progress);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "camera.section");

@@ -58,7 +58,7 @@ class Import : public ::testing::Test {
   Progress progress_;
 };
 
-// Two adjacent squares, with the given texture coordinates for the second.
+// Returns two adjacent squares. `second_square` has the texture coordinates of the second one.
 std::string obj_with_uvs(const std::string& second_square) {
   return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
          "vt 0.05 0.05\nvt 0.45 0.05\nvt 0.45 0.45\nvt 0.05 0.45\n" +
@@ -120,7 +120,7 @@ TEST_F(Import, texture_coordinates_that_can_carry_layers_are_kept) {
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_EQ(model->atlas.source, "file");
   EXPECT_TRUE(model->repairs.empty());
-  // Two adjacent squares have one rim: 2 × 1.
+  // Two adjacent squares have one rim, of 2 × 1.
   ASSERT_TRUE(model->open_edges);
   EXPECT_EQ(model->open_edges->loops, 1u);
   EXPECT_DOUBLE_EQ(model->open_edges->length, 6);
@@ -184,7 +184,7 @@ TEST_F(Import, vertices_within_the_weld_distance_are_joined) {
   auto import_request = request(
       "gap.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.01 0 0\nv 1 1 0\nv 0 1.01 0\nf 1 2 3\nf 4 5 6\n");
   import_request.weld_distance = 0.05;
-  import_request.strict = true;  // welding is not a fault
+  import_request.strict = true;  // a weld is not a fault
   const auto model = import_model(*store_, import_request, progress_);
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_EQ(model->vertices, 4u);
@@ -268,7 +268,7 @@ TEST_F(Import, a_cancel_at_any_time_leaves_nothing_behind) {
     const auto model = import_model(*store_, scan, progress);
     over = true;
     canceller.join();
-    // A late cancel may have no effect; then the model is complete.
+    // A late cancel may have no effect. Then the model is complete.
     if (model) {
       EXPECT_GE(from, 0.8);
       EXPECT_TRUE(store_->models().remove(model->id));

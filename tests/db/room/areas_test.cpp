@@ -1,5 +1,5 @@
-// Edits of whole areas: expressions, pieces of the surface, connected values, polygons. With a real
-// database and renderer.
+// Edits of whole areas with a real database and renderer: expressions, pieces of the surface,
+// connected values, polygons.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -32,7 +32,7 @@ class RoomAreas : public RoomTest {
     features_ = make_layer(ValueType::u16, 2048, "marks");
   }
 
-  // The camera of the fixture's strokes.
+  // Returns the camera of the fixture's strokes.
   Camera view() const { return camera({0.3, -1, 0.4}); }
 
   static Expression layer_value(const std::string& slug) {
@@ -64,8 +64,8 @@ class RoomAreas : public RoomTest {
     return snapshot ? snapshot->tiles : TileMap{};
   }
 
-  // Undo restores the content before the edit, redo the content after it. Both can be read as of
-  // their sequences and after a restart.
+  // Expects undo to restore the content before the edit, and redo the content after it. Expects
+  // both contents at their sequences, and the later one also after a restart.
   void expect_durable_and_undoable(const Layer& layer, const room::EditRequest& edit) {
     const TileMap before = tiles(layer.slug);
     const auto answer = send(edit);
@@ -109,7 +109,7 @@ std::uint64_t valid_texels(const TileMap& tiles) {
   return count;
 }
 
-// Counts texels that are valid in only one of them, or have different values.
+// Counts texels that are valid in only one of the two maps or have different values.
 std::uint64_t differing_texels(const TileMap& a, const TileMap& b) {
   std::set<TileAddress> addresses;
   for (const TileMap* tiles : {&a, &b})
@@ -153,11 +153,11 @@ TEST_F(RoomAreas, outlines_are_combined_as_the_sets_of_what_each_of_them_paints)
   const std::vector<std::vector<glm::dvec2>> paths{{{240, 180}, {400, 190}, {380, 320}, {250, 300}},
                                                    {{300, 200}, {440, 220}, {330, 340}},
                                                    {{200, 250}, {420, 240}, {350, 290}}};
-  // The second outline is drawn in the window of another camera.
+  // The user draws the second outline in the window of another camera.
   Camera other = view();
   other.projection[0][0] *= 0.8;
   const std::vector<Camera> cameras{view(), other, view()};
-  // What each of them paints alone: the oracle combines these.
+  // The tiles that each outline paints alone. The oracle combines them.
   std::vector<TileMap> alone;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     room::PolygonEdit edit = polygon(paths[i], 7);
@@ -236,7 +236,7 @@ TEST_F(RoomAreas, the_piece_under_a_pixel_is_the_whole_pot_across_all_its_seams)
   expect_durable_and_undoable(features_, edit);
   const double area_m2 = room()->model().area_m2();
   EXPECT_NEAR(room()->queries().statistics("marks")->area_m2, area_m2, area_m2 * 1e-3);
-  // The same from a point in space, for another layer.
+  // Fills the same piece from a point in space, on another layer.
   fill.region = FillEdit::Island{(model_.bounds_min + model_.bounds_max) * 0.5};
   const auto answer = send(request(wet_, fill));
   ASSERT_TRUE(answer) << answer.error().detail;

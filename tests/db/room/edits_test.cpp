@@ -60,7 +60,7 @@ TEST_F(RoomTest, annas_undo_leaves_what_ben_painted_over_it) {
   auto left = room()->queries().statistics("layer");
   EXPECT_FALSE(left->keys.contains(1));
   EXPECT_EQ(left->keys.at(2).texels, both->keys.at(2).texels);
-  // Ben also undoes: the layer is empty. Both redo: the layer is as before.
+  // After Ben's undo the layer is empty. After both redo, the layer is as before.
   ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "ben")));
   EXPECT_EQ(room()->queries().statistics("layer")->texels, 0u);
   ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "anna")));
@@ -146,7 +146,7 @@ TEST_F(RoomTest, a_lost_context_comes_back_with_every_layer) {
   const auto before = test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}));
   ASSERT_TRUE(before);
   renderer_->lose_context_for_test();
-  // The room refuses while the GPU is rebuilt; then the picture is the same.
+  // The room refuses frames while the GPU is rebuilt. Afterwards the frame is the same as before.
   Result<Picture> after = fail(ErrorCode::unavailable, "", "");
   for (int i = 0; i < 3000 && !after; ++i) {
     after = test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}));
@@ -161,7 +161,7 @@ TEST_F(RoomTest, a_lost_context_comes_back_with_every_layer) {
                           room()->queries().tiles("layer", answer->sequence)->tiles));
 }
 
-// Records the notifications of failed saves.
+// A listener that records the notifications of failed saves.
 struct UnsavedEars : room::Listener {
   std::mutex mutex;
   std::vector<Uuid> unsaved;
@@ -193,7 +193,7 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
   auto member = room()->participants().join({"anna", Role::owner}, {}, &ears,
                                             [](const stream::FrameMessages&) {});
 
-  // Reading continues to work, writing does not.
+  // Reading continues to work, but writing fails.
   execute(dsn_, "alter table edits add constraint no_more check (sequence < 2) not valid");
   std::vector<std::future<Result<room::EditAnswer>>> answers;
   std::vector<room::EditRequest> lost;
@@ -227,7 +227,7 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   const auto picture = test::whole_picture(room()->pictures(), {}, camera());
   auto& cluster = test::shared_cluster();
-  // also its sessions, which may write for a moment after the postmaster ended
+  // Also kill the sessions, which may write for a moment after the postmaster has ended.
   test::Hang(cluster).kill();
   auto edit = stroke(layer, 6, {{340, 240}}, 20);
   EXPECT_FALSE(send(edit));
@@ -263,20 +263,20 @@ TEST_F(RoomTest, every_type_is_painted_and_read_back) {
 }
 
 TEST_F(RoomTest, the_painted_area_is_that_of_a_disc_on_a_flat_spot) {
-  // An orthographic view along the normal of the surface under the cursor: there the brush is a
-  // disc of known size.
+  // The view is orthographic along the surface normal under the cursor, so the brush is a disc of
+  // known size there.
   const Layer layer = make_layer(ValueType::u8, 4096);
   auto edit = stroke(layer, 1, {{320, 240}}, 0);
   auto& batch = std::get<room::StrokeEdit>(edit.edit).batch;
   auto spot = room()->queries().pick(batch.camera, 320.5, 240.5, {});
   ASSERT_TRUE(spot && spot->hit);
   batch.camera = camera(glm::dvec3(spot->normal), true);
-  // The place of the spot in the new window.
+  // The position of the spot in the new window.
   const glm::dvec4 clip =
       batch.camera.projection * batch.camera.view * glm::dvec4(spot->position, 1);
   batch.path = {{(clip.x * 0.5 + 0.5) * 640, (0.5 - clip.y * 0.5) * 480}};
   batch.radius_px = 0;
-  batch.radius_world = 2.0;  // mm, small against the curvature of the pot
+  batch.radius_world = 2.0;  // in mm, small compared with the curvature of the pot
   auto answer = send(edit);
   ASSERT_TRUE(answer) << answer.error().detail;
   const double disc_m2 = 3.14159265 * 2.0 * 2.0 * 1e-6;

@@ -1,4 +1,4 @@
-// Locked layers, for each way in which an edit arrives.
+// Locked layers, tested with each way in which an edit can arrive.
 #include <future>
 #include <vector>
 
@@ -31,7 +31,8 @@ class LockedLayers : public RoomTest {
   }
 };
 
-// One edit of each kind; each changes a layer that has a stroke of Anna's and an undone one.
+// Returns one edit of each kind. Each one can change a layer on which Anna made a stroke and undid
+// another.
 std::vector<std::pair<std::string, decltype(room::EditRequest::edit)>> edits_of(
     const Camera& camera, const TileMap& other) {
   room::StrokeEdit stroke;
@@ -108,10 +109,10 @@ TEST_F(LockedLayers, what_was_saved_before_the_lock_keeps_its_answer) {
   }
 }
 
-// Each of these strokes paints different texels, so a late one would be visible.
+// Each of these strokes paints different texels, so a late stroke would be visible.
 TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
   const Layer layer = make_layer(ValueType::u8);
-  // makes the surface map, so that later edits do not wait for it
+  // The first stroke makes the surface map, so later edits do not wait for it.
   ASSERT_TRUE(send(stroke(layer, 1, {{320, 240}}, 20)));
   std::vector<std::future<Result<room::EditAnswer>>> answers;
   for (int i = 0; i < 60; ++i)

@@ -1,4 +1,4 @@
-// Painting maps and measurements over a layer as one edit. With a real database and renderer.
+// Painting maps and measurements over a layer as one edit, with a real database and renderer.
 #include <cmath>
 
 #include "room/edit.h"
@@ -71,11 +71,11 @@ TEST_F(RoomMaps, a_map_is_painted_on_what_is_seen_first_along_its_direction) {
     if (world.x < middle.x) return std::nullopt;
     return world.z > middle.z ? 2u : 1u;
   };
-  auto tiles = room()->surface().project(layer_, {0, 1, 0}, east);  // seen from -y
+  auto tiles = room()->surface().project(layer_, {0, 1, 0}, east);  // viewed from -y
   ASSERT_TRUE(tiles) << tiles.error().detail;
   ASSERT_TRUE(paint(*tiles));
-  // Rays along the direction meet the first visible surface, which has the map's values; rays from
-  // the opposite side meet no values.
+  // Rays in the direction of the projection hit the first visible surface, which has the values of
+  // the map. Rays from the opposite side hit a surface without values.
   const double size = glm::length(model_.bounds_max - model_.bounds_min);
   int right = 0, wrong = 0, behind = 0;
   for (int i = 0; i < 400; ++i) {
@@ -88,7 +88,7 @@ TEST_F(RoomMaps, a_map_is_painted_on_what_is_seen_first_along_its_direction) {
     if (!seen->hit || std::abs(seen->position.x - middle.x) < 0.3 ||
         std::abs(seen->position.z - middle.z) < 0.3)
       continue;
-    if (std::abs(seen->normal.y) < 0.4) continue;  // seen at a small angle
+    if (std::abs(seen->normal.y) < 0.4) continue;  // the angle to the surface is small
     const auto expected = east(seen->position);
     const auto& value = seen->values.at(0);
     ++(value.valid == expected.has_value() && (!expected || value.value == *expected) ? right

@@ -40,7 +40,7 @@ TEST_F(RoomMemory, counts_what_a_model_holds_and_gives_it_back) {
   ASSERT_TRUE(send(request(layer, room::FillEdit{true, 0})));
   EXPECT_LT(rooms_->memory_bytes_used(), painted) << "erased tiles take none";
   rooms_->forget(model_.id);
-  // The threads that saved the last edit may still hold the room.
+  // Threads that saved the last edit may still hold a reference to the room.
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   while (rooms_->memory_bytes_used() > 0 && std::chrono::steady_clock::now() < limit)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -63,7 +63,7 @@ TEST_F(RoomMemory, is_made_for_a_surface_map_by_one_that_is_not_used) {
     bytes_with_map(small);
     return bytes_with_map(large);
   }();
-  restart_with(both - kMiB);  // too little for both
+  restart_with(both - kMiB);  // too little for both maps
   ASSERT_TRUE(send_until_taken(stroke(large, 1, {{320, 240}}, 20)));
   for (const auto& layer : {small, large, small})
     ASSERT_TRUE(send_until_taken(stroke(layer, 7, {{330, 240}}, 15))) << layer.slug;
@@ -77,7 +77,7 @@ TEST_F(RoomMemory, that_is_used_up_refuses_edits_until_something_is_given_back) 
   const auto second = make_layer(ValueType::u32, 2048, "second");
   restart_with(bytes_with_map(first) + 4 * kMiB);
   ASSERT_TRUE(
-      // the content of an edit is kept even above the budget
+      // The content of an edit is kept even if it exceeds the budget.
       send_until_taken(request(first, room::FillEdit{false, 9})));
   const auto refused = send(request(second, room::FillEdit{false, 9}));
   ASSERT_FALSE(refused);

@@ -1,4 +1,4 @@
-// Earlier states of an open model: as views show them, as tiles, and as a restore brings them back.
+// Earlier states of an open model: in views, as tiles, and after a restore.
 #include <gtest/gtest.h>
 
 #include <condition_variable>
@@ -22,7 +22,7 @@ using test::RoomTest;
 
 constexpr auto kPatience = std::chrono::minutes(5);
 
-// A browser that keeps the last whole picture at full quality of each view.
+// A browser that keeps the last complete full-quality frame of each view.
 class Screen {
  public:
   struct Picture {
@@ -43,7 +43,7 @@ class Screen {
       changed_.notify_all();
     };
   }
-  // Waits for a whole picture of this state with this camera.
+  // Waits for a complete frame of this state with this camera.
   Picture wait(std::uint32_t view, std::int64_t sequence, std::uint64_t camera) {
     std::unique_lock lock(mutex_);
     Picture found;
@@ -106,7 +106,7 @@ TEST_F(RoomPast, a_view_shows_the_pictures_of_the_past_again) {
   const auto show_now = [&] {
     const auto sequence = room()->edits().sequence();
     screen.member->show(0, at({}));
-    // another camera in between, so that the whole picture is drawn
+    // Use another camera in between, so the next frame is drawn completely.
     Camera other = view;
     other.width += 16;
     screen.member->camera(0, ++number, other, false);
@@ -127,13 +127,13 @@ TEST_F(RoomPast, a_view_shows_the_pictures_of_the_past_again) {
   show_now();
   for (std::size_t i = 1; i < shown.size(); ++i) ASSERT_NE(shown[i].jpeg, shown[i - 1].jpeg);
 
-  // there and back, in single steps and in leaps
+  // Visit the states in both directions, in single steps and in larger steps.
   for (const std::size_t i : {0u, 4u, 1u, 2u, 3u, 2u, 0u, 3u}) {
     screen.forget();
     screen.member->show(0, at(shown[i].sequence));
     EXPECT_EQ(screen.wait(0, shown[i].sequence, number).jpeg, shown[i].jpeg) << i;
   }
-  // Edits by others change nothing in the past, and are there on the way back to now.
+  // Edits by others do not change the past, and they are visible after the return to the present.
   ASSERT_TRUE(send(stroke(cracks_, 7, {{330, 250}}, 30, "ben")));
   screen.forget();
   screen.member->show(0, at(shown[1].sequence));
@@ -142,7 +142,7 @@ TEST_F(RoomPast, a_view_shows_the_pictures_of_the_past_again) {
   const auto now = screen.wait(0, room()->edits().sequence(), number);
   EXPECT_NE(now.jpeg, shown[4].jpeg);
 
-  // A second view shows then next to now.
+  // A second view shows an earlier state next to the present one.
   screen.forget();
   screen.member->show(1, at(shown[2].sequence));
   screen.member->camera(1, 1, view, false);
@@ -167,7 +167,7 @@ TEST_F(RoomPast, a_lost_context_does_not_end_the_view_of_the_past) {
   screen.member.reset();
 }
 
-// Replays what each edit left, texel by texel.
+// Expects the tiles of every state, read from the tiles of any other state.
 TEST_F(RoomPast, every_state_is_read_from_every_other_one) {
   std::mt19937 random(7);
   std::vector<TileMap> states{{}};  // by sequence
@@ -182,7 +182,7 @@ TEST_F(RoomPast, every_state_is_read_from_every_other_one) {
     if (kind == 2) edit = request(cracks_, room::FillEdit{true, 0});
     if (kind == 3) edit = request(cracks_, room::UndoEdit{});
     const auto done = send(edit);
-    if (!done) continue;  // nothing to undo
+    if (!done) continue;  // no edit to undo
     ASSERT_EQ(done->sequence, static_cast<std::int64_t>(states.size()));
     states.push_back(tiles(cracks_));
   }
@@ -223,7 +223,7 @@ TEST_F(RoomPast, a_restore_changes_what_the_difference_counts) {
   EXPECT_EQ(room()->queries().difference("cracks", 1, {}, {})->texels,
             whole->texels - part->texels);
 
-  // One undoable edit.
+  // The restore is one edit, so one undo is enough.
   ASSERT_TRUE(send(request(cracks_, room::UndoEdit{})));
   EXPECT_TRUE(test::equal(tiles(cracks_), now));
   const auto all = send(request(cracks_, room::RestoreEdit{1, {}}));

@@ -1,5 +1,5 @@
-// Queries of an open model: values of layers at a time, the area of a condition, around a place,
-// inside an outline.
+// Queries of an open model: values of layers at a given time, and the area of a condition, around a
+// point, and inside an outline.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -107,7 +107,7 @@ TEST_F(RoomQueries, a_selection_adds_up_to_what_the_layers_hold_there) {
   EXPECT_EQ(unknown.error().field, "where");
 }
 
-// A small disc of a smooth surface is sufficiently flat.
+// A small disc on a smooth surface is flat enough.
 TEST_F(RoomQueries, around_a_place_lies_the_area_of_a_disc) {
   const glm::dvec3 place = seen_at(320, 240);
   for (const double radius : {4.0, 8.0}) {
@@ -155,8 +155,8 @@ TEST_F(RoomQueries, the_picture_of_a_selection_shows_where_the_camera_sees_it) {
   const auto area = room()->queries().select(selection, {}, options);
   ASSERT_TRUE(area) << area.error().detail;
   ASSERT_EQ(area->seen.size(), static_cast<std::size_t>(columns * rows));
-  // The surface fills this part of the window, so that the picture is the outline itself. Cells
-  // within two pixels of its edge may be on either side.
+  // The surface fills this part of the window, so the image is the outline itself. Cells within two
+  // pixels of its edge may be on either side.
   const PolygonArea outline({path});
   int inside = 0, wrong = 0;
   for (int row = 0; row < rows; ++row)
@@ -173,7 +173,7 @@ TEST_F(RoomQueries, the_picture_of_a_selection_shows_where_the_camera_sees_it) {
     }
   EXPECT_GT(inside, 100);
   EXPECT_LE(wrong, inside / 50);
-  // Nothing is selected, nothing is seen.
+  // An empty selection is visible nowhere.
   selection.where = *query::parse_condition("valid(marks)", "where");
   const auto nothing = room()->queries().select(selection, {}, options);
   ASSERT_TRUE(nothing);
@@ -240,7 +240,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   EXPECT_EQ(area("pieces.thickness > depth and valid(depth)"), area("pieces = 2 and valid(depth)"));
   EXPECT_GT(area("pieces.thickness > depth"), 0);
 
-  // With the records at the time of the query, and with earlier ones.
+  // The query uses the present records, or with a time the earlier records.
   write(1, 9, "firm");
   EXPECT_EQ(area("pieces.thickness < 5"), 0);
   EXPECT_NEAR(area("pieces.thickness < 5", then), first, 1e-9 * first);

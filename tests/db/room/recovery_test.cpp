@@ -1,6 +1,6 @@
 // Faults: the GPU's memory is full or its context is lost, the database is unreachable or has more
-// edits than the room, the room closes. After each fault, every edit that was answered as saved is
-// in the journal, and the room and the GPU have the journal's content.
+// edits than the room, or the room closes. After each fault, every edit that was confirmed as saved
+// is in the journal, and the room and the GPU have the content of the journal.
 #include <gmock/gmock.h>
 #include <libpq-fe.h>
 
@@ -30,7 +30,7 @@ using Answer = Result<room::EditAnswer>;
 
 constexpr auto kLong = std::chrono::minutes(5);
 
-// Counts the notifications of a participant.
+// A listener that counts the notifications of a participant.
 class Ears : public room::Listener {
  public:
   void edit_applied(const Edit&) override { count(applied_); }
@@ -94,9 +94,9 @@ class RoomRecovery : public RoomTest {
  protected:
   void execute(const char* sql) { Connection(dsn_).execute(sql); }
 
-  // Restarts with a GPU that has room for one slice of pages of four bytes, 20 MiB: enough for a
-  // layer of 2048² that is painted all over, too little for one of 4096². The shown and painted
-  // content needs no more than that at this time.
+  // Restarts with a GPU that has 20 MiB for one slice of pages of four bytes. That is enough for a
+  // fully painted layer of 2048², but not for one of 4096². The content that is shown and painted
+  // at this time needs no more than that.
   void restart_with_little_gpu_memory(std::initializer_list<Layer> layers) {
     for (const Layer& layer : layers) {
       EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
@@ -105,7 +105,7 @@ class RoomRecovery : public RoomTest {
     restart(renderer_->gpu_bytes_used() + (9u << 20));
   }
 
-  // Commits an edit without the room, like a commit whose answer was lost.
+  // Commits an edit without the room, like a commit whose result was lost.
   void commit_behind(const room::EditRequest& edit, const Layer& layer, std::int64_t sequence,
                      bool damaged) {
     store::JournalEntry entry;
@@ -155,7 +155,7 @@ TEST(TileChanges, a_stroke_changes_what_it_wrote_whatever_the_gpu_holds_elsewher
   EXPECT_TRUE(*change.before == before);
 }
 
-// --- the GPU
+// --- The GPU
 
 TEST_F(RoomRecovery, layers_that_do_not_fit_the_gpu_together_are_painted_in_turn) {
   const Layer a = make_layer(ValueType::u32, 2048, "a"), b = make_layer(ValueType::u32, 2048, "b");
@@ -201,7 +201,7 @@ TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_p
                                             [](const stream::FrameMessages&) {});
 
   Connection blocker(dsn_);
-  blocker.execute("begin; lock table edits in exclusive mode");  // reads work, commits wait
+  blocker.execute("begin; lock table edits in exclusive mode");  // reads succeed, commits wait
   auto erased = start(request(a, room::FillEdit{true, 0}));
   auto filled = start(request(b, room::FillEdit{false, 4}));
   ears.wait_for_applied(2);
@@ -230,7 +230,7 @@ TEST_F(RoomRecovery, contexts_lost_in_the_middle_of_edits_lose_none_that_was_sav
     for (int i = 0; i < 4; ++i)
       answers.push_back(start(stroke(layer, 20 + i, {{310.0 + 10 * i, 240.0 - round}}, 12)));
     // Loses the context at a different time in each round: before, among and after the strokes, and
-    // in the middle of the fill.
+    // during the fill.
     for (int i = 0; i < round; ++i) answers[i].wait();
     renderer_->lose_context_for_test();
     for (auto& future : answers) {
@@ -246,7 +246,7 @@ TEST_F(RoomRecovery, contexts_lost_in_the_middle_of_edits_lose_none_that_was_sav
     ASSERT_TRUE(next) << next.error().detail;
     sequences.push_back(next->sequence);
   }
-  // Each sequence was given once, without a gap.
+  // Each sequence was assigned once, without a gap.
   for (std::size_t i = 0; i < sequences.size(); ++i) EXPECT_EQ(sequences[i], std::int64_t(i + 1));
   expect_room_equals_journal(layer);
   expect_picture_of_journal();
@@ -295,7 +295,7 @@ TEST_F(RoomRecovery, a_context_lost_after_the_rooms_are_gone_harms_nobody) {
   EXPECT_FALSE(answered.get_future().get());  // refused by a thread that still runs
 }
 
-// --- the database
+// --- The database
 
 TEST_F(RoomRecovery, an_edit_whose_commit_was_in_doubt_is_answered_only_when_the_room_holds_it) {
   const Layer layer = make_layer(ValueType::u8);
@@ -321,8 +321,8 @@ TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_pai
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   commit_behind(stroke(layer, 6, {{340, 240}}, 20), layer, 2, false);
-  // The room uses sequence 2 for its own edit; the journal refuses it, and the room reads the
-  // stored edit.
+  // The room uses sequence 2 for its own edit. The journal refuses that edit, and the room reads
+  // the stored edit.
   const auto edit = stroke(layer, 7, {{320, 240}}, 20);
   EXPECT_FALSE(send(edit));
   const auto resent = send_until_taken(edit);
@@ -432,7 +432,7 @@ TEST_F(RoomRecovery, edits_that_waited_for_the_database_keep_their_order) {
   expect_room_equals_journal(layer);
 }
 
-// --- undo
+// --- Undo
 
 TEST_F(RoomRecovery, undo_goes_back_through_more_revisions_than_are_read_at_once) {
   const Layer layer = make_layer(ValueType::u8, 2048, "layer");
@@ -448,7 +448,7 @@ TEST_F(RoomRecovery, undo_goes_back_through_more_revisions_than_are_read_at_once
   EXPECT_TRUE(room()->queries().statistics("layer")->keys.contains(200));
 }
 
-// --- closing
+// --- Closing
 
 TEST_F(RoomRecovery, people_in_a_deleted_model_are_told_and_their_edits_are_refused_for_good) {
   const Layer layer = make_layer(ValueType::u8);

@@ -1,4 +1,4 @@
-// Edits that wait for review: their state, their look, and the decisions of curators.
+// Edits that wait for review: their state, their display, and the decisions of curators.
 #include <gmock/gmock.h>
 #include <libpq-fe.h>
 
@@ -83,7 +83,7 @@ TEST_F(Reviews, what_an_annotator_paints_is_in_force_and_marked_until_it_is_acce
   EXPECT_EQ(row(1).review, Review::pending);
   EXPECT_TRUE(row(1).in_force);
   EXPECT_GT(texels_waiting(), 0u);
-  expect_picture_of_journal();  // which computes the marks from the journal
+  expect_picture_of_journal();  // computes the marks from the journal
   const TileMap then = tiles();
   const auto marked = picture();
 
@@ -133,7 +133,7 @@ TEST_F(Reviews, rejecting_takes_the_paint_out_below_what_others_painted) {
   EXPECT_TRUE(test::equal(tiles(), before));
   EXPECT_EQ(texels_waiting(), 0u);
 
-  // After the reopening of a decision the edits wait again.
+  // After a decision is reopened, the edits wait again.
   ASSERT_TRUE(send(review(Decision::reopen, {{2}, {}})));
   ASSERT_TRUE(send(review(Decision::reopen, {{3}, {}})));
   EXPECT_TRUE(test::equal(tiles(), both));
@@ -167,7 +167,7 @@ TEST_F(Reviews, annotators_undo_only_what_waits_and_redo_nothing_that_was_reject
   EXPECT_EQ(send(request(layer_, room::RedoEdit{})).error().code, ErrorCode::conflict);
   EXPECT_EQ(send(as_curator(request(layer_, room::RedoEdit{}))).error().code, ErrorCode::conflict)
       << "anna as a curator, too";
-  // Curators, and layers without review, undo accepted edits as usual.
+  // Accepted edits can be undone as usual by curators, and on layers without review.
   EXPECT_TRUE(send(as_curator(request(layer_, room::UndoEdit{}))));
   expect_picture_of_journal();
 }
@@ -281,8 +281,8 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
     std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(other.get(), sql), &PQclear);
     ASSERT_EQ(PQresultStatus(result.get()), PGRES_COMMAND_OK) << PQerrorMessage(other.get());
   };
-  // Sends edits, of which the last is visible before any is durable, and then reads the newest
-  // durable state.
+  // Submits edits and waits until the last one is visible but no edit is durable. Then reads the
+  // newest durable state.
   const auto while_unsaved = [&](std::vector<room::EditRequest> edits, const auto& image) {
     execute("begin");
     execute("lock table edits in share row exclusive mode");  // allows reading but not writing
@@ -338,7 +338,7 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
   EXPECT_THAT(seen_by_viewers(), IsEmpty());
 }
 
-// Compares the layer and its pending edits with the journal's rule: the newest edit in force
+// Compares the layer and its pending edits with the journal's rule that the newest edit in force
 // decides. A separate model records the state of the edits.
 TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
   struct Stroke {
@@ -424,7 +424,7 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         << "seed " << seed;
     EXPECT_TRUE(test::equal(room()->edits().durable_state().provisional[layer_.id], features))
         << "seed " << seed;
-    // compares the room's own marks with those of the journal
+    // Compares the room's own marks with those of the journal.
     expect_picture_of_journal();
     expect_room_equals_journal(layer_);
   }

@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::Painter;
 
-// "user kind op name ×count", newest first.
+// Returns lines of the form "user kind op name ×count", newest first.
 std::vector<std::string> lines_of(const ActivityPage& page) {
   std::vector<std::string> lines;
   for (const Activity& line : page.lines)
@@ -45,7 +45,7 @@ class ActivityOfAProject : public ::testing::Test {
   void forget_made_layers() {
     ASSERT_TRUE(connection_->query("DELETE FROM activities WHERE kind = 'layer'"));
   }
-  // Makes an edit that is saved `after` the first one.
+  // Saves an edit whose time is `after` later than that of the first edit.
   void edit(const Layer& layer, std::chrono::seconds after, const std::string& user,
             const std::string& op = "stroke", std::optional<Uuid> stroke = {}) {
     JournalEntry entry = Painter(layer, 1).entry(++sequence_, op, user);
@@ -186,7 +186,7 @@ TEST_F(ActivityOfAProject, views_tours_and_snapshots_that_people_make_change_and
     part.text = "From the west";
     part.content = {{"light", "flat"}};
     part = parts.update(part, by<NamedPart>("bob")).value();
-    part = parts.update(part, by<NamedPart>("bob")).value();  // nothing differs
+    part = parts.update(part, by<NamedPart>("bob")).value();  // an update without a change
     EXPECT_THAT(page().lines[0].changed, ::testing::ElementsAre("content", "text"));
     ASSERT_TRUE(parts.remove(part, by<>("bob")));
   };
@@ -327,14 +327,14 @@ TEST_F(ActivityOfAProject, lines_of_a_model_go_where_it_goes) {
                                       "ada edit stroke layer ×1"));
 }
 
-// An index reads pages in order and only as far as the page reaches, even in a long history.
+// An index reads pages in order. It reads only the rows of the page, even in a long history.
 TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells) {
   ASSERT_TRUE(connection_->query(
       "INSERT INTO activities (project_id, model_id, subject, user_name, kind, op, begun, time) "
       "SELECT 1, 1 + n % 3, 'x', 'ada', 'edit', 'stroke', t, t FROM (SELECT n, timestamptz '2020-01-01' + n * interval "
       "'1 second' AS t FROM generate_series(1, 100000) n) r"));
   ASSERT_TRUE(connection_->query_once("VACUUM ANALYZE activities"));
-  // A session reports its counts at its end at the latest.
+  // A session reports its counts when it ends, or earlier.
   const auto rows_read = [&](std::int64_t at_least) {
     store_.reset();
     std::int64_t rows = 0;
@@ -355,7 +355,7 @@ TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells)
   ASSERT_EQ(first.lines.size(), 50u);
   ActivityPlace deep = first.next.value();
   deep.time_us -= 60'000 * std::int64_t{1'000'000};
-  for (int i = 0; i < 10; ++i) {  // after some runs PostgreSQL plans for any place
+  for (int i = 0; i < 10; ++i) {  // after some runs, PostgreSQL uses a plan that fits any position
     ASSERT_EQ(page({.before = deep, .limit = 50}).lines.size(), 50u);
     ASSERT_EQ(page({.model = model_.id, .before = deep, .limit = 50}).lines.size(), 50u);
   }

@@ -1,4 +1,4 @@
-// What analysts can read of places and names: well-known text that GIS programs draw.
+// The views of positions and names for analysts: well-known text that GIS programs draw.
 #include <gtest/gtest.h>
 
 #include "db/journal_painter.h"
@@ -12,7 +12,7 @@ namespace {
 
 class Analysis : public ::testing::Test {
  protected:
-  // Returns one value as text; nothing for NULL.
+  // Returns one value as text, or nothing for NULL.
   std::optional<std::string> ask(const std::string& sql) {
     const auto rows = connection_->query_once("SELECT (" + sql + ")::text");
     EXPECT_TRUE(rows) << sql << ": " << (rows ? "" : rows.error().detail);

@@ -1,4 +1,4 @@
-// Filters of records: SQL of PostgreSQL against plain C++.
+// Filters of records: PostgreSQL's SQL compared with plain C++.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -78,7 +78,7 @@ class Filter : public ::testing::Test {
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
 };
 
-// A row of the table below, for plain C++.
+// A row of the table below, for the filter in plain C++.
 struct Row {
   std::optional<std::string> name, state, day, moment, period;
   std::optional<double> depth, count;
@@ -313,7 +313,7 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
       }
     }
 
-  // As of an earlier time: the result of the rows at that time.
+  // A filter at an earlier time returns the result for the rows of that time.
   const auto then = store_->tables().find(to_string(table.id), Role::owner)->sequence;
   const auto before = keys(table, "depth > 1 and t_during(period, '15XX')");
   WriteRecords clear;
@@ -324,8 +324,8 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
   EXPECT_EQ(*keys(table, "depth > 1 and t_during(period, '15XX')", then), *before);
 }
 
-// Random formulas over numbers: PostgreSQL's result for a record equals the result for texels with
-// the same numbers.
+// Random formulas over numbers. PostgreSQL's result for a record must equal the result for texels
+// with the same numbers.
 class RandomFormula {
  public:
   explicit RandomFormula(std::mt19937& random) : random_(random) {}
@@ -423,7 +423,7 @@ TEST_F(Filter, the_database_and_the_texels_reckon_alike) {
     EXPECT_EQ(records, texels->front());
     held += std::popcount(records);
   };
-  // Every row of the table of operators, so that each operator works in both.
+  // Tests every row of the table of operators, so each operator works in both implementations.
   for (const Operator& row : operators()) {
     const std::string name(row.name);
     std::string value;

@@ -109,7 +109,7 @@ TEST(Groups, the_highest_of_ones_own_role_and_those_of_ones_groups_counts) {
   EXPECT_EQ(roles_of(*store, gus).in(forum), Role::annotator) << "nor does a lower one of a group";
   EXPECT_EQ(groups.roles_of("Gus")->size(), 2u) << "what is less than their own is given by nobody";
   EXPECT_EQ(groups.people_with_role(villa)->size(), 1u);
-  // Each way in which the role ends.
+  // Tests each way in which the role ends.
   ASSERT_TRUE(groups.put(villa, diggers, Role::annotator, {}));
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::annotator);
   ASSERT_TRUE(groups.take(villa, diggers, {}));
@@ -169,7 +169,7 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   EXPECT_EQ(names_of(changed.now.members), (Names{"Ada", "Cyd"}));
   EXPECT_TRUE(changed.people.empty()) << "in no project does anybody do anything else than before";
   EXPECT_EQ(groups.all()->front().people, 2);
-  // Deleted people leave groups; invitations may contain groups.
+  // Deleted users leave groups. Invitations may contain groups.
   ASSERT_TRUE(store->accounts().remove("Ada"));
   EXPECT_EQ(names_of(groups.group(id)->members), Names{"Cyd"});
   EXPECT_EQ(store->accounts().create("Dan", "", Role::guest, {id, id}).value().groups,
@@ -184,8 +184,8 @@ TEST(Groups, it_is_told_who_could_do_less_without_one) {
   auto store = test::fresh_store();
   Groups& groups = store->groups();
   const auto villa = project(*store, "Villa"), forum = project(*store, "Forum");
-  // Of these, only people without another role lose one: not those with a role on the whole server,
-  // in another group or of their own.
+  // Of these users, only those without another role lose access. Users keep access if they have a
+  // role on the whole server, in another group or of their own.
   session_of(*store, "Only", Role::guest);
   session_of(*store, "Viewer", Role::viewer);
   session_of(*store, "Other", Role::guest);

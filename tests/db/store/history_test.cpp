@@ -23,7 +23,7 @@ class History : public ::testing::Test {
   JournalWriter writer_{*store_, {}};
   std::int64_t sequence_ = 0;
 
-  // Saves batches of one stroke; returns its sequences.
+  // Saves batches of one stroke and returns their sequences.
   std::vector<std::int64_t> stroke(const std::string& user, int batches = 1,
                                    const std::string& op = "stroke") {
     const Uuid id = random_uuid();
@@ -90,7 +90,7 @@ TEST_F(History, new_paint_ends_redo_for_its_author_only) {
   stroke("Ada");  // 5
   EXPECT_THAT(redoable("Ada"), IsEmpty());
   EXPECT_THAT(redoable("Ben"), ElementsAre(2));
-  undo("Ada");  // 6 takes 5
+  undo("Ada");  // 6 undoes 5
   EXPECT_THAT(redoable("Ada"), ElementsAre(5));
   redo("Ada");
   EXPECT_THAT(redoable("Ada"), IsEmpty());
@@ -137,7 +137,7 @@ TEST_F(History, a_step_has_the_sums_and_the_value_of_its_batches) {
   EXPECT_THAT(store_->journal().undo_steps(model_.id, "Ada", {{}, {}, 9})->done, IsEmpty());
 }
 
-// The list is compared with the undos, or redos, that follow one another from the same state.
+// Compares the list with the undos, or redos, that follow one another from the same state.
 TEST_F(History, the_steps_are_those_that_undos_and_redos_take_in_this_order) {
   std::mt19937 random(11);
   const auto turn_all = [&](bool redoes) {

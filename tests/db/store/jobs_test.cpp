@@ -1,4 +1,4 @@
-// The stored state of long work after a restart: every possible end; a success is stored together
+// The stored state of jobs after a restart, for every possible end. A success is stored together
 // with its effect or not at all.
 #include "store/content/jobs.h"
 
@@ -43,7 +43,7 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
                     {"field", "file"}};
   ASSERT_TRUE(store->jobs().end(failed));
 
-  for (int restart = 0; restart < 2; ++restart) {  // a second time is harmless
+  for (int restart = 0; restart < 2; ++restart) {  // a second restart changes nothing
     const auto stored = store->jobs().take_over(1000);
     ASSERT_TRUE(stored);
     ASSERT_EQ(stored->size(), 4u);
@@ -94,7 +94,7 @@ TEST(Jobs, success_is_written_with_what_it_made) {
   };
   const auto made = store->projects().create(fresh, answer(21));
   ASSERT_TRUE(made);
-  fresh.name = "";  // refused: nothing is created, and the job is not done
+  fresh.name = "";  // refused, so nothing is created and the job is not done
   EXPECT_FALSE(store->projects().create(fresh, answer(22)));
   auto jobs = by_id(*store->jobs().take_over(10));
   EXPECT_EQ(jobs.at(21).state, "done");

@@ -43,7 +43,7 @@ TEST_P(JournalOfType, a_layer_reads_as_it_was_after_every_edit) {
     writer.drain();
     EXPECT_EQ(saved, 220);
   }
-  // 440 revisions of 4 tiles: every tile has at least one key tile
+  // 440 revisions of 4 tiles are enough for at least one key tile of every tile.
   EXPECT_GE(PgConnection::connect(dsn_)
                 ->query("SELECT count(*) FROM tile_revisions WHERE key_tile IS NOT NULL")
                 ->integer(0, 0),
@@ -92,7 +92,7 @@ TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
   Painter painter(test::make_layer(*store_, model_.id), 3, 8);
   JournalWriter writer(*store_, {});
   for (int i = 1; i <= 100; ++i) ASSERT_TRUE(save(writer, painter.paint(i, 1, 2)));
-  // Older revisions cannot be decoded; only at= needs them.
+  // Damages older revisions, so only queries with at= fail.
   ASSERT_TRUE(PgConnection::connect(dsn_)->script(
       "UPDATE tile_revisions r SET difference = '\\x00' WHERE sequence < (SELECT max(sequence) FROM tile_revisions k "
       "WHERE k.tile_x = r.tile_x AND k.tile_y = r.tile_y AND k.key_tile IS NOT NULL)"));
@@ -113,7 +113,7 @@ TEST_F(Journal, deleting_the_layer_of_the_newest_edit_leaves_a_gap_and_the_journ
     EXPECT_FALSE(save(writer, remaining.entry(2)));
     ASSERT_TRUE(save(writer, remaining.paint(3, 2, 4)));
   }
-  // The same after a restart.
+  // The result is the same after a restart.
   store_ = test::open_store(dsn_);
   JournalWriter writer(*store_, {});
   ASSERT_TRUE(save(writer, remaining.paint(4, 2, 4)));
@@ -149,7 +149,8 @@ TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_h
       }
     ASSERT_TRUE(save(writer, std::move(fill)));
     for (int i = 0; i < 8; ++i) {
-      // strokes over everything, as differences from empty tiles: the content is irrelevant here
+      // Paints everything with strokes as differences from empty tiles. The content is irrelevant
+      // here.
       auto stroke = painter.entry(++sequence);
       const TileData before(layers.back().type);
       TileData after(layers.back().type);

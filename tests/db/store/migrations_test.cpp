@@ -32,7 +32,7 @@ std::string read(const fs::path& file) {
   return text.str();
 }
 
-// A copy of the real migrations; a test may add to it.
+// Copies the real migrations. A test may add migrations to the copy.
 void copy_migrations(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(STRATA_MIGRATIONS_DIR))
     fs::copy_file(entry.path(), folder / entry.path().filename());

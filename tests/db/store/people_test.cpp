@@ -177,7 +177,7 @@ TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
             ErrorCode::not_found);
   for (const auto& secret : {session, weak, strong})
     EXPECT_FALSE(store->tokens().find(secret).value());
-  // A person's change of their own account at the same time reverts nothing of it.
+  // Users can change their own account at the same time. That change does not revert the first one.
   EXPECT_TRUE(store->accounts().update(ada.id, {"Ada L.", {}, {}}).value().disabled);
   ASSERT_TRUE(store->accounts().update(ada.id, {{}, {}, false}));
   for (const auto& ended : {session, invitation}) EXPECT_FALSE(store->tokens().find(ended).value());
@@ -241,7 +241,7 @@ TEST(People, in_a_project_somebody_may_do_more) {
   ASSERT_TRUE(store->members().remove(project, "GUS"));
   EXPECT_EQ(store->members().remove(project, "Gus").error().code, ErrorCode::not_found);
   EXPECT_EQ(roles_of(session), Roles{});
-  // Deleting the project, or the person, removes the role.
+  // Deleting the project, or the user, removes the role.
   ASSERT_TRUE(store->members().put(project, "Gus", Role::viewer));
   ASSERT_TRUE(store->projects().remove(project));
   EXPECT_EQ(roles_of(session), Roles{});

@@ -1,4 +1,4 @@
-// Random edits of three people on two tables, with undo and redo, compared with a model in plain
+// Random edits by three users on two tables, with undo and redo, compared with a model in plain
 // C++: a cell has the value of the newest edit in force that wrote it.
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@ using nlohmann::json;
 
 struct Cell {
   std::int64_t key = 0;  // 0: the cell belongs to the column
-  ColumnId column;       // 0: whether the record exists
+  ColumnId column;       // 0: the cell stores whether the record exists
   auto operator<=>(const Cell&) const = default;
 };
 
-// The model: every edit with its written cells.
+// The model: every edit with the cells that it wrote.
 class Oracle {
  public:
   struct Edit {
@@ -64,7 +64,7 @@ class Oracle {
           return found->second;
     return nullptr;
   }
-  // {key: {column: value}} of existing records and shown columns.
+  // Returns {key: {column: value}} for existing records and shown columns.
   json content(const std::vector<ColumnId>& columns, std::int64_t greatest_key) const {
     json all = json::object();
     for (std::int64_t key = 1; key <= greatest_key; ++key) {

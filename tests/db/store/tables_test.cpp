@@ -36,7 +36,7 @@ class Tables : public ::testing::Test {
     EXPECT_TRUE(made) << made.error().detail;
     return made.value_or(Table{});
   }
-  // Writes one record; a record with the key may exist.
+  // Writes one record. With a key, replaces an existing record.
   Result<TableChange> put(const Table& table, std::optional<std::int64_t> key,
                           const std::map<std::string, json>& values,
                           const std::string& user = "ana",
@@ -57,7 +57,7 @@ class Tables : public ::testing::Test {
     if (!plan) return tl::unexpected(plan.error());
     return store_->tables().undo(table.id, user, redo, plan->table_sequence);
   }
-  // {key: {slug: value}} without null values.
+  // Returns {key: {slug: value}} without null values.
   json content(const Table& table, std::optional<std::int64_t> at = {}) {
     auto page = store_->records().page(table.id, Role::owner, {{}, {}, at, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
@@ -186,7 +186,7 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   EXPECT_EQ(put(table, 1, {{"code", nullptr}}).error().code, ErrorCode::invalid);
   EXPECT_EQ(put(table, 2, {{"code", std::string(kMaxUniqueTextLength + 1, 'x')}}).error().field,
             "values.code");
-  // Two records in one call, and a swap, which is valid only as a whole.
+  // Writes two records in one call. A swap of unique values is valid only if both change together.
   ASSERT_TRUE(put(table, 2, {{"code", "B"}}));
   const auto code_id = table.columns[0].id;
   WriteRecords both;
@@ -195,7 +195,7 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   EXPECT_EQ(content(table), (json{{"1", {{"code", "B"}}}, {"2", {{"code", "A"}}}}));
   both.records = {{3, {{code_id, "C"}}}, {4, {{code_id, "C"}}}};
   EXPECT_EQ(store_->records().write(table.id, both, "ana")->problems.size(), 1u);
-  // A change to a unique column checks the existing values.
+  // Making a column unique checks the existing values.
   ASSERT_TRUE(put(table, 1, {{"name", "same"}}));
   ASSERT_TRUE(put(table, 2, {{"name", "same"}}));
   Column name = now(table).columns[1];
@@ -219,7 +219,7 @@ TEST_F(Tables, terms_and_relations_name_records_that_are_there) {
   EXPECT_EQ(put(units, 1, {{"damage", 2}}).error().field, "values.damage");
   ASSERT_TRUE(put(units, 1, {{"damage", 1}}));
   EXPECT_EQ(put(units, 2, {{"above", {1, 3}}}).error().field, "values.above");
-  ASSERT_TRUE(put(units, 2, {{"above", {1, 2}}}));  // itself, which the same call creates
+  ASSERT_TRUE(put(units, 2, {{"above", {1, 2}}}));  // a reference to itself, made by the same call
   EXPECT_EQ(store_->records().remove(terms.id, 1, {}, "ana").error().title, "Record in use");
   EXPECT_EQ(store_->records().remove(units.id, 1, {}, "ana").error().title, "Record in use");
   EXPECT_EQ(undo(terms).error().code, ErrorCode::conflict);
@@ -301,7 +301,8 @@ TEST_F(Tables, a_dropped_column_comes_back_with_its_values) {
   EXPECT_EQ(store_->tables().drop_column(table.id, table.columns[0].id, {}, "ana").error().code,
             ErrorCode::not_found);
   ASSERT_TRUE(put(table, 2, {}, "ben"));
-  // Another column can use its slug, which is then taken when the first one is restored.
+  // Another column can take the slug of a deleted column. Then undo cannot restore the deleted
+  // column.
   ASSERT_TRUE(store_->tables().create_column(table.id, column("Code"), "ben"));
   EXPECT_EQ(undo(table).error().title, "Slug already used");
   ASSERT_TRUE(undo(table, "ben"));
@@ -406,7 +407,7 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
   ASSERT_TRUE(put(table, 1, {{"name", "beta"}, {"period", "1560"}, {"depth", 10}}));
   ASSERT_TRUE(put(table, 2, {{"name", "Alpha"}, {"period", "-0043"}, {"depth", 9}}));
   ASSERT_TRUE(put(table, 3, {{"name", "alpha"}, {"period", "Y-17000~"}}));
-  // As in dictionaries (CLDR): by letters first, then small before capital letters.
+  // The order is that of dictionaries (CLDR): first by letter, then lowercase before uppercase.
   EXPECT_EQ(keys(table, {{"name", false}, {"key", true}}), (std::vector<std::int64_t>{3, 2, 1}));
   EXPECT_EQ(keys(table, {{"period", false}}), (std::vector<std::int64_t>{3, 2, 1}));
   EXPECT_EQ(keys(table, {{"depth", false}}), (std::vector<std::int64_t>{2, 1, 3}));
@@ -421,7 +422,7 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
       store_->records().page(table.id, Role::owner, {{{"depth", false}}, {}, {}, 1, 1}).value();
   EXPECT_EQ(page.total, 3);
   EXPECT_EQ(page.records.at(0).key, 1);
-  // Earlier content is sorted the same way.
+  // Earlier content is sorted in the same way.
   ASSERT_TRUE(store_->records().remove(table.id, 1, {}, "ana"));
   const auto past =
       store_->records().page(table.id, Role::owner, {{{"name", false}}, {}, 3, 2, 1}).value();

@@ -44,7 +44,7 @@ class Terms : public ::testing::Test {
     EXPECT_TRUE(list->mistakes.empty());
     return store_->tables().import_terms(table.id, *list, dry_run, "ana");
   }
-  // {code, key, parent's code, label} in the order of the tree.
+  // Returns {code, key, parent's code, label} in the order of the tree.
   std::vector<std::string> content(const Table& table) {
     RecordQuery all;
     all.limit = 1000;
@@ -181,7 +181,7 @@ TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
   Column kind, above;
   kind.name = "Kind";
   kind.kind = ColumnKind::term;
-  kind.target = TableId(1);  // replaced by the table before it
+  kind.target = TableId(1);  // replaced by the previous table of the request
   above.name = "Above";
   above.kind = ColumnKind::relation;
   above.target = kOwnTable;

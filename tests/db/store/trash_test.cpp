@@ -48,7 +48,7 @@ class TrashOfAProject : public ::testing::Test {
     return connection_->query_once("SELECT count(*) FROM " + what)->integer(0, 0);
   }
   void run(const std::string& sql) { ASSERT_TRUE(connection_->script(sql)) << sql; }
-  // Erases all content that is due; returns the number of steps.
+  // Erases all content that is due and returns the number of steps.
   int erase_all() {
     int steps = 0;
     while (trash_.erase_some().value()) ++steps;
@@ -118,7 +118,7 @@ TEST_F(TrashOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as
   EXPECT_THAT(listed(), ::testing::IsEmpty());
   EXPECT_EQ(trash_.restore(in_trash, by<TrashRestored>("carl")).error().code, ErrorCode::not_found)
       << "it was restored already";
-  paint(now, 1);  // the journal continues at its last sequence
+  paint(now, 1);  // the journal continues after its last sequence
 }
 
 TEST_F(TrashOfAProject, a_model_takes_all_along_and_brings_it_back) {

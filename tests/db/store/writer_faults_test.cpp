@@ -18,7 +18,7 @@ namespace {
 
 using test::Painter;
 
-// Each test has a separate cluster, because it kills it.
+// Each test has a separate cluster, because the test kills it.
 class WriterFaults : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -30,7 +30,7 @@ class WriterFaults : public ::testing::Test {
     layer_ = test::make_layer(*store_, model_.id);
   }
   void kill_postmaster() { test::kill_postmaster(*cluster_); }
-  // Kills a working process of the database: the postmaster then ends all sessions and recovers.
+  // Kills a backend process of the database. The postmaster then ends all sessions and recovers.
   void kill_backend() {
     auto connection = PgConnection::connect(cluster_->dsn());
     if (!connection) return;
@@ -67,7 +67,7 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
       const auto entry = painter.paint(++submitted, 2, 3);
       const auto done = [&, sequence = entry.sequence](Result<void> result) {
         EXPECT_TRUE(result) << result.error().detail;
-        EXPECT_EQ(saved.exchange(sequence), sequence - 1);  // in order, each once
+        EXPECT_EQ(saved.exchange(sequence), sequence - 1);  // in order, each one once
       };
       while (!writer.submit(entry, done)) {
         ++refused;
@@ -101,7 +101,7 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
   EXPECT_EQ(store_->journal().history(layer_.id, 1, 0)->total, submitted);
   EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) ==
               replay(layer_, kSeed, submitted));
-  // Edits are stored completely or not at all: every edit has its tiles.
+  // Edits are stored completely or not at all, so every edit has its tiles.
   auto connection = PgConnection::connect(cluster_->dsn());
   EXPECT_EQ(
       connection
@@ -120,7 +120,7 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
   ASSERT_TRUE(test::save(writer, painter.paint(1, 2, 4)));
   const auto stored = painter.content();
   {
-    // later edits wait, and no session that ends late can commit them
+    // During a hang later edits wait. No session that ends late can commit them.
     test::Hang hang(*cluster_);
     std::vector<std::int64_t> answered;
     for (int i = 2; i <= 30; ++i)

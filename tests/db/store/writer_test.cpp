@@ -24,7 +24,7 @@ constexpr Answer kSaved = std::nullopt;
 
 class Writer : public ::testing::Test {
  protected:
-  // Submits and records the answer: nothing, or the code of its error.
+  // Submits an entry and records the result: no value, or the code of its error.
   void submit(JournalWriter& writer, JournalEntry entry) {
     ASSERT_TRUE(writer.submit(std::move(entry), [this](Result<void> result) {
       std::lock_guard lock(mutex_);
@@ -46,8 +46,7 @@ class Writer : public ::testing::Test {
   Error last_problem_;
 };
 
-// Keeps the writer waiting at its next transaction on a model, so that later submissions form one
-// group.
+// Makes the writer wait at its next transaction on a model, so later submissions form one group.
 class HeldModel {
  public:
   HeldModel(const std::string& dsn, ModelId id)
@@ -101,7 +100,7 @@ TEST_F(Writer, an_entry_that_an_earlier_try_committed_counts_as_saved) {
     submit(first, entry);
   }
   JournalWriter second(*store_, {});
-  submit(second, entry);  // like the repeat after a commit whose answer was lost
+  submit(second, entry);  // like a repeat after a commit whose result was lost
   submit(second, next);
   second.drain();
   EXPECT_THAT(answers_, ElementsAre(kSaved, kSaved, kSaved));
@@ -117,7 +116,7 @@ TEST_F(Writer, an_edit_made_on_top_of_one_that_was_not_saved_is_refused_while_ot
   submit(writer, painter_.paint(1, 1, 4));
   held.wait_until_someone_waits();
   auto bad = painter_.paint(2, 1, 4);
-  bad.record["text"] = "\xff";  // can never be stored
+  bad.record["text"] = "\xff";  // not valid UTF-8, so it can never be stored
   submit(writer, bad);
   submit(writer, other.paint(1, 1, 4));
   submit(writer, painter_.paint(3, 1, 4));

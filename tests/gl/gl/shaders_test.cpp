@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Variants = std::vector<std::vector<std::string>>;
 
-// Every program of the server: its files and its defines.
+// The files of every program of the server, and their defines.
 const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"mesh.vert", "depth_pass.frag"}, {{}, {"SECTION"}}},
     {{"mesh.vert", "gbuffer_pass.frag"},

@@ -42,8 +42,8 @@ class GlWrapper : public testing::Test {
 };
 
 #ifndef __SANITIZE_THREAD__
-// As the fences of llvmpipe are freed: by a thread that saw the result of another, which still
-// holds the mutex. See mutex_destruction.cpp.
+// A thread sees the result of another thread and destroys the mutex, which the other thread still
+// holds. llvmpipe frees its fences in this way. See mutex_destruction.cpp.
 TEST(MutexDestruction, waits_for_the_thread_inside_the_mutex) {
   pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
   std::atomic<bool> complete = false, left = false;
@@ -68,8 +68,8 @@ TEST(MutexDestruction, of_the_driver_is_that_of_the_program) {
 }
 #endif
 
-// Objects are constructed, moved and assigned over another; a moved-from object is empty, and the
-// name exists as long as its last owner.
+// Checks that objects can be constructed, moved and assigned. A moved-from object must be empty,
+// and the GL name must exist until its last owner is destroyed.
 template <class T, class IsName>
 void expect_moves(T first, T second, IsName is_name) {
   const GLuint name = first.id(), other = second.id();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kResolution = 2048;
 
-// Both cullers for one scene, in the GL context of a renderer.
+// The cullers of the CPU and the GPU for one scene, in the GL context of a renderer.
 class Cullers {
  public:
   explicit Cullers(const Scene& scene)
@@ -32,7 +32,7 @@ class Cullers {
   }
 
   struct Found {
-    std::map<std::uint32_t, std::uint32_t> parts;  // with their segments' bits
+    std::map<std::uint32_t, std::uint32_t> parts;  // parts, with the bits of their segments
     std::set<TileAddress> tiles;
   };
   Found on_gpu(const StrokeBatch& stroke, const render::ToolPath& path) {
@@ -125,7 +125,8 @@ TEST(EditCuller, lists_the_parts_that_the_cpu_lists_and_few_others) {
       std::set<TileAddress> tiles;
       for (const auto& tile : expected.tiles) {
         for (const auto& part : std::span(expected.parts).subspan(tile.first, tile.count)) {
-          // Where the tool covers eight parts, the CPU takes them at once without testing each.
+          // The CPU accepts eight parts together if the tool covers them, without testing each
+          // part.
           const auto listed = found.parts.find(part.part);
           if (listed == found.parts.end()) {
             EXPECT_TRUE(part.in_tool);

@@ -13,7 +13,7 @@
 namespace strata::test {
 namespace {
 
-// A sphere with too many triangles for a moving camera on a CPU, on any machine under any load.
+// A sphere with too many triangles for a moving camera on a CPU, on every machine under any load.
 class Detail : public testing::Test {
  protected:
   Detail() : scene_(make_scene(bumpy_sphere(300), 512)) {
@@ -80,7 +80,7 @@ TEST_F(Detail, never_reaches_the_depth_of_an_edit) {
 }
 
 TEST_F(Detail, does_not_matter_for_clusters_outside_the_window) {
-  // The same mesh with boxes that are never outside, so that everything is drawn.
+  // The same mesh with boxes that are never outside the window, so all clusters are drawn.
   auto unculled = std::make_shared<mesh::Geometry>(*scene_.geometry);
   for (auto& box : unculled->clusters) box = {unculled->box_min, unculled->box_max};
   Scene all;
@@ -98,10 +98,10 @@ TEST_F(Detail, does_not_matter_for_clusters_outside_the_window) {
   }
 }
 
-// A sphere of 380 clusters, drawn until it is complete.
+// Draws a sphere of 380 clusters completely.
 class Hidden : public testing::Test {
  protected:
-  // Returns the number of commands that lost their draw.
+  // Returns the number of culled draw commands.
   static std::size_t draw(render::MeshPass& pass, const render::MeshBuffers& mesh,
                           const Camera& camera, render::DepthBuffer& buffer) {
     render::MeshProgress progress;
@@ -152,7 +152,7 @@ TEST_F(Hidden, clusters_of_the_far_side_are_most_of_it) {
     auto mesh = render::MeshBuffers::create(scene_.geometry, memory);
     while (!(*mesh)->upload_slice()) {
     }
-    // For any amount that is drawn at once.
+    // The result must not depend on the size of a slice.
     for (const std::size_t slice : {std::size_t{1} << 13, std::size_t{1} << 30}) {
       auto pass = render::MeshPass::create(render::MeshPass::Kind::depth, shader_dir(), slice);
       ASSERT_TRUE(pass);
@@ -179,7 +179,7 @@ TEST(DetailBudget, learns_from_what_drawings_took) {
   EXPECT_EQ(budget.choose(levels), 0);
   for (int i = 0; i < 50; ++i) budget.drawn(1'000'000, 60);
   EXPECT_EQ(budget.choose(levels), 1);
-  for (int i = 0; i < 50; ++i) budget.drawn(100, 1);  // too few for a decision
+  for (int i = 0; i < 50; ++i) budget.drawn(100, 1);  // too few triangles for a decision
   EXPECT_EQ(budget.choose(levels), 1);
 }
 

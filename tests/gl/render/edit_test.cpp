@@ -126,7 +126,7 @@ TEST(Edit, an_occluded_texel_is_not_painted) {
     front += tile.written.count();
   }
   EXPECT_GT(front, 5000);
-  // From behind, the other sheet is visible.
+  // The other sheet is visible from behind.
   for (const auto& tile :
        renderer
            .paint(layer, dab(perspective_camera({0, 0, -2}, {0, 0, 0}, 800, 600), 400, 300, 100))
@@ -141,7 +141,7 @@ TEST(Edit, a_stroke_at_3000_pixels_a_second_has_no_gap) {
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 512);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5);
   auto stroke = dab(camera, 100, 500, 4);
-  // Events at 60 Hz are 50 pixels apart.
+  // Pointer events at 60 Hz are 50 pixels apart.
   stroke.path.clear();
   for (int x = 100; x <= 900; x += 50) stroke.path.emplace_back(x, 500);
   std::set<int> columns;
@@ -176,7 +176,7 @@ TEST(Edit, a_radius_in_model_units_grows_towards_the_eye_along_a_segment) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(8), 1024);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 1024);
-  // A view of the square at an angle: the lower end of the path is nearer.
+  // The camera views the square at an angle, so the lower end of the path is nearer.
   const auto camera = perspective_camera({0, -1.2, 0.9}, {0, 0, 0}, 800, 600);
   auto stroke = dab(camera, 400, 250, 0);
   stroke.path = {{400, 220}, {400, 420}};
@@ -204,7 +204,7 @@ TEST(Edit, a_radius_in_model_units_does_not_depend_on_the_units_of_the_view) {
     stroke.radius_world = 0.2;
     return written_texels(renderer.paint(renderer.add_layer(model, ValueType::u8, 1024), stroke));
   };
-  auto scaled = camera;  // the same view; only the units of its view space differ
+  auto scaled = camera;  // the same view in different units of its view space
   scaled.view = glm::scale(glm::dmat4(1.0), glm::dvec3(2.5)) * camera.view;
   EXPECT_NEAR(written_from(scaled), written_from(camera), 20);
 }
@@ -225,7 +225,7 @@ TEST(Edit, a_radius_far_beyond_the_window_paints_all_that_is_seen) {
   EXPECT_EQ(written_by(1e300, 0), all);
 }
 
-// While an object exists, the driver refuses to map the buffer after the next `granted` times. GPU
+// Makes the driver refuse to map a buffer, after `granted` successful calls, until destruction. GPU
 // thread only.
 class MapRefusal {
  public:
@@ -252,7 +252,7 @@ TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {
     GTEST_SKIP() << "the kernel maps no buffer";
   int refusals = 0;
   for (bool painted = false; !painted; ++refusals) {
-    TestRenderer renderer;  // a new one has no buffer to reuse
+    TestRenderer renderer;  // a new renderer has no buffer to reuse
     const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 256);
     std::optional<MapRefusal> refusal;
     renderer->run_on_gpu_thread_for_test([&] { refusal.emplace(refusals); });
@@ -338,7 +338,7 @@ TEST(Edit, gutter_texels_follow_their_owner) {
     for (int x = 0; x < kResolution; ++x) {
       const Texel gutter = texel(x, y);
       if (!gutter.owned || gutter.surface) continue;
-      // Its owner is the nearby surface texel with the same position.
+      // The owner is the nearby surface texel with the same position.
       float nearest = 1e-5f;
       std::size_t owner = 0;
       for (int dy = -3; dy <= 3; ++dy) {
@@ -384,7 +384,7 @@ TEST(Edit, strokes_that_cannot_be_painted_are_refused_with_a_reason) {
   auto stroke = dab(camera, 50, 50, 10);
   refused(layer + 100, stroke, ErrorCode::not_found);
   refused(renderer.add_layer(model, ValueType::u8, 512), stroke,
-          ErrorCode::conflict);  // the model has no surface map of 512
+          ErrorCode::conflict);  // the model has no surface map of 512²
   stroke.path.clear();
   refused(layer, stroke, ErrorCode::invalid);
   refused(layer, dab(camera, std::nan(""), 0, 10), ErrorCode::invalid);

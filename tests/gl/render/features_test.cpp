@@ -1,4 +1,4 @@
-// Lines and points over the surface, compared with distances in the picture's plane.
+// Tests lines and points over the surface, compared with distances in the image plane.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ class SurfaceFeatures : public testing::Test {
  protected:
   SurfaceFeatures() : scene_(make_scene(flat_square(), 128)), model_(renderer_.add(scene_)) {}
 
-  // The square's corner is 0, 0. From above a pixel is 1/100 of its side.
+  // Returns a point relative to the corner of the square at 0, 0. From above, a pixel is 1/100 of
+  // the square's side.
   static glm::dvec3 at(double x, double y, double z = 0) { return {x - 0.5, y - 0.5, z}; }
   static Camera from_above() { return orthographic_camera({0, 0, 2}, {0, 0, 0}, kSize, kSize, 1); }
   static glm::dvec2 on_picture(double x, double y) {
@@ -41,8 +42,8 @@ class SurfaceFeatures : public testing::Test {
     return {p[0], p[1], p[2]};
   }
 
-  // Each pixel has the color of the mark, of its casing, or its earlier color, except for one pixel
-  // at the borders.
+  // Expects each pixel to have the color of the mark, the color of its casing, or its earlier
+  // color. Pixels within 0.6 pixels of a border may have any color.
   static void expect_mark(const render::Frame& with, const render::Frame& without, glm::dvec2 a,
                           glm::dvec2 b, double width, double scale = 1) {
     const double half = width / 2 * scale, casing = render::kFeatureCasing_px * scale;
@@ -117,7 +118,7 @@ TEST_F(SurfaceFeatures, the_section_cuts_them) {
 TEST_F(SurfaceFeatures, a_line_past_the_eye_shows_the_part_that_is_ahead) {
   const Camera camera = perspective_camera({0, 0, 2}, {0, 0, 0}, kSize, kSize);
   const auto without = draw(camera, {});
-  // From the center of the square straight up, and past the eye next to it.
+  // One line goes from the center of the square upwards and passes next to the eye.
   const auto with =
       draw(camera, {{{at(0.5, 0.5), at(0.9, 0.5, 5)}, kRed}, {{at(0.5, 0.5, 3)}, kRed}});
   EXPECT_EQ(pixel(with, kSize / 2 + 2, kSize / 2), (std::array<int, 3>{kRed[0], kRed[1], kRed[2]}));
@@ -144,14 +145,14 @@ TEST_F(SurfaceFeatures, a_part_of_a_picture_that_is_drawn_anew_has_them_too) {
       ASSERT_EQ((std::array<int, 3>{p[0], p[1], p[2]}),
                 pixel(whole, part.rects.at(0).x + x, part.rects.at(0).y + y));
     }
-  // With other marks the whole picture changes, although the surface does not.
+  // With other marks the complete frame changes, although the surface does not.
   request.style.features = nullptr;
   request.changed = std::vector<render::FrameRequest::Box>{};
   EXPECT_EQ(renderer_.draw(request).rects.at(0).width, kSize);
   renderer_->remove_view(request.view);
 }
 
-// A relief of waves with known heights, and its view without perspective in plain C++: follows rays
+// A relief of waves with known heights. Plain C++ computes its orthographic view by following rays
 // through the heights.
 class FeaturesOnRelief : public SurfaceFeatures {
  protected:
@@ -174,7 +175,7 @@ class FeaturesOnRelief : public SurfaceFeatures {
   }
   ~FeaturesOnRelief() override { renderer_->remove_view(view_); }
 
-  // `elevation`: degrees of the eye above the plane; 90 is from above.
+  // `elevation`: the angle of the eye above the plane, in degrees; 90 is from above.
   static Camera seen_from(double elevation, double half_height,
                           const glm::dvec3& target = {0, 0, 0}) {
     const double e = elevation * kPi / 180;
@@ -199,11 +200,11 @@ class FeaturesOnRelief : public SurfaceFeatures {
     return glm::dvec2((clip.x / clip.w + 1) / 2, (1 - clip.y / clip.w) / 2) * (1.0 * scale * kSize);
   }
 
-  // close: a slightly different pixel or reach would change the result
+  // `close`: a slightly different pixel or reach would change the result.
   enum class Sight { visible, hidden, close };
 
-  // Returns the depth of a place below the surface that its pixel shows, perpendicular to that
-  // surface; below 0: no surface there.
+  // Returns how far a point is below the surface that its pixel shows, perpendicular to that
+  // surface. Returns −1 if the pixel shows no surface in front of the point.
   static double depth_below(const Camera& camera, const glm::dvec2& pixel,
                             const glm::dvec3& place) {
     const Ray ray = ray_through_pixel(camera, pixel.x, pixel.y);
@@ -222,7 +223,8 @@ class FeaturesOnRelief : public SurfaceFeatures {
     for (const double dx : {-around_px, 0.0, around_px})
       for (const double dy : {-around_px, 0.0, around_px}) {
         const glm::dvec2 p = at + glm::dvec2(dx, dy);
-        // The place at the same depth under the other pixel: a plane perpendicular to the view.
+        // Use the point at the same depth under the other pixel, in a plane perpendicular to the
+        // view.
         const Ray ray = ray_through_pixel(camera, p.x, p.y);
         const double depth = depth_below(
             camera, p, ray.origin + glm::dot(place - ray.origin, ray.direction) * ray.direction);
@@ -233,7 +235,8 @@ class FeaturesOnRelief : public SurfaceFeatures {
     return hidden == 9 ? Sight::hidden : visible && hidden == 0 ? Sight::visible : Sight::close;
   }
 
-  // The number of a disc's pixels that differ, and of all its pixels.
+  // Counts of pixels: `all` and `differ` inside the disc, and `beyond` for differing pixels
+  // outside.
   struct Drawn {
     int differ = 0, all = 0, beyond = 0;
   };
@@ -307,14 +310,14 @@ TEST_F(FeaturesOnRelief, lines_have_their_full_width_wherever_their_path_is_visi
       };
       bool is_visible = true, is_hidden = true;
       for (const double near : {-0.02, -0.01, 0.0, 0.01, 0.02}) {
-        // the mark extends beyond its place
+        // The mark extends beyond its point, so points near it are tested too.
         const Sight seen = sight(camera, at(t + near), near == 0 ? 2 : 1);
         is_visible &= seen == Sight::visible;
         is_hidden &= seen == Sight::hidden;
       }
       if (!is_visible && !is_hidden) continue;
       const glm::dvec2 middle = pixel_of(camera, at(t));
-      // Between two places the line is straight: it may be a pixel away.
+      // The line is straight between two points, so it may be a pixel away.
       const int x = static_cast<int>(middle.x), y = static_cast<int>(middle.y);
       if (is_visible) {
         ++visible;
@@ -334,8 +337,8 @@ TEST_F(FeaturesOnRelief, lines_have_their_full_width_wherever_their_path_is_visi
 }
 
 TEST_F(FeaturesOnRelief, symbols_of_a_figure_are_whole_at_every_scale_and_resolution) {
-  // A line of chords as stored from a view of a hand's width: up to half a pixel away from the
-  // surface.
+  // A line of chords as stored from a view that is as wide as a hand. The chords are up to half a
+  // pixel away from the surface.
   std::vector<glm::dvec3> places;
   for (int i = 0; i <= 40; ++i) places.push_back(on_relief(-0.2 + 0.4 * i / 40, 0.13));
   const glm::dvec3 middle = on_relief(0.021, 0.13);
@@ -351,7 +354,7 @@ TEST_F(FeaturesOnRelief, symbols_of_a_figure_are_whole_at_every_scale_and_resolu
                                 scale * (render::kPointWidth_px / 2 + render::kFeatureCasing_px));
         EXPECT_EQ(point.differ, point.all);
         EXPECT_EQ(point.beyond, 0);
-        // The whole visible part of the line, without a gap.
+        // Expects the complete visible part of the line, without a gap.
         const auto line = draw_relief(camera, {{places, kRed}}, scale);
         int reds = 0, gaps = 0;
         for (double t = 0; t < 1; t += 1e-4) {
@@ -371,8 +374,8 @@ TEST_F(FeaturesOnRelief, symbols_of_a_figure_are_whole_at_every_scale_and_resolu
 }
 
 TEST_F(SurfaceFeatures, what_lies_behind_an_edge_is_hidden_and_what_lies_before_it_is_whole) {
-  // A sheet under another one: marks on the lower one are visible only from below, also next to the
-  // upper one's edge.
+  // Two parallel sheets. Marks on the lower sheet are visible only from below, even next to the
+  // edge of the upper sheet.
   const Scene sheets = make_scene(folded_sheets(0.05), 128);
   const auto model = renderer_.add(sheets);
   const auto draw_sheets = [&](const Camera& camera, std::vector<render::DrawnFeature> features) {
@@ -403,13 +406,13 @@ TEST_F(SurfaceFeatures, what_lies_behind_an_edge_is_hidden_and_what_lies_before_
     }
     EXPECT_EQ(draw_sheets(camera, {{{at(-0.3, back), at(0.3, back)}, kRed}}).pixels,
               without.pixels);
-    // A point exactly on the edge is a whole disc, half of it over the background.
+    // A point exactly on the edge is a complete disc, half of it over the background.
     const auto edge = draw_sheets(camera, {{{at(0.499, front)}, kRed}});
     int reds = 0;
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x)
         reds += pixel(edge, x, y) == std::array<int, 3>{kRed[0], kRed[1], kRed[2]};
-    EXPECT_NEAR(reds, 3.14159 * 4.5 * 4.5, 6);  // its border is mixed with the casing
+    EXPECT_NEAR(reds, 3.14159 * 4.5 * 4.5, 6);  // the border is mixed with the casing
   }
 }
 

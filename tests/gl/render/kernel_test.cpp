@@ -99,7 +99,7 @@ TEST(Kernel, a_stroke_for_whose_tiles_there_is_no_memory_has_painted_nothing) {
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
-  // The six remaining pages have no texels of it.
+  // The six remaining pages must not contain texels of the refused stroke.
   const auto outcome = renderer.paint(layer, dab(camera, 100, 100, 10, 9));
   ASSERT_FALSE(outcome.tiles.empty());
   for (const auto& painted : outcome.tiles) EXPECT_TRUE(painted.after.valid == painted.written);

@@ -74,7 +74,7 @@ TEST(Layers, memory_grows_with_what_is_painted_and_is_freed_when_erased) {
   eraser.erase = true;
   renderer.paint(layer, eraser);
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
-  // Pages of the erased texels are reused, and have no texels of them.
+  // The pages of the erased texels are reused. They must not contain the erased texels.
   const auto pool = renderer->gpu_bytes_used();
   const auto again = renderer.paint(layer, dab(camera, 700, 700, 60, 9));
   EXPECT_EQ(renderer->gpu_bytes_used(), pool);
@@ -119,7 +119,7 @@ TEST(Layers, removing_a_layer_or_a_model_gives_its_memory_back) {
 
 TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
   render::RendererOptions options;
-  // one slice of four-byte pages takes 20 MiB, of one-byte pages 8 MiB
+  // One slice of four-byte pages takes 20 MiB. One slice of one-byte pages takes 8 MiB.
   options.gpu_memory_bytes = 24u << 20;
   TestRenderer renderer(options);
   const auto model = renderer.add(make_scene(flat_square(), 256));
@@ -150,11 +150,12 @@ TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
   }
 }
 
-// Layers of 16 x 16 tiles of four bytes with mirrors: a chunk each, and two chunks fit.
+// Layers of 16 × 16 four-byte tiles with mirrors. Each layer takes one chunk, and the memory has
+// space for two chunks.
 class Leaving : public testing::Test {
  protected:
   static constexpr int kResolution = 2048, kTilesPerSide = kResolution / kTileSize;
-  // The memory of the model, two chunks of 256 pages of four bytes at 20 MiB, and views.
+  // Memory for the model, for two chunks of 256 four-byte pages (20 MiB each), and for views.
   static render::RendererOptions options() {
     static const std::uint64_t model_bytes = [] {
       TestRenderer renderer;
@@ -170,7 +171,7 @@ class Leaving : public testing::Test {
     std::shared_ptr<TileMirror> mirror;
     render::LayerHandle handle = 0;
   };
-  // Makes a layer filled with `value`.
+  // Makes a layer and fills it with `value`.
   Mirrored add(std::uint32_t value) {
     Mirrored layer{std::make_shared<TileMirror>(ValueType::u32, kResolution)};
     auto tile = std::make_shared<TileData>(ValueType::u32);
@@ -304,7 +305,7 @@ TEST(Layers, tiles_that_do_not_all_fit_leave_the_layer_as_it_was) {
 
 TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
   render::RendererOptions options;
-  options.gpu_memory_bytes = 12u << 20;  // no chunk of four-byte pages fits
+  options.gpu_memory_bytes = 12u << 20;  // too little for a chunk of four-byte pages
   TestRenderer renderer(options);
   const auto scene = make_scene(flat_square(), 256);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u32, 256);
@@ -340,7 +341,7 @@ TEST(Layers, tiles_of_another_type_or_place_are_refused) {
 
 TEST(Layers, pages_that_fill_several_chunks_keep_their_content) {
   TestRenderer renderer;
-  // 1024 tiles of 4096² fill the chunks of 1, 2 and part of 4 slices.
+  // The 1024 tiles of 4096² fill the chunks of 1 and 2 slices and a part of the chunk of 4 slices.
   const auto scene = make_scene(flat_square(), 4096);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 4096);
   std::vector<render::TileUpload> uploads;

@@ -20,7 +20,7 @@ namespace {
 constexpr int kResolution = 2048;
 constexpr int kEdits = 24;
 
-// A real scan with an atlas made by Strata.
+// Loads a real scan with an atlas made by Strata.
 std::optional<Scene> load_scan(const std::string& name) {
   const std::filesystem::path file = std::filesystem::path(STRATA_TEST_DATA) / name;
   if (!std::filesystem::exists(file)) return std::nullopt;
@@ -38,9 +38,9 @@ std::optional<Scene> load_scan(const std::string& name) {
   return scene;
 }
 
-// A camera around the model. The paper's bias is fixed in window depth, so it depends on the near
-// and far planes: these are the planes of a viewer that does not fit them to the model (2e-4 is
-// then about 0.7 % of the model's radius).
+// Returns a camera around the model. The paper's bias is fixed in window depth, so its effect
+// depends on the near and far planes. These planes are those of a viewer that does not fit them to
+// the model. With them, a bias of 2e-4 is about 0.7 % of the model's radius.
 Camera random_camera(const mesh::Geometry& geometry, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const glm::dvec3 center = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
@@ -66,8 +66,9 @@ struct Dab {
   double x, y, radius;
 };
 
-// Whether a texel is so near to the tool's edge, a pixel's border (which selects the depth) or the
-// depth test's threshold that the rounding of floats and of packed positions decides.
+// Whether rounding of floats and of packed positions decides about a texel. The texel is then near
+// the tool's edge, near a pixel's border (which selects the depth), or near the threshold of the
+// depth test.
 bool within_rounding(const Scene& scene, const Dab& dab, const std::vector<float>& depth,
                      const glm::vec3& position) {
   const Camera& camera = dab.camera;
@@ -105,8 +106,8 @@ void count(const Scene& scene, const Dab& dab, const std::vector<float>& depth,
         map.slot_of_block[y / 8 * static_cast<std::size_t>(map.blocks_per_side) + x / 8];
     const bool surface =
         slot != mesh::kNoSlot && (map.surface_mask[slot] >> (y % 8 * 8 + x % 8) & 1);
-    // The paper treats texels that its raster does not cover as padding, though in tiles a thin
-    // triangle may own them.
+    // The paper treats texels that its raster does not cover as padding, although a thin triangle
+    // may own them in tiles.
     if (surface && coverage[i]) {
       ++counts.edited;
       if ((paper[i] != 0) == (written[i] != 0)) continue;
@@ -195,8 +196,8 @@ TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_
       "paper: %ld surface texels edited, %ld differ; %ld gutter texels, %ld differ (ours is 2 wide and knows islands)\n",
       counts.edited, counts.surface_differs, counts.gutter, counts.gutter_differs);
   EXPECT_GT(counts.edited, 300'000);
-  // The rest differs because the paper interpolates clip coordinates, while Strata multiplies each
-  // position by the matrix.
+  // The remaining texels differ because the paper interpolates clip coordinates, while Strata
+  // multiplies each position by the matrix.
   EXPECT_LE(counts.surface_differs * 100'000, counts.edited);
   EXPECT_EQ(counts.beyond_rounding, 0);
 }

@@ -17,7 +17,7 @@ const Box kBox{{0, 0, 0}, {1, 1, 1}}, kOther{{2, 2, 2}, {3, 3, 3}};
 using Answer = std::optional<ErrorCode>;
 constexpr Answer kDrawn = std::nullopt;
 
-// The answers identify the requests.
+// Tests of the order in which frames are drawn. The results identify the requests.
 class FrameTurns : public testing::Test {
  protected:
   FrameQueue::Pushed push(FrameQueue& queue, const FrameRequest& request, int number = 0) {
@@ -70,7 +70,7 @@ TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->request.width, 20);
   EXPECT_EQ(*taken->request.changed, (Boxes{kOther, kBox}));
-  // A request that follows a request for the whole picture is also for the whole picture.
+  // If a waiting request is for the complete frame, its successor is too.
   queue.finished(*taken, 1);
   push(queue, whole(1, 10));
   push(queue, part(1, {kOther}, 20));
@@ -115,7 +115,7 @@ TEST_F(FrameTurns, who_only_looks_is_served_before_the_next_picture_of_who_turns
   for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
   push(queue, part(9));
   EXPECT_EQ(draw(queue, 1), 9u);
-  // Time without requests is no credit: such a view takes turns from now on.
+  // Time without requests gives no credit. After its first frame, this view has to take turns.
   int looked = 0;
   for (int i = 0; i < 20; ++i) {
     push(queue, part(9));
@@ -159,7 +159,7 @@ TEST_F(FrameTurns, any_smaller_picture_whose_turn_it_is_goes_before_a_band_of_a_
   const auto small = queue.take_part(half_done(5));
   ASSERT_TRUE(small);
   EXPECT_EQ(small->request.view, 3u);
-  // In addition to a picture that is not large, they wait as usual.
+  // If a frame that is not large is also half done, rectangles wait as usual.
   push(queue, whole(4));
   EXPECT_FALSE(queue.take_part(
       std::vector{FrameTask::Turn{false, 100, false}, FrameTask::Turn{false, 100, true}}));
@@ -175,7 +175,8 @@ TEST_F(FrameTurns, bands_of_large_pictures_take_turns_with_live_views_and_leave_
   EXPECT_EQ(draw(queue), 4u);
   queue.finished(*first, 50);
   queue.finished(*second, 50);
-  // Large pictures of three views and a view with constant requests: all get the same time.
+  // Large frames of three views and constant requests of a fourth view: each view gets the same
+  // time.
   std::map<ViewHandle, int> drawn;
   push(queue, large(whole(1)));
   push(queue, large(whole(2)));
@@ -210,7 +211,8 @@ TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_ea
   EXPECT_NEAR(turns[kActor], 200, 2);
   EXPECT_EQ(turns.size(), 101u) << "everybody sees something";
   for (const auto& [view, count] : turns) EXPECT_LE(count, view == kActor ? 202 : 3) << view;
-  // Alone, onlookers get all the time, which gives no credit to a view that acts later.
+  // Without active views, onlookers get all the time. A view that becomes active later gets no
+  // credit.
   for (int i = 0; i < 400; ++i) surface_image_on(draw(queue, 20));
   int acted = 0;
   for (int i = 0; i < 20; ++i) {
@@ -244,12 +246,12 @@ TEST_F(FrameTurns, rectangles_do_not_use_up_the_time_of_whole_pictures_of_those_
     FrameTask task;
     double busy_ms = 0;
   };
-  std::deque<Drawing> under_way;  // as in GpuThread: urgent work is in front
+  std::deque<Drawing> under_way;  // urgent work is in front, as in GpuThread
   double turning_ms = 0, painting_ms = 0, onlookers_ms = 0;
   const auto surface_image_on = [&](ViewHandle view) { push(queue, part(view)); };
   for (ViewHandle view = 1; view <= 100; ++view) surface_image_on(view);
   for (int now_ms = 0; now_ms < 20'000; now_ms += 5) {
-    // Newer requests replace those that wait all the time.
+    // Newer requests always replace the waiting ones.
     push(queue, acting(whole(kTurning, now_ms + 1)));
     push(queue, acting(part(kPainting)));
     if (under_way.empty()) {
@@ -309,7 +311,7 @@ TEST_F(FrameTurns, a_picture_that_one_of_its_askers_acts_in_is_theirs) {
   EXPECT_TRUE(task->turn.acting);
   EXPECT_EQ(task->askers.size(), 2u);
   queue.finished(*task, 0);
-  // The active view now requests something else: the rest belongs to an onlooker.
+  // The active view now requests another frame, so only an onlooker still needs the first one.
   push(queue, shared(part(1)));
   push(queue, acting(shared(part(3))));
   push(queue, acting(whole(3, 5)));
@@ -321,7 +323,7 @@ TEST_F(FrameTurns, the_same_picture_of_several_views_is_drawn_once_by_the_view_t
   FrameQueue queue(8);
   push(queue, shared(whole(1)), 1);
   EXPECT_EQ(draw(queue), 1u);
-  // After an edit: view 1 draws, and the other views, of which none has drawn, wait for it.
+  // After an edit view 1 draws. The other views have no frame yet, so they wait for view 1.
   push(queue, shared(part(1)), 1);
   const auto first = queue.take();
   push(queue, shared(part(2)), 2);
@@ -350,7 +352,7 @@ TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
   others[5].style.images = {{1, 1}};
   others[6].style.features = std::make_shared<const std::vector<DrawnFeature>>();
   others[7].style.unit_mm = 1;
-  others[8].changed.reset();  // a view that lacks a rectangle gets no whole picture
+  others[8].changed.reset();  // a view that lacks a rectangle gets no complete frame
   push(queue, base);
   ViewHandle view = 1;
   for (auto& other : others) {
@@ -382,7 +384,7 @@ TEST_F(FrameTurns, a_view_that_is_removed_draws_no_more_for_others) {
   queue.forget(1);
   push(queue, shared(part(2)));
   EXPECT_EQ(queue.take()->request.view, 2u);
-  // A request that waits in the meantime is still answered in its turn.
+  // A request that is already waiting still gets its frame in its turn.
   push(queue, part(3));
   queue.forget(3);
   EXPECT_EQ(queue.take()->request.view, 3u);
@@ -402,7 +404,7 @@ TEST_F(FrameTurns, a_request_that_leaves_a_shared_picture_leaves_the_others_ther
   EXPECT_FALSE(queue.take());
 }
 
-// Refinements of views, and what they were answered.
+// Refinements of views, and their results.
 class RefinementTasks : public testing::Test {
  protected:
   using Answer = std::optional<ErrorCode>;
@@ -460,7 +462,7 @@ TEST_F(RefinementTasks, news_of_one_view_do_not_end_the_refinement_of_others) {
 TEST_F(RefinementTasks, a_refinement_that_nobody_waits_for_ends) {
   const auto task = push(1);
   refinements_.overtake(1);
-  refinements_.overtake(2);  // never asked for one
+  refinements_.overtake(2);  // this view has requested no refinement
   EXPECT_FALSE(refinements_.continues(*task));
   EXPECT_EQ(answers_[1], ErrorCode::superseded);
   EXPECT_TRUE(refinements_.continues(*push(1))) << "what it asks for afterwards is new";

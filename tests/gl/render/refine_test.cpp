@@ -25,7 +25,7 @@ Means colors(const render::Frame& frame) {
   return all;
 }
 
-// A bumpy sphere with classes in rings, so that there are silhouettes and borders of classes.
+// A bumpy sphere with classes in rings, which has silhouettes and borders of classes.
 class Refine : public testing::Test {
  protected:
   explicit Refine(const render::RendererOptions& options = {})
@@ -48,8 +48,9 @@ class Refine : public testing::Test {
     request.refinement = true;
     return renderer_.draw(request);
   }
-  // The oracle: the mean of pictures with one sample each, from cameras on a regular grid of
-  // `side` × `side` places in the pixel. Its projections are moved here, not by the renderer.
+  // The oracle: the mean of frames with one sample each. Their cameras are shifted to a regular
+  // grid of `side` × `side` points in the pixel. This function shifts the projections, not the
+  // renderer.
   Means reference(int side) {
     Means mean(static_cast<std::size_t>(kWidth) * kHeight * 3, 0.0);
     render::FrameRequest request = request_;
@@ -92,7 +93,7 @@ TEST(RefineSamples, they_cover_a_pixel_evenly_around_its_middle) {
     EXPECT_LT(glm::length(mean), 1e-9);
     for (int axis = 0; axis < 2; ++axis) {
       EXPECT_LT(high[axis] - low[axis], 1);
-      // As many in each quarter of their square.
+      // Each quarter of the range must have about the same number of samples.
       std::array<int, 4> quarters{};
       for (int i = 0; i < count; ++i) {
         const double at = render::sample_offset(i, count)[axis] - low[axis];
@@ -248,7 +249,7 @@ TEST_F(Refine, the_picture_of_the_view_stays_and_takes_rectangles) {
 }
 
 TEST_F(Refine, a_newer_request_of_its_view_ends_it) {
-  // The GPU thread begins when both wait.
+  // The GPU thread begins when both requests wait.
   std::promise<void> holds, release;
   std::thread holder([&] {
     renderer_->run_on_gpu_thread_for_test([&] {
@@ -316,7 +317,7 @@ TEST_F(Refine, bands_of_a_picture_to_keep_join_without_a_seam) {
                                     static_cast<std::size_t>(row) +
                                 static_cast<std::size_t>(i)]};
       };
-      // A sample at an edge may fall to its other side: one of sixteen.
+      // At an edge, rounding may move one of the sixteen samples to the other side.
       const int difference = std::abs(at(whole, kFirst + y) - at(band, kAround + y));
       differ += difference > 1;
       ASSERT_LE(difference, 2 * 255 / kSamples) << y << ", " << i / 4;
@@ -341,7 +342,7 @@ TEST_F(Refine, its_buffers_are_gone_with_it) {
   renderer_.draw(request_);
   const auto before = renderer_->gpu_bytes_used();
   refined();
-  renderer_->finish();  // the job ends after its answer
+  renderer_->finish();  // the job ends after its callback
   EXPECT_EQ(renderer_->gpu_bytes_used(), before);
 }
 
@@ -355,7 +356,8 @@ TEST_F(Refine, nothing_is_evicted_for_it) {
   request.model = small.add(make_scene(bumpy_sphere(24), 512));
   request.view = small.add_view(request.model);
   small.draw(request);
-  // So much that the view's own buffers, or the surface map, would have to go.
+  // The refinement needs so much memory that the view's own buffers, or the surface map, would have
+  // to be evicted.
   const auto used = small->gpu_bytes_used();
   request.width = request.height = 2048;
   request.samples = 2;

@@ -73,7 +73,7 @@ TEST(ScreenRect, boxes_far_apart_have_rectangles_of_their_own_and_near_ones_shar
   EXPECT_EQ(rects({box(-1.2f, 0.5f), box(-1.2f, 0.5f)}), one);
   EXPECT_EQ(rects({box(-1.2f, 0.5f), box(-1.15f, 0.5f)}).size(), 1u);
   EXPECT_EQ(rects({box(-1.2f, 0.5f), box(1.2f, -0.5f)}).size(), 2u);
-  // The third is between two others and joins them.
+  // The third rectangle is between the two others and joins them.
   EXPECT_EQ(rects({box(-0.1f, 0), box(0.15f, 0), box(0.02f, 0)}).size(), 1u);
 }
 

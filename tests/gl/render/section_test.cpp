@@ -15,8 +15,8 @@ constexpr double kMiddle = kSize / 2.0;
 constexpr int kUndecidedOneIn = 5'000;  // the planes are an additional threshold
 constexpr std::array<int, 3> kInside{219, 209, 194}, kInk{61, 48, 41};  // shaders/shared/cut.h
 
-// A ball of radius 1 with a hollow of radius 0.7: the outer surface is in the left half of the
-// atlas.
+// Returns a ball of radius 1 with a cavity of radius 0.7. The outer surface uses the left half of
+// the atlas.
 mesh::TriangleMesh hollow_ball() {
   auto ball = bumpy_sphere(40);
   const auto outer = ball;
@@ -39,7 +39,8 @@ int count(const render::StrokeOutcome& outcome, bool outer) {
   return count;
 }
 
-// Whether a color is that of a cut solid's inside: its ground, its ink or a mixture.
+// Whether a color belongs to the inside of a cut solid: the ground color, the ink color or a
+// mixture.
 bool is_inside(const std::array<int, 3>& color) {
   const double ink = double(kInside[0] - color[0]) / (kInside[0] - kInk[0]);
   for (std::size_t i = 0; i < 3; ++i)
@@ -63,8 +64,8 @@ class Section : public testing::Test {
     const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * frame.width + x)];
     return {p[0], p[1], p[2]};
   }
-  // Returns the pixel at a radius to the right of the center; the cut wall of the ball is between
-  // 0.7 and 1.
+  // Returns the pixel at a radius to the right of the center. The cut wall of the ball is between
+  // the radii 0.7 and 1.
   static int at_radius(double radius) { return static_cast<int>(kMiddle * (1 + radius / 1.25)); }
   render::StrokeOutcome paint(const StrokeBatch& stroke) {
     return renderer_.paint(renderer_.add_layer(model_, ValueType::u8, kResolution), stroke);
@@ -99,7 +100,8 @@ TEST_F(Section, the_cut_is_hatched_at_45_degrees_and_has_an_outline) {
     const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * kSize + x)];
     return std::array<int, 3>{p[0], p[1], p[2]};
   };
-  // The oracle: lines 9 pixels apart, 1.25 wide, from the center of the model's box.
+  // The oracle: lines that are 9 pixels apart and 1.25 pixels wide, from the center of the model's
+  // box.
   const mesh::Geometry& geometry = *scene_.geometry;
   const glm::dvec3 center = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
   const glm::dvec4 origin = camera_.projection * camera_.view * glm::dvec4(center, 1);
@@ -123,7 +125,7 @@ TEST_F(Section, the_cut_is_hatched_at_45_degrees_and_has_an_outline) {
     }
   EXPECT_GT(inside, 20'000);
   EXPECT_NEAR(double(lines) / inside, 1.25 / 9, 0.03);
-  // From the middle to the right, the cut begins and ends with ink.
+  // From the middle to the right, the cut begins and ends with a pixel of ink.
   int begin = at_radius(0.6), end = at_radius(1.1);
   while (!is_inside(at(begin, kSize / 2))) ++begin;
   while (!is_inside(at(end, kSize / 2))) --end;
@@ -196,7 +198,7 @@ TEST_F(Section, painting_through_stops_at_the_planes) {
 }
 
 TEST_F(Section, an_edit_does_not_use_the_depth_of_another_section) {
-  (void)pixel(camera_, 0, 0);  // a view of the cut ball leaves its depth
+  (void)pixel(camera_, 0, 0);  // drawing the cut ball leaves its depth
   StrokeBatch uncut = dab(camera_, kMiddle, kMiddle, 20);
   uncut.camera.section.clear();
   expect_as_oracle(renderer_, scene_, uncut, {100, kUndecidedOneIn}, model_);

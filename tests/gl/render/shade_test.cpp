@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kSize = 256;
 
-// A flat square that fills the picture: pixel (x, y) shows texel 0.05 … 0.95 of the atlas. With one
-// renderer and layers of a single value, every pixel is a sample of the palette.
+// A flat square that fills the frame, so pixel (x, y) shows texels 0.05 … 0.95 of the atlas. The
+// tests use one renderer and layers of a single value, so every pixel is a sample of the palette.
 class Shade : public testing::Test {
  protected:
   Shade()
@@ -39,7 +39,7 @@ class Shade : public testing::Test {
     const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * frame.width + x)];
     return {double(p[0]), double(p[1]), double(p[2])};
   }
-  // Returns the light on the square, measured with a white layer.
+  // Measures the light on the square with a white layer.
   double light() {
     auto white = std::make_shared<Palette>(
         Palette{PaletteMode::step, 0, 1, {{0, {255, 255, 255, 255}, {}}}, {}});
@@ -52,7 +52,7 @@ class Shade : public testing::Test {
     const auto got = pixel(renderer_.draw(request_), 100, 90);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], unlit[i] * lit, 2.0) << "channel " << i;
   }
-  // A bumpy sphere with an empty layer, completely visible.
+  // A completely visible bumpy sphere with an empty layer.
   struct Sphere {
     render::LayerHandle layer;
     std::shared_ptr<const Palette> palette;
@@ -208,8 +208,9 @@ TEST_F(Shade, a_palette_lists_as_many_keys_as_a_table_has_records) {
   }
 }
 
-// The hatch and dots of shaders/shade_pass.frag in plain C++: the covered share of a pixel (origin
-// bottom left). Between them is a tint, unless they are bare.
+// Returns the share of a pixel that the hatch or dots of shaders/shade_pass.frag cover, in plain
+// C++. `from` is the pixel's offset from the pattern's origin, with y up. A tint fills the space
+// between lines and dots, unless the layer is bare.
 double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::dvec2 from,
                      bool bare) {
   const double angle = angle_deg / 180 * 3.14159265358979;
@@ -227,8 +228,8 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
   const auto lower = filled_layer(ValueType::u8, 1), upper = filled_layer(ValueType::u16, 7);
   const auto red =
       std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {255, 0, 0, 255}}}, {}});
-  // The square is 1 m wide in 256 px of 1000 / 256 mm; its center is pixel 128, and the camera is
-  // aimed at it.
+  // The square is 1 m wide, and each of its 256 pixels is 1000 / 256 mm wide. The camera is aimed
+  // at its center, at pixel 128.
   const double mm_per_pixel = 1000.0 / kSize;
   struct Case {
     Pattern pattern;
@@ -269,8 +270,9 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
 }
 
 TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
-  // One of the four tiles has the value: a quarter of the square, once so far away that it has few
-  // pixels, and once so near that lines of 40 mm are far apart.
+  // One of the four tiles has the value, which is a quarter of the square. The largest distance
+  // reduces it to a few pixels. At the smallest distance, lines with a spacing of 40 mm are far
+  // apart.
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   auto tile = std::make_shared<TileData>(ValueType::u8);
   for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, 7u);
@@ -292,7 +294,8 @@ TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
             {layer,
              std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {point}, {}}), 1}};
         const auto frame = renderer_.draw(request);
-        // Blue over the other content: the tint everywhere, and more of it along the border.
+        // The blue is drawn over the other content: the tint everywhere, and a stronger blue along
+        // the border.
         std::size_t tinted = 0, full = 0;
         for (int y = 0; y < frame.height; ++y)
           for (int x = 0; x < frame.width; ++x) {
@@ -314,7 +317,8 @@ TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
 }
 
 TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
-  // One of the four tiles has 7, the one next to it 8: the square's texels 0…127 and 128…255.
+  // One of the four tiles has the value 7, and the next one has 8. They are texels 0…127 and
+  // 128…255 of the square.
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   std::vector<render::TileUpload> tiles;
   for (std::uint16_t x = 0; x < 2; ++x) {
@@ -337,8 +341,8 @@ TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
       const auto got = pixel(frame, x, y);
       if (got[2] > got[0] + 60 && got[2] > got[1] + 60) {
         ++outline;
-        // Along the edge to the other value (x = 128) or to unpainted texels (y = 128, a row of
-        // tiles is half of the square).
+        // The outline follows the edge to the other value (x = 128) or to unpainted texels (y =
+        // 128, because a row of tiles is half of the square).
         EXPECT_TRUE(std::abs(x + 0.5 - 128) < 3 || std::abs(y + 0.5 - 128) < 3) << x << " " << y;
       } else if (got == pixel(bare, x, y)) {
         ++inside;
@@ -379,8 +383,8 @@ TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
   expect_color(layers, expected, lit);
 }
 
-// One channel of a layer over what is below, both from 0 to 1, in plain C++. `ink` is without
-// light.
+// Blends one channel of a layer with the content below it, in plain C++. Both are 0 to 1. `ink` is
+// the color without light.
 double blended(LayerBlend blend, double below, double ink, double lit, double cover) {
   const double over = blend == LayerBlend::multiply ? below * ink
                       : blend == LayerBlend::screen ? 1 - (1 - below) * (1 - ink * lit)
@@ -391,7 +395,7 @@ double blended(LayerBlend blend, double below, double ink, double lit, double co
 TEST_F(Shade, layers_filter_and_lighten_what_is_below_in_one_draw_and_in_several) {
   const double lit = light();
   constexpr std::array kBlends{LayerBlend::normal, LayerBlend::multiply, LayerBlend::screen};
-  // Two layers share a draw; the types of 24 have more chunks than fit into one.
+  // Two layers share a draw. The value types of 24 layers need more chunks than fit into one draw.
   for (const int count : {2, 3, 24}) {
     for (int turn = 0; turn < 9; ++turn) {
       SCOPED_TRACE(std::to_string(count) + " " + std::to_string(turn));
@@ -434,7 +438,7 @@ TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
   for (int i = 0; i < 3; ++i) request.style.layers.push_back({layer, palette, 0.5f});
   renderer_.paint(layer, dab(request.camera, 1024, 900, 500, 100));
   const auto picture = renderer_.draw(request);
-  // The same in parts of one band each.
+  // Draw the same content in parts of one band each.
   for (const double y : {-0.4, 0.0, 0.4}) {
     auto part_request = request;
     part_request.changed = {{{-0.3, y - 0.1, 0.5}, {0.3, y + 0.1, 1}}};
@@ -462,7 +466,7 @@ TEST_F(Shade, the_background_is_a_gradient_from_top_to_bottom) {
 }
 
 TEST_F(Shade, the_top_row_of_the_picture_is_the_top_of_the_view) {
-  // the square fills the lower half
+  // The square fills the lower half of the frame.
   request_.camera = orthographic_camera({0, 0.5, 2}, {0, 0.5, 0}, kSize, kSize, 0.5);
   const auto frame = renderer_.draw(request_);
   EXPECT_EQ(pixel(frame, 128, 20), pixel(frame, 10, 20));
@@ -492,7 +496,7 @@ TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
     }
   }
   EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
-  // Without a change nothing is sent; with another style the whole picture is.
+  // Without a change, no rectangle is sent. With another style, the complete frame is sent.
   auto nothing = request;
   nothing.changed.emplace();
   EXPECT_TRUE(renderer_.draw(nothing).rects.empty());

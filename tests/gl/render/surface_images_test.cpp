@@ -14,7 +14,7 @@ namespace {
 constexpr int kSize = 256;
 using Color = std::array<int, 3>;
 
-// Returns the pixels of a picture with `at(x, y)`, top row first.
+// Returns an image with the pixels `at(x, y)`, top row first.
 template <class At>
 std::shared_ptr<const render::MipmappedPicture> image_of(int width, int height, At at) {
   std::vector<std::uint8_t> rgba;
@@ -28,7 +28,7 @@ std::shared_ptr<const render::MipmappedPicture> plain(std::array<int, 4> color) 
   return image_of(8, 8, [&](int, int) { return color; });
 }
 
-// A square that fills the picture, with texture coordinates 0.05 … 0.95, from the front without
+// A square that fills the frame, with texture coordinates 0.05 … 0.95, seen from the front without
 // light.
 class SurfaceImages : public testing::Test {
  protected:
@@ -163,7 +163,7 @@ TEST_F(SurfaceImages, fine_detail_seen_from_afar_keeps_its_light) {
              return (x + y) % 2 ? std::array{255, 255, 255, 255} : std::array{0, 0, 0, 255};
            })),
        1}};
-  // Half of the light is 188 of 255 in sRGB, not 127.
+  // In sRGB, half of the light is 188 of 255, not 127.
   expect_near(pixel(128, 128), {188, 188, 188}, 2);
 }
 
@@ -171,7 +171,7 @@ TEST_F(SurfaceImages, raking_light_shows_what_leans_towards_it) {
   const auto ball = renderer_.add(make_scene(bumpy_sphere(40), 256));
   request_.view = renderer_.add_view(ball);
   request_.camera = orthographic_camera({0, 0, 4}, {0, 0, 0}, kSize, kSize, 1.25);
-  // The mean of a patch, because the ball is bumpy.
+  // Take the mean of a patch, because the ball is bumpy.
   const auto bright = [&](int center) {
     const auto frame = renderer_.draw(request_);
     double sum = 0;
@@ -209,7 +209,7 @@ double museum_light(const glm::dvec3& normal, double openness = 1) {
   return std::min(light, 0.65 + 0.33 * light);
 }
 
-// Without exposure, a color ends at 255.
+// Returns the color under a light without exposure, which clips at 255.
 Color lit(const Color& color, double light) {
   Color at = color;
   for (auto& channel : at)
@@ -217,7 +217,7 @@ Color lit(const Color& color, double light) {
   return at;
 }
 
-// The code of a color after exposure, as the picture shows it.
+// Returns one channel of a color after exposure, as the frame shows it.
 int exposed(const Color& color, std::size_t channel, double factor) {
   const double peak = factor * *std::ranges::max_element(color) / 255;
   const double over = std::max(0.0, peak - 0.9);
@@ -230,8 +230,8 @@ Color exposed(const Color& color, double factor) {
 
 TEST_F(SurfaceImages,
        museum_light_is_the_same_in_each_pixel_as_at_the_vertices_of_small_triangles) {
-  // Two triangles are lit in each pixel, 80,000 triangles of less than two pixels at their
-  // vertices.
+  // With two triangles, the light is computed in each pixel. With 80,000 triangles of less than two
+  // pixels, it is computed at their vertices.
   for (const int quads : {1, 200}) {
     request_.view = renderer_.add_view(renderer_.add(make_scene(flat_square(quads), 256)));
     for (const glm::dvec3 eye :
@@ -240,7 +240,7 @@ TEST_F(SurfaceImages,
       const glm::dvec3 up = glm::dmat3(request_.camera.view) * glm::dvec3(0, 0, 1);
       request_.style.light.mode = LightMode::unlit;
       const Color plain = pixel(kSize / 2, kSize / 2);
-      // the same brightness from behind
+      // The brightness from behind must be the same.
       const Color expected = lit(plain, museum_light(eye.z > 0 ? up : -up));
       request_.style.light.mode = LightMode::museum;
       SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " +
@@ -259,7 +259,7 @@ TEST_F(SurfaceImages, exposure_brightens_the_surface_and_rolls_off_what_is_too_b
     request_.style.light.exposure_ev = ev;
     expect_near(pixel(kSize / 2, kSize / 2), exposed(dark, std::exp2(ev / 2)));
   }
-  // Orange stays orange: the channels keep their proportions.
+  // Exposure must not change the proportions of the channels, so orange stays orange.
   const Color orange{230, 120, 40};
   request_.style.images = {{add(plain({230, 120, 40, 255}))}};
   expect_near(pixel(kSize / 2, kSize / 2), exposed(orange, std::exp2(1.5)));
@@ -275,9 +275,9 @@ TEST_F(SurfaceImages, a_fill_lights_the_shadows_of_raking_light) {
   };
   request_.style.light.mode = LightMode::unlit;
   const int plain = pixel(kSize / 2, kSize / 2)[0];
-  // A plane that faces the viewer is as bright with any fill.
+  // The fill must not change the brightness of a plane that faces the viewer.
   for (const double fill : {0.0, 0.3, 1.0}) EXPECT_NEAR(at(fill, {-1, 0, 0.3}), plain * 0.54, 2);
-  // In a shadow, the fill is all the light.
+  // In a shadow, all light comes from the fill.
   request_.camera = orthographic_camera({1.2, 0, 1.6}, {0, 0, 0}, kSize, kSize, 0.5);
   for (const double fill : {0.0, 0.3, 1.0})
     EXPECT_NEAR(at(fill, {1, 0, 0.1}), plain * (0.04 + fill * 0.5 * 0.8), 2);

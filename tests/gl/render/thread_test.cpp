@@ -16,7 +16,7 @@ using render::Job;
 using render::Lane;
 using render::Step;
 
-// Blocks the thread's first step until it is opened, so that a test can fill the lanes before any
+// Blocks the first step of the thread until it is opened, so a test can fill the lanes before any
 // other step.
 struct Gate {
   std::promise<void> open, reached;
@@ -58,7 +58,7 @@ class Lanes : public testing::Test {
     hooks.abort_frames = [](const Error&) {};
     ASSERT_TRUE(thread_->start(std::move(hooks)));
   }
-  // Returns when the thread is blocked: the next posted jobs wait with all others.
+  // Returns when the thread is blocked. Jobs that are posted after that wait together.
   void hold_at(Gate& gate) {
     ASSERT_TRUE(thread_->post(Lane::ordered, gate.job()));
     gate.reached.get_future().wait();
@@ -173,7 +173,7 @@ TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not
     frames_.push_back(noted("frame"));
   }
   gate.open.set_value();
-  // One step takes the frame from the queue, the next one draws it.
+  // One step takes the frame from the queue, and the next step draws it.
   EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "slice", "frame", "slice", "upload",
                                                 "slice", "next edit"}));
 }
@@ -276,7 +276,7 @@ TEST_F(Lanes, stopping_answers_what_waits) {
   stopper.join();
   EXPECT_FALSE(thread_->post(Lane::ordered, noted("late")));
   std::lock_guard lock(mutex_);
-  // It may have run before the stop took effect, but it was answered once.
+  // The edit may run before the stop takes effect, but its callback must run exactly once.
   ASSERT_EQ(log_.size(), 1u);
   EXPECT_TRUE(log_[0] == "edit" || log_[0] == "edit unavailable Renderer stopped");
 }
@@ -315,7 +315,7 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
   std::promise<void> notified;
   renderer->on_context_lost([&] { notified.set_value(); });
 
-  // The thread is blocked while jobs are queued behind the loss.
+  // The thread is blocked while jobs are queued after the loss of the context.
   std::atomic<int> lost{0};
   constexpr int kStrokes = 5;
   std::thread holder([&] {
@@ -365,7 +365,7 @@ TEST(Order, strokes_are_answered_in_the_order_they_were_given) {
                     [&, i](Result<render::StrokeOutcome> outcome) {
                       ASSERT_TRUE(outcome);
                       order.push_back(i);
-                      // `after` is the result of this stroke, independent of later ones.
+                      // `after` is the result of this stroke and must not depend on later strokes.
                       for (const auto& tile : outcome->tiles) {
                         for (int t = 0; t < kTexelsPerTile; ++t) {
                           ASSERT_TRUE(!tile.written.test(t) || tile.after.bits(t) == i);

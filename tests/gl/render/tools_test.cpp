@@ -60,7 +60,7 @@ TEST(ToolTexture, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) 
   expect_as_oracle(renderer, scene, shaped(stroke, in_dots), {5000, kUndecidedOneIn});
 }
 
-// A bar thinner than the distance between two events, moved across its length.
+// The bar is thinner than the distance between two events and moves across its length.
 TEST(ToolTexture, a_swept_shape_has_no_gap_however_thin_it_is) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(), 512);
@@ -80,7 +80,7 @@ TEST(ToolTexture, a_swept_shape_has_no_gap_however_thin_it_is) {
   ASSERT_FALSE(rows.empty());
   EXPECT_EQ(*rows.rbegin() - *rows.begin() + 1, static_cast<int>(rows.size()));
   EXPECT_GT(rows.size(), 360u);
-  const int across = static_cast<int>(0.9 * 512 * 0.85 * 0.08);  // texels of the bar's length
+  const int across = static_cast<int>(0.9 * 512 * 0.85 * 0.08);  // texels along the bar
   EXPECT_NEAR(written / double(rows.size()), across, 1.5);
 }
 
@@ -131,7 +131,7 @@ TEST(AngleLimit, strokes_with_one_write_the_texels_that_the_oracle_says) {
   }
 }
 
-// A square that is turned by an angle about the vertical axis is painted completely or not at all.
+// The square is rotated about the vertical axis and is painted completely or not at all.
 TEST(AngleLimit, a_plane_is_painted_up_to_its_angle_and_not_beyond) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(), 256);
@@ -153,7 +153,7 @@ TEST(AngleLimit, a_plane_is_painted_up_to_its_angle_and_not_beyond) {
   }
 }
 
-// With perspective each place is visible at a different angle.
+// With perspective, each point is viewed at a different angle.
 TEST(AngleLimit, under_perspective_the_direction_to_the_eye_decides_not_the_cameras_axis) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(), 512);
@@ -161,7 +161,7 @@ TEST(AngleLimit, under_perspective_the_direction_to_the_eye_decides_not_the_came
   auto stroke = dab(perspective_camera({0, 0, 0.6}, {0, 0, 0}, 900, 900, 90), 450, 450, 600);
   stroke.max_angle_deg = 30;
   const double texels = written_texels(renderer.paint(layer, stroke));
-  // the square's side takes 0.9 of the atlas
+  // The side of the square takes 0.9 of the atlas.
   const double radius = 0.6 * std::tan(glm::radians(30.0)) * 0.9 * 512;
   EXPECT_NEAR(texels, 3.14159265 * radius * radius, 0.02 * texels);
 }

@@ -35,7 +35,7 @@ std::vector<std::uint8_t> decode_jpeg(std::span<const std::uint8_t> jpeg, int& w
   return rgba;
 }
 
-// A browser: stores the headers, and draws every rectangle into its picture.
+// A browser that stores the headers and draws every rectangle into its frame.
 class Client {
  public:
   Viewer::Send send() {
@@ -59,7 +59,7 @@ class Client {
     acks_ = acks;
     if (acks && !frames_.empty()) viewer_->ack(frames_.back().frame);
   }
-  // Waits for a matching frame, from number `after` on.
+  // Waits for a matching frame with a number above `after`.
   template <class Fits>
   FrameHeader wait_for(const Fits& fits, std::uint32_t after = 0) {
     std::unique_lock lock(mutex_);
@@ -107,7 +107,7 @@ class Client {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<FrameHeader> rectangles_;
-  std::vector<FrameHeader> frames_;  // the last rectangle of each
+  std::vector<FrameHeader> frames_;  // the header of the last rectangle of each frame
   std::vector<std::uint8_t> picture_;
   std::shared_ptr<Viewer> viewer_;
   bool acks_ = false;
@@ -142,7 +142,7 @@ class StreamViewer : public ::testing::Test {
     ASSERT_FALSE(outcome.tiles.empty());
     viewer.changed({outcome.written_min, outcome.written_max}, sequence);
   }
-  // Returns the pixels that the client would get for a new request of the same picture.
+  // Returns the pixels that a client would get for a new request with the same camera.
   std::vector<std::uint8_t> fresh_picture(const Camera& seen) {
     render::FrameRequest request;
     request.view = renderer_.add_view(model_);
@@ -184,7 +184,7 @@ class StreamViewer : public ::testing::Test {
   render::ModelHandle model_ = 0;
   render::LayerHandle layer_ = 0;
   std::vector<std::shared_ptr<Viewer>> viewers_;
-  std::list<Client> clients_;  // the viewers call them, so they are destroyed later
+  std::list<Client> clients_;  // destroyed after the viewers, which call the clients
 };
 
 TEST_F(StreamViewer, a_picture_at_rest_is_refined_and_a_change_is_drawn_at_once) {
@@ -287,7 +287,8 @@ TEST_F(StreamViewer, an_edit_sends_only_its_rectangle_and_the_picture_is_whole_a
   auto view = viewer(client);
   view->set_camera(1, camera(0), false);
   const auto first = client.wait_for([](const FrameHeader& h) { return h.still; });
-  // A change of layers may have caused a second whole picture: the sequence identifies the parts.
+  // A change of layers may have caused a second complete frame, so the sequence identifies the
+  // parts.
   paint(*view, 41, 150, 110);
   const FrameHeader part =
       client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 41; }, first.frame);
@@ -308,7 +309,8 @@ TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles) {
   std::vector<render::StrokeOutcome> outcomes;
   for (const double x : {315.0, 645.0})
     outcomes.push_back(renderer_.paint(layer_, test::dab(large, x, 360, 12, 2)));
-  // While the GPU is busy: the first change is requested immediately, the others together after it.
+  // The GPU is busy. The first change is requested immediately, and the others are requested
+  // together after it.
   renderer_->run_on_gpu_thread_for_test([&] {
     view->changed({outcomes[0].written_min, outcomes[0].written_max}, 41);
     for (const auto& outcome : outcomes)
@@ -356,7 +358,7 @@ TEST_F(
 TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
   constexpr int kMany = 12;
   render::ViewStyle style;
-  style.layers = styles();  // the same objects for all
+  style.layers = styles();  // the same objects for all viewers
   std::vector<Client*> clients;
   std::vector<std::shared_ptr<Viewer>> all;
   std::vector<FrameHeader> first;
@@ -370,7 +372,7 @@ TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
     first.push_back(client->wait_for([](const FrameHeader& h) { return h.still; }));
   const auto outcome = renderer_.paint(layer_, test::dab(camera(0), 150, 110, 12, 2));
   const auto before = encoder_.encoded();
-  // While the GPU is busy, all viewers are notified.
+  // All viewers are notified while the GPU is busy.
   renderer_->run_on_gpu_thread_for_test([&] {
     for (auto& one : all) one->changed({outcome.written_min, outcome.written_max}, 8);
   });
@@ -391,7 +393,7 @@ TEST_F(StreamViewer,
   view->set_camera(1, camera(0), false);
   auto last = client.wait_for([](const FrameHeader& h) { return h.still; });
   client.attach(view, false);
-  // Each acknowledgement is late, as behind a full buffer; the first one was immediate.
+  // All acknowledgements after the first one are late, as with a full buffer.
   std::uint64_t number = 1;
   for (int i = 0; i < 200 && last.full_width == std::uint32_t(kWidth); ++i) {
     ++number;
@@ -436,7 +438,7 @@ TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
   std::promise<void> lost;
   renderer_->on_context_lost([&lost] { lost.set_value(); });
   renderer_->lose_context_for_test();
-  view->set_camera(2, camera(0.3), false);  // fails or is drawn: the viewer must not stop
+  view->set_camera(2, camera(0.3), false);  // fails or is drawn, but the viewer must not stop
   ASSERT_EQ(lost.get_future().wait_for(kPatience), std::future_status::ready);
   load();
   view->reset_model(model_, {styles(), {}, {}, {}});
@@ -456,7 +458,7 @@ TEST_F(StreamViewer, after_close_nothing_is_sent) {
   const auto count = client.frames().size();
   view->set_camera(2, camera(1), false);
   view->changed_everywhere(5);
-  // when another viewer has its picture, the first one's would also have arrived
+  // When the other viewer has its frame, a frame of the closed viewer would also have arrived.
   Client& other = new_client();
   viewer(other)->set_camera(1, camera(0), false);
   other.wait_for([](const FrameHeader& h) { return h.still; });

@@ -1,4 +1,4 @@
-// Records as CSV: a written file can be read again, and errors have their line and column.
+// Records as CSV: a written file can be read again, and errors name their line and column.
 #include "app/records/record_csv.h"
 
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@ namespace {
 using Record = RecordEditLocks::Record;
 
 struct Editors : testing::Test {
-  // The editors by project and record, as known to a listener of all notifications.
+  // Stores the editors by project and record, like a listener that receives all notifications.
   const RecordEditLocks::Tell tell = [this](ProjectId project,
                                             const std::vector<RecordEditLocks::Entry>& entries) {
     ++calls;

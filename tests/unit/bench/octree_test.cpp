@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWidth = 160, kHeight = 120;
 
-// A curved sheet of triangles with a ball above it, which hides some of it.
+// Returns a curved sheet of triangles and a ball above it, which hides a part of the sheet.
 mesh::Geometry small_geometry() {
   mesh::Geometry geometry;
   const auto add_grid = [&](int n, auto place) {
@@ -83,7 +83,7 @@ Ray ray_of(const OctreeDab& dab, int x, int y) {
   return {at(-1), glm::normalize(at(1) - at(-1))};
 }
 
-// Returns the distance at which the ray enters each cell; missed cells are far away.
+// Returns the distance at which the ray enters each cell, or 1e9 for a missed cell.
 std::vector<double> entries(const Octree& tree, const std::vector<glm::uvec3>& cells,
                             const Ray& ray) {
   std::vector<double> found;
@@ -114,7 +114,8 @@ TEST(Octree, its_leaves_are_the_cells_that_the_surface_crosses) {
   std::set<std::array<unsigned, 3>> leaves;
   for (const auto& cell : cells) leaves.insert({cell.x, cell.y, cell.z});
   EXPECT_EQ(leaves.size(), cells.size());
-  // Points all over each triangle are in leaves, and each leaf has one inside or at its border.
+  // Points on each triangle must be in leaves. Each leaf must have such a point inside or near its
+  // border.
   std::set<std::array<unsigned, 3>> near_points;
   for (std::size_t t = 0; t < geometry.triangle_count(); ++t) {
     const auto corner = [&](std::size_t i) {

@@ -15,11 +15,11 @@ using Names = std::vector<std::string>;
 TEST(ClosestNames, a_name_with_a_typing_mistake_is_found) {
   const Names names{"moisture", "cracks", "pieces", "depth", "thickness"};
   EXPECT_EQ(closest_names("moistur", names), Names{"moisture"});
-  EXPECT_EQ(closest_names("mositure", names), Names{"moisture"});  // exchanged neighbors
+  EXPECT_EQ(closest_names("mositure", names), Names{"moisture"});  // two adjacent letters swapped
   EXPECT_EQ(closest_names("dept", names), Names{"depth"});
   EXPECT_EQ(closest_names("MOISTURE", names), Names{"moisture"});
   EXPECT_EQ(closest_names("crack", names), Names{"cracks"});
-  EXPECT_EQ(closest_names("thick", names), Names{"thickness"});  // its beginning
+  EXPECT_EQ(closest_names("thick", names), Names{"thickness"});  // the beginning of the name
 }
 
 TEST(ClosestNames, case_and_accents_do_not_count) {
@@ -38,7 +38,7 @@ TEST(ClosestNames, names_that_have_little_in_common_are_not_suggested) {
   const Names names{"moisture", "cracks", "a", "ab", "x"};
   for (const char* wrong : {"salt", "temperature", "q", "zz", "", "colour"})
     EXPECT_TRUE(closest_names(wrong, names).empty()) << wrong;
-  EXPECT_TRUE(closest_names("cracks", Names{"cracks"}).empty());  // it is correct
+  EXPECT_TRUE(closest_names("cracks", Names{"cracks"}).empty());  // already correct
 }
 
 TEST(ClosestNames, long_and_damaged_names_are_not_compared) {
@@ -49,7 +49,7 @@ TEST(ClosestNames, long_and_damaged_names_are_not_compared) {
   EXPECT_TRUE(closest_names(damaged, Names{"moisture"}).empty());
 }
 
-// The plain recursive definition of the distance.
+// Returns the distance by its plain recursive definition.
 std::size_t oracle(std::string_view a, std::string_view b) {
   if (a.empty() || b.empty()) return a.size() + b.size();
   const auto a1 = a.substr(1), b1 = b.substr(1);

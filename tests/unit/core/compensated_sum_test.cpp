@@ -20,7 +20,7 @@ TEST(CompensatedSum, ten_million_tenths_are_a_million) {
   }
   EXPECT_EQ(sum.value(), 1e6);
   EXPECT_EQ(sum.value() / 10'000'000, 0.1);
-  EXPECT_NE(plain, 1e6);  // the reason for the class
+  EXPECT_NE(plain, 1e6);  // the reason for CompensatedSum
 }
 
 TEST(CompensatedSum, small_numbers_between_large_ones_are_kept_in_any_order) {
@@ -48,7 +48,7 @@ TEST(CompensatedSum, sums_of_parts_are_the_sum_of_all) {
     part = {};
   }
   joined += part;
-  long double exact = 0;  // 64 bits of fraction
+  long double exact = 0;  // has 64 bits of fraction
   for (const double value : values) exact += value;
   EXPECT_EQ(joined.value(), all.value());
   EXPECT_EQ(all.value(), static_cast<double>(exact));

@@ -101,14 +101,14 @@ TEST(Csv, a_text_that_a_spreadsheet_would_run_is_kept_as_text) {
 TEST(Csv, full_width_signs_begin_a_formula_too) {
   for (const char* sign : {"\uff1d", "\uff0b", "\uff0d", "\uff20"})
     EXPECT_EQ(guard_formula(std::string(sign) + "1+1"), std::string("'") + sign + "1+1");
-  EXPECT_EQ(guard_formula("\uff1ea"), "\uff1ea");  // the full-width > has the same first bytes
+  EXPECT_EQ(guard_formula("\uff1ea"), "\uff1ea");  // full-width > begins with the same bytes
 }
 
 TEST(Csv, a_part_that_another_separator_makes_a_cell_is_guarded) {
   EXPECT_EQ(guard_formula("a;=1+1"), "a;'=1+1");
   EXPECT_EQ(guard_formula("a;=1+1;b\t@x,-2"), "a;'=1+1;b\t'@x,'-2");
   EXPECT_EQ(guard_formula("a\n=1\r\n+2"), "a\n'=1\r\n'+2");
-  EXPECT_EQ(guard_formula("a;\"=1"), "a;'\"=1");  // a reader removes the quote
+  EXPECT_EQ(guard_formula("a;\"=1"), "a;'\"=1");  // a reader removes the double quote
   EXPECT_EQ(guard_formula("a;;b, -c; 'd'"), "a;;b, -c; 'd'");
 }
 
@@ -122,7 +122,8 @@ TEST(Csv, a_text_with_any_separator_is_quoted_and_a_number_is_not) {
   EXPECT_EQ(csv_line({"1,5"}, ','), "\"1,5\"\r\n");
 }
 
-// Splits like a reader that uses `separator` and recognizes quotes only at the start of a cell.
+// Splits a text like a reader that uses `separator` and recognizes quotes only at the start of a
+// cell.
 std::vector<std::string> cells_as_seen(const std::string& text, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false, at_begin = true;

@@ -1,4 +1,4 @@
-// Periods: the days of EDTF texts, compared with days counted one by one.
+// Periods: the days of EDTF texts, compared with days that are counted one by one.
 #include <gtest/gtest.h>
 
 #include "core/text/edtf.h"

@@ -1,4 +1,4 @@
-// Encodings of bytes as text, and decoding.
+// Encoding bytes as text, and decoding.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -25,7 +25,7 @@ std::vector<std::uint8_t> random_bytes(std::size_t size) {
 }
 
 TEST(Base64, is_that_of_the_rfc) {
-  // RFC 4648, section 10.
+  // The test vectors of RFC 4648, section 10.
   const std::pair<const char*, const char*> known[] = {{"", ""},
                                                        {"f", "Zg=="},
                                                        {"fo", "Zm8="},

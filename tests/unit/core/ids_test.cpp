@@ -10,9 +10,9 @@
 namespace strata {
 namespace {
 
-// The purpose of the types: none of this compiles. A number that is known only at run time does not
-// compile either, which no trait can show: the constructor that accepts a plain number is
-// consteval.
+// The purpose of the types is that none of these conversions compiles. A plain number that is known
+// only at run time does not compile either, because the constructor for plain numbers is consteval.
+// No type trait can check that.
 static_assert(!std::is_convertible_v<LayerId, TableId>);
 static_assert(!std::is_constructible_v<LayerId, TableId>);
 static_assert(!std::is_convertible_v<LayerId, std::int64_t>);

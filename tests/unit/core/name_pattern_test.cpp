@@ -7,8 +7,8 @@
 namespace strata {
 namespace {
 
-// Returns "code=SU 1 n=2", or "" if the name does not match the pattern; with a mark if the code is
-// known.
+// Returns a text such as "code=SU 1 n=2 ", or "" if the name does not match the pattern. The text
+// begins with "!" if the code is known.
 std::string read(const std::string& pattern, const std::string& name,
                  const std::set<std::string>& known = {}) {
   const auto parsed = NamePattern::parse(pattern, "pattern");

@@ -9,7 +9,7 @@ namespace {
 
 using Rings = std::vector<std::vector<glm::dvec2>>;
 
-// Tests for every edge whether a ray to the right crosses it.
+// Counts, edge by edge, how often a ray to the right crosses the outline.
 bool contains_by_crossings(const Rings& rings, const glm::dvec2& p) {
   bool inside = false;
   for (const auto& ring : rings)

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// One row with many edits, undone and redone in any order.
+// One row with many edits, which are undone and redone in any order.
 class OneRow {
  public:
   void write(const Cells& written) {
@@ -84,9 +84,9 @@ TEST(CellHistory, undoing_an_edit_leaves_what_others_wrote_over_it) {
   row.write({{"a", 1}, {"b", 1}});
   row.write({{"b", 2}});
   row.flip(1, false);
-  row.expect_equals_oracle();  // a: none; b: 2
+  row.expect_equals_oracle();  // a has no value, b is 2
   row.flip(2, false);
-  row.expect_equals_oracle();  // b: none, since both are undone
+  row.expect_equals_oracle();  // b has no value, because both edits are undone
   row.flip(1, true);
   row.expect_equals_oracle();
 }

@@ -17,7 +17,7 @@ struct OracleWrite {
   std::uint32_t value;
 };
 
-// A layer of one tile with many edits, undone and redone in any order.
+// A layer of one tile with many edits, which are undone and redone in any order.
 class OneTileLayer {
  public:
   void paint(const TileMask& written, bool erase, std::uint32_t value, bool provisional = false) {
@@ -31,7 +31,7 @@ class OneTileLayer {
     push(true, written, after);
   }
 
-  // Undo (in_force = false) or redo of a past edit.
+  // Undoes (`in_force` is false) or redoes a past edit.
   void flip(std::int64_t sequence, bool in_force) {
     TileMask written;
     for (auto& entry : newest_first_)
@@ -62,7 +62,7 @@ class OneTileLayer {
       ASSERT_EQ(tile_.bits(i), value) << "texel " << i;
     }
   }
-  // The newest write of the texel in force waits for review.
+  // Returns whether the newest write in force of the texel waits for review.
   bool waits(int texel) const {
     bool found = false;
     if (auto writes = writes_.find(texel); writes != writes_.end())
@@ -101,8 +101,8 @@ TileMask square(int x0, int y0, int size) {
 TEST(History, undo_leaves_what_another_painted_over_it) {
   OneTileLayer layer;
   layer.paint(square(0, 0, 10), false, 1);  // A
-  layer.paint(square(5, 0, 10), false, 2);  // B, over half of it
-  layer.flip(1, false);                     // A undoes
+  layer.paint(square(5, 0, 10), false, 2);  // B covers half of A
+  layer.flip(1, false);                     // undoes A
   EXPECT_FALSE(layer.tile().valid.test(0));
   EXPECT_EQ(layer.tile().bits(5), 2u);
   layer.expect_equals_oracle();

@@ -13,7 +13,7 @@ namespace {
 
 using Color = std::array<double, 3>;
 
-// Linear light, from #rrggbb.
+// Returns the linear light of a color #rrggbb.
 Color linear(std::string_view text) {
   Color color{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -38,7 +38,7 @@ Color lab(const Color& c) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// The color as people without the cones for green see it (Machado, Oliveira, Fernandes 2009).
+// Returns the color as people without green cones perceive it (Machado, Oliveira, Fernandes 2009).
 Color without_green(const Color& c) {
   const auto part = [&](double r, double g, double b) {
     return std::clamp(r * c[0] + g * c[1] + b * c[2], 0.0, 1.0);

@@ -1,4 +1,4 @@
-// Queries: when they stop, their limits, and their turns.
+// Queries: when they end, their limits, and their turns.
 #include "domain/people/question.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Question, is_refused_before_it_takes_more_steps_or_memory_than_it_may) {
   const Question::Scope scope(question);
   question->spend(600);
   { const QuestionMemory memory(900); }
-  { const QuestionMemory memory(900); }  // freed memory is no longer counted
+  { const QuestionMemory memory(900); }  // freed memory no longer counts
   EXPECT_EQ(end_of([&] { question->spend(600); }), ErrorCode::invalid);
   EXPECT_TRUE(question->ended());
   const auto other = question_of("ann", {.bytes = 1000});
@@ -106,10 +106,10 @@ TEST(ParallelFor, throws_here_what_is_thrown_on_another_thread) {
                std::runtime_error);
 }
 
-// Queries that compute, one at a time, and the order in which they did.
+// Queries that compute one at a time, and the order in which they begin.
 class Turns : public testing::Test {
  protected:
-  // Starts to compute on a separate thread; ends when `until` is true.
+  // Starts a query on a separate thread. The query runs `work` when its turn comes.
   void begin(const std::string& who, std::function<void(Question&)> work) {
     threads_.emplace_back([this, who, work = std::move(work)] {
       const auto question = question_of(who, {}, turns_);
@@ -142,7 +142,8 @@ TEST_F(Turns, one_who_asks_much_makes_way_for_one_who_asks_little) {
     for (int i = 0; i < 5; ++i) begin("ann", [](Question&) {});
     begin("bob", [](Question&) {});
     wait_until([&] { return turns_->waiting() == 6; });
-    // Bob's only query is not behind Ann's: it precedes the rest of the running one.
+    // Bob's only query does not wait behind Ann's waiting queries. It runs before the rest of her
+    // running query.
     turn.check();
     const std::lock_guard lock(mutex_);
     ASSERT_FALSE(order_.empty());

@@ -50,14 +50,15 @@ TEST(Revision, survives_its_storage_form) {
 TEST(Revision, damaged_bytes_are_a_problem_and_never_a_crash) {
   std::mt19937 random(3);
   const auto good = encode_tile(random_tile(ValueType::u16, random, 0.2));
-  EXPECT_FALSE(decode_tile(ValueType::u8, good));           // another width
-  EXPECT_FALSE(decode_revision({}, ValueType::u16, good));  // another kind
+  EXPECT_FALSE(decode_tile(ValueType::u8, good));           // different width
+  EXPECT_FALSE(decode_revision({}, ValueType::u16, good));  // different kind
   for (std::size_t size = 0; size < good.size(); size += 1 + size / 7)
     EXPECT_FALSE(decode_tile(ValueType::u16, std::span(good).first(size))) << size;
   for (int i = 0; i < 300; ++i) {
     auto bad = good;
     bad[random() % bad.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
-    // may decode to other texels; must not crash or read out of bounds
+    // Damaged bytes may decode to other texels, but the decoder must not crash or read out of
+    // bounds.
     (void)decode_tile(ValueType::u16, bad);
   }
 }

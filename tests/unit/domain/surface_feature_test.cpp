@@ -77,7 +77,7 @@ TEST(SurfaceFeature, what_is_none_is_refused) {
     EXPECT_EQ(checked.error().field, "values.crack");
   }
   EXPECT_EQ(check_value(column, json::array(), "f"), json()) << "a list of none is no value";
-  // Limits: the number of marks, and of the places of all of them.
+  // Limits: the number of features, and the total number of their points.
   std::vector<SurfaceFeature> many(kMaxFeatures + 1, {1, {{0, 0, 0}}});
   EXPECT_EQ(read_features(to_json(many), false), std::nullopt);
   many.resize(kMaxFeatures);
@@ -103,7 +103,7 @@ TEST(SurfaceFeature, columns_of_marks_have_no_default_and_are_not_unique) {
     EXPECT_EQ(check_column(column).error().field, "default");
     EXPECT_EQ(parse_column_kind(name(kind)), kind);
   }
-  // A line's text may become a text, and a text a line.
+  // A column of lines can become a text column, and a text column can become a column of lines.
   const json line = to_json(std::vector<SurfaceFeature>{{3, {{0, 0, 1}, {2.5, 0, 1}}}});
   EXPECT_EQ(convert_value(column_of(ColumnKind::line), column_of(ColumnKind::text), line, "f"),
             json("3 LINESTRING Z (0 0 1, 2.5 0 1)"));

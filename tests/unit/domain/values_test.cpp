@@ -138,7 +138,7 @@ TEST(Camera, refuses_singular_and_endless_matrices) {
 }
 
 TEST(Camera, the_ray_through_a_pixel_hits_what_projects_there) {
-  // site coordinates
+  // Large coordinates, as on a real site.
   const glm::dvec3 eye{500012.5, 4000003.0, 130.0}, target{500010.0, 4000000.0, 128.0};
   for (bool orthographic : {false, true}) {
     const Camera camera{glm::lookAt(eye, target, glm::dvec3(0, 0, 1)),

@@ -1,4 +1,4 @@
-// The kind of a mistake, its place, and the texts that would correct it.
+// The kind and the position of a mistake, and the suggestions that correct it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ void expect_refused(const Case& c, Names names = Names::layers) {
   EXPECT_EQ(*problem.offset, c.offset);
   EXPECT_EQ(problem.length, c.length);
   EXPECT_EQ(problem.suggestions, c.suggestions);
-  // A suggestion replaces characters of the text, and never ends behind it.
+  // A suggestion replaces characters of the text and never extends beyond its end.
   EXPECT_LE(*problem.offset + problem.length, c.text.size());
 }
 
@@ -70,7 +70,7 @@ TEST(Mistakes, a_unit_after_a_number_is_left_out) {
   expect_refused({"depth > 3mm", kUnit, 8, 3, {"3"}});
   expect_refused({"3 mm < depth", kUnit, 0, 4, {"3"}});
   expect_refused({"depth > 0.5cm and wet > 1", kUnit, 8, 5, {"0.5"}});
-  expect_refused({"depth > wet mm", kSyntax, 12, 2});  // not a number
+  expect_refused({"depth > wet mm", kSyntax, 12, 2});  // `wet` is not a number
   expect_refused({"3d > 1", kSyntax, 1});
 }
 

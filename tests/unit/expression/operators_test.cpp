@@ -1,4 +1,4 @@
-// The table of operators; the parser accepts each of its rows.
+// The table of operators. The parser must accept each row.
 #include "expression/operators.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using Form = Operator::Form;
 
 bool is_function(Form form) { return form >= Form::number_function; }
 
-// Returns a text in which the operator is written as `name`.
+// Returns a formula that writes the operator as `name`.
 std::string formula(const Operator& row, std::string_view name) {
   const std::string written(name);
   switch (row.form) {

@@ -1,4 +1,4 @@
-// Drawings to scale: their axes, the parts in which they are rendered, and the positions of places
+// Drawings to scale: their axes, the parts in which they are rendered, and the positions of points
 // on paper.
 #include "figure/drawing.h"
 
@@ -25,15 +25,15 @@ Drawing some_drawing(const Plane& plane) {
   return drawing;
 }
 
-// Pixels of a part, origin at the drawing's top left.
+// Returns the pixel of a point in a part, relative to the top left corner of the drawing.
 glm::dvec2 pixel_of(const Part& part, const glm::dvec3& world) {
   const glm::dvec4 clip = part.camera.projection * part.camera.view * glm::dvec4(world, 1);
   return {part.x - part.margin + (clip.x / clip.w + 1) / 2 * (part.width + 2 * part.margin),
           part.y - part.margin + (1 - clip.y / clip.w) / 2 * (part.height + 2 * part.margin)};
 }
 
-// Returns the position of a place on the drawing from its scale alone: millimeters from its top
-// left corner, y down.
+// Returns the position of a point on paper, computed from the scale alone: in millimeters from the
+// top left corner of the drawing, y downwards.
 glm::dvec2 on_paper(const Drawing& drawing, const glm::dvec3& world) {
   const glm::dvec3 drawn = drawing.plane.of(world);
   const glm::dvec2 middle_mm = glm::dvec2(drawing.width, drawing.height) * (25.4 / drawing.dpi / 2);
@@ -55,8 +55,8 @@ TEST(Plane, AxesAreAFrameThatLooksAsItsNameSays) {
         EXPECT_EQ(plane.up, above);
       }
     }
-  // Upside down, rotated about the drawing's right axis: the front shows the former back, upside
-  // down.
+  // The model is upside down, rotated about the right axis of the drawing. The front then shows the
+  // former back upside down.
   EXPECT_EQ(plane_from(Direction::front, "-z").into, glm::dvec3(0, -1, 0));
   EXPECT_EQ(plane_from(Direction::front, "-z").right, glm::dvec3(1, 0, 0));
   EXPECT_EQ(plane_from(Direction::top, "-y").into, glm::dvec3(0, 1, 0));
@@ -76,9 +76,9 @@ TEST(Plane, OfAFaceSeesItSquareAndUpright) {
     EXPECT_LT(glm::distance(glm::cross(plane.right, plane.up), -plane.into), 1e-12);
     EXPECT_NEAR(glm::length(plane.up), 1, 1e-12);
   }
-  // the plan
+  // The plan view.
   EXPECT_LT(glm::distance(plane_square_to({0, 0, 2}, "z").up, glm::dvec3(0, 1, 0)), 1e-12);
-  // the front
+  // The front view.
   EXPECT_LT(glm::distance(plane_square_to({0, -1, 0}, "z").right, glm::dvec3(1, 0, 0)), 1e-12);
 }
 
@@ -108,9 +108,9 @@ TEST(Scale, IsTheLargestRoundOneThatFits) {
   EXPECT_EQ(fitting_scale({0.1, 0.05}, {200, 200}, 1), 1);  // 100 mm
   EXPECT_EQ(fitting_scale({0.2, 0.05}, {200, 200}, 1), 1);  // fits exactly
   EXPECT_EQ(fitting_scale({0.201, 0.05}, {200, 200}, 1), 2);
-  EXPECT_EQ(fitting_scale({0.05, 0.45}, {200, 200}, 1), 2.5);  // 450 mm by 2.5
+  EXPECT_EQ(fitting_scale({0.05, 0.45}, {200, 200}, 1), 2.5);  // 450 mm divided by 2.5
   EXPECT_EQ(fitting_scale({4.9, 1}, {200, 200}, 1), 25);
-  EXPECT_EQ(fitting_scale({4.9, 1}, {200, 200}, 0.001), 1);  // mm: no enlargement
+  EXPECT_EQ(fitting_scale({4.9, 1}, {200, 200}, 0.001), 1);  // unit mm: no enlargement
   EXPECT_EQ(fitting_scale({99000, 1}, {200, 200}, 1), 500'000);
 }
 
@@ -125,7 +125,7 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
       EXPECT_TRUE(is_orthographic(part.camera));
       EXPECT_EQ((part.width + 2 * part.margin) * kCameraDpi,
                 part.camera.width * drawing.dpi);  // whole pixels per inch
-      // symbols extend that far from their places
+      // Symbols extend this far beyond their points.
       EXPECT_GE(part.margin * kCameraDpi, 8 * drawing.dpi);
       EXPECT_EQ(part.margin % 2, 0);
       for (int y = part.y; y < std::min(drawing.height, part.y + part.height); ++y)
@@ -133,14 +133,14 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
           ++covered[static_cast<std::size_t>(y) * drawing.width + x];
     }
     EXPECT_TRUE(std::ranges::all_of(covered, [](int n) { return n == 1; }));
-    // A place has the same pixel in each part's camera, at its position on paper.
+    // In each part's camera, a point has the same pixel, at its position on paper.
     const glm::dvec3 place = drawing.plane.in_world({2.1, -1.4, 3});
     for (const Part& part : parts) {
       const glm::dvec2 pixel = pixel_of(part, place),
                        paper = on_paper(drawing, place) / 25.4 * 300.0;
       EXPECT_LT(glm::distance(pixel, paper), 1e-6) << part.x << " " << part.y;
     }
-    // 20 mm of the world are one on paper: a unit is a centimeter.
+    // One unit is a centimeter, and 20 mm of the world are 1 mm on paper.
     const glm::dvec2 moved =
         on_paper(drawing, place + 2.0 * drawing.plane.right) - on_paper(drawing, place);
     EXPECT_LT(glm::distance(moved, glm::dvec2(1, 0)), 1e-9);

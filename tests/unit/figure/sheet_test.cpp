@@ -103,14 +103,14 @@ TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
                                 .finish(20, std::nullopt, {});
         const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
         ASSERT_NE(group, sheet.groups.end());
-        std::string title;  // in effect for the next entry
+        std::string title;  // title above the next entry
         int counted = 0, titles = 0;
         std::set<std::string> shown;  // titles
         double column = 0, y = 0;
         for (const Item& item : group->items) {
           const auto* words = std::get_if<Words>(&item);
           if (!words) continue;
-          if (words->text.starts_with("… + ")) {  // the count of entries without room
+          if (words->text.starts_with("… + ")) {  // the number of entries without space
             counted += std::stoi(words->text.substr(std::string_view("… + ").size()));
             continue;
           }
@@ -183,7 +183,7 @@ TEST(ScaleBar, IsRoundAndHasRoom) {
                                               : 0.001);
     EXPECT_NEAR(metres * 1000 / scale, bar.length_mm, 1e-6) << scale;
   }
-  const ScaleBar one = scale_bar(20, 50);  // one meter as 50 mm
+  const ScaleBar one = scale_bar(20, 50);  // one meter is 50 mm
   EXPECT_EQ(one.length_mm, 50);
   EXPECT_EQ(one.unit, "cm");
   EXPECT_EQ(one.step * one.steps, 100);
@@ -280,7 +280,7 @@ TEST_F(Files, PngHasItsResolutionAndTheDrawingPixelByPixel) {
   ASSERT_TRUE(picture);
   EXPECT_EQ(picture->width, 1654);  // 210 mm
   EXPECT_EQ(picture->height, 1165);
-  // 7874 pixels per meter
+  // The chunk states 7874 pixels per meter.
   EXPECT_NE(bytes.find(std::string("pHYs\0\0\x1e\xc2\0\0\x1e\xc2\x01", 13)), std::string::npos);
   const auto at = [&](double x_mm, double y_mm) {
     return &picture->rgba[4 * (std::size_t(y_mm / 25.4 * 200) * picture->width +

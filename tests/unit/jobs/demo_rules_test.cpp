@@ -10,7 +10,7 @@
 namespace strata::jobs {
 namespace {
 
-// A ball of 50 mm with evenly spaced points.
+// Returns evenly spaced points on a ball.
 std::vector<glm::vec3> ball(int count, float radius) {
   std::vector<glm::vec3> points;
   for (int i = 0; i < count; ++i) {

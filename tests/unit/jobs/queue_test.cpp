@@ -27,7 +27,7 @@ JobStatus wait_until_over(const JobQueue& queue, JobId id) {
   return {};
 }
 
-// Occupies the queue until it is opened.
+// A job that occupies the queue until the gate is opened.
 struct Gate {
   std::promise<void> opened, entered;
   std::shared_future<void> open = opened.get_future().share();
@@ -199,7 +199,8 @@ TEST(JobsQueue, what_a_job_freed_in_small_pieces_is_given_back_to_the_system) {
 #endif
   using Pieces = std::vector<std::unique_ptr<std::array<char, 4000>>>;
   const double before = resident_mb();
-  // above all other blocks: malloc does not give back the memory below it automatically
+  // This memory is above all other blocks, and malloc does not automatically return the memory
+  // below it.
   const auto last = std::make_shared<Pieces>();
   double most = 0;
   JobQueue queue;

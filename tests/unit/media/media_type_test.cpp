@@ -14,7 +14,7 @@ std::string sniff(const std::string& bytes, const std::string& name = "file") {
                           name);
 }
 
-// The first entry of a zip, stored.
+// Returns the first entry of a zip file, stored without compression.
 std::string zip_entry(const std::string& name, const std::string& content = {}) {
   std::string head("PK\x03\x04\x14\0\0\0\0\0", 10);
   head += std::string(16, '\0');

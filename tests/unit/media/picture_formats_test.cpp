@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr int kWidth = 37, kHeight = 23;
 
-// Red and green along the sides; a third of alpha.
+// Returns a gradient of red and green in which a third of the alpha values are 128.
 Bytes see_through() {
   Bytes rgba = gradient(kWidth, kHeight);
   for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = i % 3 == 0 ? 128 : 255;
@@ -78,7 +78,7 @@ TEST(PictureFormats, a_tiff_of_16_bits_grey_or_a_table_is_shown) {
   const Bytes rgba = gradient(kWidth, kHeight);
   TiffSettings deep;
   deep.bits = 16;
-  // libtiff's table of 16 bits rounds.
+  // The 16-bit table of libtiff rounds, so values may differ by 1.
   expect_same(tiff_of(kWidth, kHeight, deep, samples_of(rgba, 257)), PictureFormat::tiff, rgba, 1);
 
   Bytes grey = rgba;
@@ -206,7 +206,7 @@ TEST(PictureFormats, every_format_that_is_cut_short_is_refused) {
 TEST(PictureFormats, a_jpeg_whose_rest_was_cut_out_of_it_is_refused) {
   Bytes jpeg = encode_jpeg(gradient(200, 120), 200, 120, {90, true});
   jpeg.resize(jpeg.size() / 2);
-  jpeg.insert(jpeg.end(), {0xff, 0xd9});  // the end marker, which a repair may have restored
+  jpeg.insert(jpeg.end(), {0xff, 0xd9});  // a repair may have restored this end marker
   EXPECT_FALSE(decode_picture(jpeg));
 }
 
@@ -230,7 +230,7 @@ TEST(PictureFormats, formats_that_are_not_read_are_named) {
 }
 
 TEST(PictureFormats, what_goes_with_a_mesh_is_not_taken_for_a_tga) {
-  // Indices and coordinates of a glTF, a database, zeros.
+  // Indices and coordinates of a glTF file, data of a database, and zeros.
   const std::vector<Bytes> others{
       {0, 0, 1, 0, 2, 0, 0, 0, 2, 0, 3, 0, 3, 0, 4, 0, 5, 0, 6, 0},
       {0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0},

@@ -13,7 +13,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Inserts an APP1 segment with one entry after the start of the picture.
+// Inserts an APP1 segment with one entry after the start of the image.
 Bytes with_orientation(const Bytes& jpeg, int orientation, bool little = true) {
   Bytes tiff = little ? Bytes{'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0, 0x12, 1, 3,
                               0,   1,   0,  0, 0, 0, 0, 0, 0, 0, 0,    0, 0}
@@ -27,8 +27,8 @@ Bytes with_orientation(const Bytes& jpeg, int orientation, bool little = true) {
   return out;
 }
 
-// Red left half and green right half in the upper part, blue and white in the lower: each corner
-// has a different color.
+// Returns an image with a different color in each corner: red and green in the upper half, blue and
+// white in the lower half.
 Bytes corners(int width, int height) {
   Bytes rgba;
   for (int y = 0; y < height; ++y)
@@ -41,7 +41,7 @@ Bytes corners(int width, int height) {
   return rgba;
 }
 
-// r, g, b or w at the four corners: top left, top right, bottom left, bottom right.
+// Returns r, g, b or w for the four corners: top left, top right, bottom left, bottom right.
 std::string corners_of(const Picture& picture) {
   std::string found;
   for (const int y : {picture.height / 8, picture.height * 7 / 8})
@@ -111,7 +111,7 @@ TEST(Thumbnail, a_bomb_is_refused_by_its_header) {
   };
   put(16, 16000);
   put(20, 16000);
-  const auto crc_of = [&] {  // of the header's chunk
+  const auto crc_of = [&] {  // CRC of the header chunk
     std::uint32_t crc = 0xffffffff;
     for (std::size_t i = 12; i < 29; ++i) {
       crc ^= png[i];
@@ -138,7 +138,7 @@ TEST(JpegFacts, cut_and_damaged_ones_say_nothing) {
   const auto whole = with_orientation(encode_jpeg(test::gradient(16, 16), 16, 16, {}), 6);
   for (std::size_t cut = 0; cut < 60; ++cut) read_jpeg_facts(std::span(whole).first(cut));
   auto wild = whole;
-  wild[16] = 0xff;  // the offset of the directory
+  wild[16] = 0xff;  // offset of the directory
   wild[17] = 0xff;
   EXPECT_EQ(read_jpeg_facts(wild).orientation, 1);
   EXPECT_FALSE(read_jpeg_facts(whole).progressive);

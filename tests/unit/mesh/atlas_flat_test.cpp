@@ -1,4 +1,4 @@
-// Flat pieces stay whole; atlases of which little would be used.
+// Flat pieces stay whole. Also tests atlases with low coverage.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,8 +38,8 @@ glm::dvec3 normal_of(const TriangleMesh& mesh, std::size_t t) {
                                    mesh.positions[mesh.triangles[3 * t + 2]] - a));
 }
 
-// Triangles that share an edge and are in one plane must be in one island: tests all pairs by brute
-// force.
+// Expects triangles that share an edge and a plane to be in the same island. Tests all pairs by
+// brute force.
 void expect_planes_in_one_chart(const TriangleMesh& mesh, const Atlas& atlas) {
   const auto islands = islands_of(mesh, atlas);
   int pairs = 0;
@@ -78,18 +78,18 @@ FlatPieces flat_pieces_of(const TriangleMesh& mesh) {
 }
 
 TEST(mesh_atlas_flat, a_curved_surface_has_no_flat_piece) {
-  // Each cell is a plane, at less than a degree to the next one.
+  // Each cell is a plane, at less than a degree to the next cell.
   EXPECT_EQ(flat_pieces_of(test::sphere(400)).count(), 0u);
 }
 
 TEST(mesh_atlas_flat,
      faces_of_a_coarse_or_noisy_surface_are_flat_pieces_only_where_they_lie_in_one_plane) {
-  // The cells of a coarse sphere are planes between creases: all except the triangles at the poles
-  // are in pieces of two.
+  // The cells of a coarse sphere are planes between creases. All triangles except those at the
+  // poles are in pieces of two.
   const FlatPieces coarse = flat_pieces_of(test::sphere(40));
   EXPECT_EQ(coarse.count(), 40u * 18);
   EXPECT_EQ(coarse.faces.size(), 2u * 40 * 18);
-  // With noise two faces are in one plane only by chance.
+  // With noise, two faces are in the same plane only by chance.
   const TriangleMesh noisy = test::sphere(60, 0.08);
   const FlatPieces few = flat_pieces_of(noisy);
   EXPECT_LT(few.faces.size(), noisy.triangle_count() / 100);
@@ -99,7 +99,8 @@ TEST(mesh_atlas_flat,
 }
 
 TEST(mesh_atlas_flat, long_strips_do_not_keep_all_else_small) {
-  // Without squeezing, strips of 150 would limit the scale to a tenth of the atlas.
+  // Without special treatment, strips with a length of 150 would limit the scale to a tenth of the
+  // atlas.
   TriangleMesh mesh = test::strips(6, 150);
   const auto offset = static_cast<std::uint32_t>(mesh.positions.size());
   const auto others = test::transformed(test::cubes(4), 8, {0, 200, 0});

@@ -20,8 +20,8 @@ namespace {
 
 constexpr int kLowest = 256;
 
-// Counts how often each texel center is covered: OpenGL's rule implemented again, texel by texel,
-// with whole numbers.
+// Counts how often each texel center is covered. This second implementation of OpenGL's rule tests
+// each texel with integers.
 std::vector<int> owners_by_brute_force(const TriangleMesh& mesh, const Atlas& atlas,
                                        int resolution) {
   std::vector<int> owners(std::size_t(resolution) * resolution, 0);
@@ -83,7 +83,7 @@ class EveryMeshClass : public testing::TestWithParam<test::NamedMesh> {
     EXPECT_TRUE(atlas.has_value()) << (atlas ? "" : atlas.error().detail);
     return atlas ? *atlas : Atlas{};
   }
-  // For tests that only read it: unwrapped once for all of them.
+  // Returns an atlas that is made once. All tests that only read it share it.
   const Atlas& unwrapped() {
     static std::map<std::string, Atlas> atlases;
     const auto found = atlases.find(GetParam().name);
@@ -135,7 +135,7 @@ TEST_P(EveryMeshClass, keeps_two_empty_texels_between_charts) {
   const Atlas& atlas = unwrapped();
   const auto islands = islands_of(mesh(), atlas);
   EXPECT_EQ(atlas.report.charts, 1 + int(*std::max_element(islands.begin(), islands.end())));
-  // Texels that edges touch, which can be nearest to another chart.
+  // Texels that edges touch can be the nearest ones to another chart.
   constexpr std::uint32_t kFree = 0xffffffffu;
   std::vector<std::uint32_t> touched(kLowest * kLowest, kFree);
   const auto touch = [&](glm::dvec2 p, std::uint32_t island) {
@@ -216,7 +216,7 @@ TEST(mesh_atlas, reports_how_much_surface_texels_hold_at_each_resolution) {
 }
 
 TEST(mesh_atlas, the_largest_texel_of_an_even_sheet_is_any_texel) {
-  // A unit square over [0.05, 0.95]², then over half of that.
+  // A unit square covers [0.05, 0.95]², and then half of that area.
   const auto mesh = test::open_grid(10, 0);
   ASSERT_NEAR(surface_area(mesh), 1, 1e-6);
   const double side = 1 / (0.9 * 100);
@@ -251,7 +251,8 @@ TEST(mesh_atlas, refuses_more_pieces_than_texels_can_hold_apart) {
 }
 
 TEST(mesh_atlas, refuses_a_soup_of_faces_before_it_tries_to_pack_it) {
-  // Packing so many takes minutes; the check that even single texels do not fit is immediate.
+  // Packing so many triangles takes minutes, but checking that not even single texels fit is
+  // immediate.
   Progress progress;
   const auto atlas = make_atlas(test::separate_triangles(200'000), 1024, progress);
   ASSERT_FALSE(atlas);

@@ -14,7 +14,7 @@ using namespace strata;
 using mesh::Material;
 using mesh::TriangleMesh;
 
-// A picture of one color.
+// Returns a texture of one color.
 mesh::Texture plain(const std::string& name, int size, glm::u8vec3 color,
                     PictureFormat format = PictureFormat::png) {
   std::vector<std::uint8_t> rgba;
@@ -23,8 +23,8 @@ mesh::Texture plain(const std::string& name, int size, glm::u8vec3 color,
                                              : encode_jpeg(rgba, size, size, {95, true})};
 }
 
-// Two adjacent squares, each of two triangles that fill their texture's [0,1]²; in the atlas the
-// lower left and the upper right quarter.
+// Two adjacent squares, each of two triangles that fill [0,1]² of their texture. In the atlas, they
+// are the lower left and the upper right quarter.
 struct Squares {
   TriangleMesh mesh;
   mesh::Atlas atlas;
@@ -53,7 +53,7 @@ struct Squares {
   }
 };
 
-// At an atlas coordinate, v upward.
+// Returns the color at an atlas coordinate, with v upwards.
 glm::ivec3 color_at(const Picture& picture, double u, double v) {
   const int x = static_cast<int>(u * picture.width), y = static_cast<int>((1 - v) * picture.height);
   const auto* p = &picture.rgba[(static_cast<std::size_t>(y) * picture.width + x) * 4];
@@ -73,7 +73,7 @@ TEST(BaseColor, several_textures_become_one_picture_of_their_density) {
     EXPECT_EQ(color_at(*picture, s, 0.499 - s + 0.001), glm::ivec3(200, 0, 0));
     EXPECT_EQ(color_at(*picture, 0.5 + s, 0.5 + s), glm::ivec3(0, 0, 200));
   }
-  // The gutter continues the adjacent surface.
+  // The gutter continues the colors of the adjacent surface.
   EXPECT_EQ(color_at(*picture, 0.25, 0.5 + 5.0 / 2048), glm::ivec3(200, 0, 0));
   EXPECT_EQ(color_at(*picture, 0.75, 0.5 - 5.0 / 2048), glm::ivec3(0, 0, 200));
   EXPECT_TRUE(squares.mesh.textures[0].bytes.empty());
@@ -183,7 +183,7 @@ TEST(BaseColor, textures_of_which_none_can_be_read_are_no_look) {
 
 TEST(BaseColor, pixels_that_are_lost_are_said_with_the_sizes) {
   Squares squares;
-  MemoryLedger memory("memory", "--memory", 12 << 20);  // enough for 1024² and no more
+  MemoryLedger memory("memory", "--memory", 12 << 20);  // only enough for 1024²
   const auto baked = mesh::bake_base_color(squares.mesh, squares.atlas, squares.repairs,
                                            squares.progress, &memory);
   ASSERT_TRUE(baked && *baked);
@@ -226,8 +226,8 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
   Squares squares;
   squares.mesh.materials[1].texture = 0;
   squares.atlas.report.source = "file";
-  // The texture is the atlas, except for the second triangle: the lower half of the picture is red,
-  // the upper half blue.
+  // The texture is the atlas, except for the second triangle. The lower half of the image is red,
+  // and the upper half is blue.
   squares.mesh.corner_uvs = squares.atlas.corner_uvs;
   std::vector<std::uint8_t> rgba(512 * 512 * 4, 255);
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
@@ -242,7 +242,7 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
     std::copy(uvs.begin(), uvs.end(), squares.mesh.corner_uvs.begin() + 3);
   };
 
-  own({{0.6f, 1.6f}, {0.9f, 1.6f}, {0.9f, 1.9f}});  // outside, repeated: blue
+  own({{0.6f, 1.6f}, {0.9f, 1.6f}, {0.9f, 1.9f}});  // outside, so the texture repeats: blue
   auto baked = squares.bake();
   ASSERT_TRUE(baked);
   auto picture = decode_picture(baked->bytes);
@@ -252,8 +252,8 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
   for (std::size_t i = 0; i < rgba.size(); i += 4) changed += rgba[i] != picture->rgba[i];
   EXPECT_NEAR(double(changed), 512 * 512 * 0.045, 800) << "nothing else";
 
-  // Without coordinates it gets the colors that its corners have in adjacent triangles: the first
-  // one is red there.
+  // Without coordinates, the triangle gets the colors of its corners in adjacent triangles. The
+  // first corner is red there.
   squares.mesh.textures[0].bytes = encode_png(rgba, 512, 512);
   const float none = NAN;
   own({{none, none}, {none, none}, {none, none}});

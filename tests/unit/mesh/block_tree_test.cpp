@@ -1,4 +1,4 @@
-// The order of blocks by their place on the model.
+// The order of blocks by their position on the model.
 #include "mesh/surface/block_tree.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 constexpr float kTexel = 0.5f;
 constexpr float kGap = 4 * kTexel;
 
-// Texels of a flat block at a corner in space.
+// Returns the texels of a flat block with the given corner.
 std::array<glm::vec3, 64> flat_block(const glm::vec3& corner) {
   std::array<glm::vec3, 64> positions;
   for (int i = 0; i < 64; ++i)
@@ -111,8 +111,8 @@ TEST_P(TreeOfMany, holds_every_part_once_under_bounds_that_hold_it) {
 }
 INSTANTIATE_TEST_SUITE_P(Sizes, TreeOfMany, testing::Values(0, 1, 7, 8, 9, 64, 65, 513, 5000));
 
-// With points in a cube of 16³, a run of eight neighbors fills about a cube of 2³, not a slice of
-// the whole.
+// The points form a cube of 16³. A run of eight neighbors must fill about a cube of 2³, not a slice
+// of the whole cube.
 TEST(BlockTree, keeps_neighbours_in_space_together) {
   std::vector<BoundedPart> parts;
   for (std::uint32_t i = 0; i < 4096; ++i)

@@ -1,5 +1,5 @@
-// The half-edges of a mesh, and the repair of broken ones, compared with OpenMesh's construction of
-// a mesh.
+// The half-edges of a mesh, and the repair of invalid meshes, compared with a mesh that OpenMesh
+// builds.
 #include "mesh/surface/connectivity.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,8 @@ mesh::TriangleMesh repaired(const mesh::TriangleMesh& mesh) {
   return loaded ? std::move(loaded->mesh) : mesh::TriangleMesh{};
 }
 
-// Few points with many triangles: edges of many triangles, fins, pieces that touch.
+// Returns a mesh of few points and many triangles, with edges of many triangles, fins, and pieces
+// that touch.
 mesh::TriangleMesh tangle(unsigned seed) {
   std::mt19937 random(seed);
   const auto number = [&](unsigned end) { return static_cast<std::uint32_t>(random() % end); };
@@ -120,7 +121,7 @@ TEST(Connectivity, is_what_openmesh_builds_face_by_face) {
 }
 
 TEST(Connectivity, many_triangles_around_one_vertex_take_no_longer_than_elsewhere) {
-  // In an order without adjacent neighbors.
+  // In this order, no triangle is next to its neighbor.
   constexpr std::uint32_t kCount = 400'000, kStep = 7919;
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -141,7 +142,7 @@ TEST(Connectivity, an_edge_of_three_triangles_is_open_on_all_sides) {
 }
 
 TEST(BoundaryLoops, of_holes_are_counted_and_measured) {
-  // A square of 20 × 20 cells, 1 wide, without one cell, and without a block of 3 × 2.
+  // A square of 20 × 20 cells with a side of 1. One cell and a block of 3 × 2 cells are missing.
   constexpr int kCells = 20;
   mesh::TriangleMesh grid = test::open_grid(kCells, 0);
   std::vector<std::uint32_t> triangles;

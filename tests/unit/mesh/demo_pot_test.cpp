@@ -29,12 +29,13 @@ TEST_P(DemoPot, is_closed_manifold_and_oriented_outward) {
     ASSERT_EQ(count, 1);
     ASSERT_TRUE(edges.contains({edge.second, edge.first}));
   }
-  // A sphere: V - E + F = 2. With closed edges, this excludes vertices where two sheets only touch.
+  // V − E + F is 2, as for a sphere. All edges are closed, so this excludes vertices at which two
+  // sheets only touch.
   EXPECT_EQ(static_cast<long>(pot.positions.size()) - static_cast<long>(edges.size() / 2) +
                 static_cast<long>(pot.triangle_count()),
             2);
   EXPECT_GT(volume, 80000);  // mm³ of clay
-  // a solid pot would have far more: the wall is thin and the inside open
+  // A solid pot would have far more, but the wall is thin and the inside is open.
   EXPECT_LT(volume, 250000);
 }
 

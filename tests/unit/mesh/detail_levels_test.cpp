@@ -76,7 +76,7 @@ TEST_F(DetailLevels, lie_near_the_surface_and_show_nearly_the_texels_that_lie_th
       shift_sum += glm::distance((a.uv + b.uv + c.uv) / 3.0f, hit->uv);
       ++compared;
     }
-    // Half a texel of a 2048² layer.
+    // The limit is half a texel of a 2048² layer.
     EXPECT_LT(shift_sum / static_cast<double>(compared), 0.5 / 2048);
   }
 }

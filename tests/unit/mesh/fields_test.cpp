@@ -19,8 +19,8 @@ std::shared_ptr<const Geometry> geometry_of(const TriangleMesh& mesh) {
   return std::make_shared<const Geometry>(build_geometry(mesh, Atlas{}));
 }
 
-// Heights over a square of side 2 around the origin, on an irregular grid: every vertex is moved a
-// little within the square.
+// Returns heights over a square with a side of 2 around the origin, on an irregular grid. Every
+// vertex is moved slightly within the square.
 template <class Height>
 TriangleMesh height_field(int cells, Height height, double noise = 0) {
   TriangleMesh mesh = test::open_grid(cells, 0);
@@ -58,7 +58,7 @@ Curvature curvature_near_origin(const TriangleMesh& mesh, float radius) {
 }
 
 TEST(Curvature, of_a_sphere_is_one_over_its_radius_everywhere_and_positive) {
-  // radius 5
+  // The radius is 5.
   const auto geometry = geometry_of(test::transformed(test::sphere(160), 5, {100, 0, 0}));
   const SurfaceSamples samples = samples_of(*geometry, 0.8f);
   const SurfaceNormals normals(geometry);
@@ -111,7 +111,7 @@ TEST(Curvature, of_a_torus_follows_the_formula_around_the_tube) {
 
 TEST(Curvature, does_not_depend_on_noise_that_is_finer_than_the_radius) {
   const auto bowl = [](double x, double y) { return (x * x + y * y) / 4; };
-  // Noise of a sixth of an edge, which rotates single faces by some ten degrees.
+  // The noise is a sixth of an edge, which rotates single faces by about ten degrees.
   const Curvature c = curvature_near_origin(height_field(160, bowl, 0.002), 0.25f);
   EXPECT_NEAR(c.mean(), -0.5, 0.05);
 }
@@ -138,7 +138,7 @@ TEST(Curvature, is_none_where_a_strip_has_no_width) {
   EXPECT_FALSE(curvature_at(samples, {50, 0, 0}, {0, 0, 1}));
 }
 
-// Finds every sample near one of the points, once.
+// Returns every sample near one of the points, without duplicates.
 std::vector<std::array<float, 7>> samples_near(const SurfaceSamples& samples,
                                                const std::vector<glm::vec3>& points) {
   std::vector<std::array<float, 7>> all;
@@ -246,7 +246,7 @@ TEST(Openness, can_be_cancelled_while_its_tree_is_made) {
 }
 
 TEST(Openness, at_the_foot_of_a_wall_is_a_half) {
-  TriangleMesh corner;  // a floor and a wall that meet along y, both far larger than the distance
+  TriangleMesh corner;  // a floor and a wall that meet along y, both much larger than the distance
   corner.positions = {{0, -100, 0}, {100, -100, 0}, {100, 100, 0},
                       {0, 100, 0},  {0, -100, 100}, {0, 100, 100}};
   corner.triangles = {0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4};
@@ -255,7 +255,7 @@ TEST(Openness, at_the_foot_of_a_wall_is_a_half) {
   ASSERT_TRUE(openness);
   const glm::vec3 origin = geometry_of(corner)->origin;
   EXPECT_NEAR((*openness)->at(glm::vec3(0.01f, 0, 0) - origin, {0, 0, 1}), 0.5, 0.02);
-  // beyond the distance
+  // The point is beyond the distance.
   EXPECT_NEAR((*openness)->at(glm::vec3(60, 0, 0) - origin, {0, 0, 1}), 1, 0.001);
 }
 
@@ -289,7 +289,7 @@ TEST(Boundary, distance_is_that_to_the_nearest_side_of_a_square) {
 }
 
 TEST(ModelDistance, of_two_balls_has_the_sign_of_the_side_and_the_unit_of_the_first) {
-  // In meters there; in millimeters here, at another place of the world by the same coordinates.
+  // `there` is in meters and `here` is in millimeters. Both balls have the same center.
   const auto there = geometry_of(test::transformed(test::sphere(200), 1, {5, 0, 0}));
   const auto here = geometry_of(test::transformed(test::sphere(40), 1200, {5000, 0, 0}));
   const ModelDistance distance(here->origin, 0.001, there, 1, 400);

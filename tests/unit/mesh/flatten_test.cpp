@@ -12,7 +12,7 @@
 namespace strata::mesh {
 namespace {
 
-// Six equal triangles around point 0.
+// Returns six congruent triangles around point 0.
 RelaxPatch hexagon() {
   RelaxPatch patch;
   patch.points.push_back({0, 0});
@@ -27,7 +27,7 @@ RelaxPatch hexagon() {
 
 TEST(mesh_relax, brings_a_point_that_folds_its_triangles_back_between_its_neighbours) {
   RelaxPatch patch = hexagon();
-  patch.points[0] = {3, 1};  // far outside: two triangles are flipped
+  patch.points[0] = {3, 1};  // far outside, so two triangles are flipped
   relax(patch, 0.99f, 100);
   EXPECT_NEAR(patch.points[0].x, 0, 0.02);
   EXPECT_NEAR(patch.points[0].y, 0, 0.02);
@@ -52,7 +52,8 @@ TEST(mesh_relax, takes_triangles_without_a_true_shape) {
   EXPECT_LT(glm::length(patch.points[0]), 1);
 }
 
-// A sheet with a bump so steep that its flanks keep almost no area in a view from above.
+// Returns a sheet with a bump. Its flanks are so steep that they have almost no area in a view from
+// above.
 TriangleMesh steep_bump() {
   TriangleMesh mesh = test::open_grid(40, 0);
   for (auto& p : mesh.positions) {
@@ -135,7 +136,7 @@ TEST(mesh_flatten, does_not_depend_on_the_number_of_threads) {
 TEST(mesh_chart_conflicts, finds_the_later_of_two_faces_that_share_a_texel) {
   Chart chart;
   chart.faces = {0, 1, 2};
-  // 1 next to 0, 2 over both.
+  // Triangle 1 is next to triangle 0. Triangle 2 covers parts of both.
   const std::vector<glm::vec2> uvs{{0.1f, 0.1f}, {0.5f, 0.1f}, {0.1f, 0.5f},
                                    {0.5f, 0.1f}, {0.5f, 0.5f}, {0.1f, 0.5f},
                                    {0.2f, 0.2f}, {0.4f, 0.2f}, {0.3f, 0.4f}};
@@ -150,7 +151,8 @@ TEST(mesh_chart_conflicts, finds_the_later_of_two_faces_that_share_a_texel) {
 TEST(mesh_chart_conflicts, finds_what_shows_only_at_a_higher_resolution) {
   Chart chart;
   chart.faces = {0, 1};
-  // They overlap around (0.28, 0.28): between the centers of the texels at 16, over some at 128.
+  // The triangles overlap around (0.28, 0.28): between texel centers at a resolution of 16, and
+  // over some centers at 128.
   const std::vector<glm::vec2> uvs{{0.1f, 0.1f},   {0.29f, 0.1f}, {0.29f, 0.29f},
                                    {0.285f, 0.1f}, {0.45f, 0.1f}, {0.285f, 0.29f}};
   const std::vector<Chart> charts{chart};

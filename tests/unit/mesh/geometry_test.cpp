@@ -20,7 +20,7 @@ using mesh::encode_geometry;
 using mesh::Geometry;
 using mesh::TriangleMesh;
 
-// A square of two triangles, folded along its diagonal if `height` is not 0.
+// Returns a square of two triangles, which is folded along its diagonal if `height` is not 0.
 TriangleMesh square(const glm::dvec3& at, double size, double height = 0) {
   TriangleMesh mesh;
   mesh.positions = {at, at + glm::dvec3(size, 0, height), at + glm::dvec3(size, size, 0),
@@ -84,7 +84,7 @@ TEST(MeshGeometry, normals_are_smooth_over_seams_and_weighted_by_area) {
   std::map<std::uint32_t, std::set<std::uint32_t>> normals;
   for (const auto& vertex : geometry.vertices) normals[vertex.position_index].insert(vertex.normal);
   for (const auto& [position, set] : normals) EXPECT_EQ(set.size(), 1u);
-  // On the fold the two equal triangles result in a vertical normal.
+  // The two congruent triangles give a vertical normal on the fold.
   for (const auto& vertex : geometry.vertices) {
     const glm::vec3 normal = unpack_normal(vertex.normal);
     EXPECT_NEAR(glm::length(normal), 1, 0.004);
@@ -198,7 +198,7 @@ TEST(MeshGeometry, damaged_bytes_are_refused) {
       auto bad = good;
       bad[i] ^= static_cast<std::uint8_t>(1 << bit);
       const auto decoded = decode_geometry(bad);
-      // Unused bits of the frame may change; the decoded result must then be the same.
+      // A flipped bit may be unused. Then the decoded result must be the same.
       if (decoded) expect_equal(*decoded, *decode_geometry(good));
     }
   }

@@ -1,7 +1,7 @@
-// Every format in which a glTF may store an attribute, compared with the specification's meaning of
-// its numbers: glTF 2.0, 3.6.2 and 3.7.2.1, KHR_mesh_quantization, KHR_draco_mesh_compression,
-// EXT_meshopt_compression and KHR_meshopt_compression. The test computes the expected values in
-// double from the stored numbers.
+// Every format in which a glTF file may store an attribute, compared with the meaning of its
+// numbers in the specification: glTF 2.0, 3.6.2 and 3.7.2.1, KHR_mesh_quantization,
+// KHR_draco_mesh_compression, EXT_meshopt_compression and KHR_meshopt_compression. The test
+// computes the expected values in double precision from the stored numbers.
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort 
               kUnsignedInt = 5125, kFloat = 5126;
 constexpr std::array kTypes{kByte, kUnsignedByte, kShort, kUnsignedShort, kUnsignedInt, kFloat};
 constexpr int kVertices = 5;
-// A pyramid without its base.
+// A pyramid without a base.
 constexpr std::array<std::uint32_t, 12> kTriangles{0, 1, 4, 1, 3, 4, 3, 2, 4, 2, 0, 4};
 
 int size_of(int type) { return type <= kUnsignedByte ? 1 : type <= kUnsignedShort ? 2 : 4; }
@@ -40,13 +40,13 @@ double largest(int type) {
     case kUnsignedByte: return 255;
     case kShort: return 32767;
     case kUnsignedShort: return 65535;
-    // Draco's encoder has a table as long as the largest value
+    // The encoder of Draco has a table whose length is the largest value.
     case kUnsignedInt: return 1 << 16;
     default: return 1;
   }
 }
 
-// One attribute: its numbers as stored, vertex by vertex.
+// One attribute with its numbers as stored, vertex by vertex.
 struct Attribute {
   std::string name;
   int type = kFloat, components = 3;
@@ -61,7 +61,7 @@ struct Attribute {
   }
   double meaning(int vertex, int k) const { return meaning(vertex, k, normalized); }
 
-  // Elements with this stride, and zeros between them.
+  // Returns the elements with this stride, and zeros between them.
   std::vector<std::uint8_t> bytes(int stride) const {
     std::vector<std::uint8_t> out(static_cast<std::size_t>(stride * kVertices));
     for (int i = 0; i < kVertices; ++i)
@@ -85,8 +85,8 @@ struct Attribute {
   std::string shape() const { return "VEC" + std::to_string(components); }
 };
 
-// For shares 0…1: the whole range of the type, including the lowest signed number, which is
-// normalized to −1 like the next one.
+// Returns values that cover the whole range of the type, from shares of 0…1. This includes the
+// lowest signed number, which is normalized to −1 like the next number.
 Attribute attribute(const std::string& name, int type, int components, bool normalized) {
   static constexpr double kShares[kVertices][4] = {
       {0, 0, 0.2, 1}, {1, 0, 0.25, 0.5}, {0, 1, 0.5, 0.75}, {1, 1, 0.125, 0.25}, {0.5, 0.6, 1, 0}};
@@ -134,8 +134,9 @@ std::string name_of(Store store) {
 
 class File {
  public:
-  // Attributes of which the last is stored in the given format, the others plainly; with Draco all
-  // are in the stream, which contradicts their accessors about normalization.
+  // Makes a file whose last attribute is stored in the given format. The others are stored plainly.
+  // With Draco, the stream contains all attributes and contradicts their accessors about
+  // normalization.
   File(const std::vector<Attribute>& attributes, Store store, int index_type,
        bool quantization_named) {
     json primitive = {{"attributes", json::object()}};
@@ -190,7 +191,7 @@ class File {
     if (is_draco(store)) return add_accessor(accessor);
     Attribute base = a;
     if (is_sparse(store)) {
-      // Vertices 1 and 4 are wrong in the buffer view, and corrected by sparse values.
+      // Vertices 1 and 4 are wrong in the buffer view, and sparse values correct them.
       for (int k = 0; k < a.components; ++k)
         base.stored[static_cast<std::size_t>(a.components + k)] =
             base.stored[static_cast<std::size_t>(4 * a.components + k)] = 1;
@@ -210,7 +211,7 @@ class File {
           {"values", {{"bufferView", builder_.add_view(values.data(), values.size())}}}};
       if (zeros) return add_accessor(accessor);
     }
-    // meshopt has strides of whole words, and so do interleaved vertices.
+    // The strides of meshopt and of interleaved vertices are multiples of four bytes.
     const bool meshopt = store == Store::meshopt_ext || store == Store::meshopt_khr ||
                          store == Store::sparse_on_meshopt;
     const int stride = meshopt                       ? (a.size() + 3) / 4 * 4
@@ -238,7 +239,7 @@ class File {
                                       {"byteStride", stride},
                                       {"count", count},
                                       {"mode", mode}};
-    shown["buffer"] = 7;  // the uncompressed bytes, which do not exist
+    shown["buffer"] = 7;  // uncompressed bytes that do not exist
     shown["byteOffset"] = 0;
     shown["byteLength"] = stride * count;
     return view;
@@ -329,8 +330,8 @@ int color_byte_of_light(double value) {
       255 * (value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055)));
 }
 
-// The expected values of a corner, in the order x y z, u v (with v counted from below), r g b a;
-// NaN: no expected value.
+// The expected values of a corner, in the order x y z, u v (v counted from below), r g b a. NaN
+// means no expected value.
 using Corner = std::array<double, 9>;
 
 Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
@@ -344,7 +345,7 @@ Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
       corner[4] = 1 - a.meaning(vertex, 1);
     }
     if (a.name != "COLOR_0") continue;
-    // Whole numbers without the normalized flag are forbidden, and are read as if they had it.
+    // Integers without the normalized flag are forbidden. They are read as if they had the flag.
     for (int k = 0; k < 3; ++k) corner[5 + k] = color_byte_of_light(a.meaning(vertex, k, true));
     corner[8] = a.components == 4 ? std::round(255 * a.meaning(vertex, 3, true)) : 255;
   }
@@ -354,14 +355,15 @@ Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
 bool alike(const Corner& expected, const Corner& found) {
   for (std::size_t k = 0; k < expected.size(); ++k) {
     if (std::isnan(expected[k])) continue;
-    // Single precision; colors may round in the other direction at a half.
+    // Single precision. A color that is halfway between two values may be rounded in either
+    // direction.
     const double tolerance = k >= 5 ? 1 : 1.2e-7 * std::max(1.0, std::abs(expected[k]));
     if (!(std::abs(expected[k] - found[k]) <= tolerance)) return false;
   }
   return true;
 }
 
-// Encoders may rotate triangles and change their order.
+// Finds each triangle of the pyramid, because encoders may rotate triangles and change their order.
 void expect_the_pyramid(const mesh::TriangleMesh& mesh, const std::vector<Attribute>& attributes) {
   ASSERT_EQ(mesh.triangle_count(), 4u);
   std::vector<std::array<Corner, 3>> found(4);
@@ -423,8 +425,8 @@ TEST(MeshGltfForms, every_attribute_in_every_form_means_what_the_specification_s
                 with_positions(attribute(kind.name, type, kind.components, normalized));
             const auto loaded = File(attributes, store, 0, named).load();
             const bool is_color = kind.name == "COLOR_0";
-            // Forbidden, and without a clear meaning. Normals are never read: no format of them is
-            // refused.
+            // These types are forbidden and have no clear meaning. Normals are never read, so no
+            // format of normals is refused.
             if (kind.name != "NORMAL" && (type == kUnsignedInt || (is_color && is_signed(type)))) {
               ++refused;
               ASSERT_FALSE(loaded);
@@ -459,13 +461,13 @@ TEST(MeshGltfForms, indices_of_every_unsigned_type_are_read_and_others_refused) 
       const bool is_index = type == kUnsignedByte || type == kUnsignedShort || type == kUnsignedInt;
       const auto loaded = File(attributes, store, type, false).load();
       if (is_draco(store) || (is_index && !(meshopt && type == kUnsignedByte))) {
-        // In a Draco stream they have no type.
+        // In a Draco stream, indices have no type.
         ASSERT_TRUE(loaded) << loaded.error().detail;
         expect_the_pyramid(loaded->mesh, attributes);
         continue;
       }
       ASSERT_FALSE(loaded);
-      // meshopt has no indices of one byte.
+      // meshopt has no one-byte indices.
       EXPECT_THAT(loaded.error().detail,
                   HasSubstr(meshopt && size_of(type) == 1
                                 ? "elements of 1 bytes are not possible in the mode TRIANGLES"
@@ -490,7 +492,7 @@ TEST(MeshGltfForms, shapes_that_do_not_belong_to_an_attribute_are_refused) {
 }
 
 TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the_accessor_says) {
-  // The stream has bytes; the accessor says shorts, and then has no type.
+  // The stream stores bytes, but the accessor specifies shorts. The accessor decides.
   const auto attributes = with_positions(attribute("TEXCOORD_0", kUnsignedByte, 2, true));
   File file(attributes, Store::draco_sequential, 0, false);
   file.document()["accessors"][1]["componentType"] = kUnsignedShort;
@@ -499,18 +501,18 @@ TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the
   Attribute as_shorts = attributes[1];
   as_shorts.type = kUnsignedShort;
   expect_the_pyramid(shorts->mesh, {attributes[0], as_shorts});
-  // Without an accessor the flag of the stream decides, which this one has not set.
+  // Without an accessor, the flag of the stream decides. This stream has not set it.
   file.document()["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
   const auto alone = file.load();
   ASSERT_TRUE(alone) << alone.error().detail;
   Attribute as_stored = attributes[1];
   as_stored.normalized = false;
   expect_the_pyramid(alone->mesh, {attributes[0], as_stored});
-  // Sparse values of its accessor belong to the uncompressed copy that a file may have in addition
+  // Sparse values of the accessor belong to an uncompressed copy, which a file may have in addition
   // to the stream.
   file.document()["accessors"][0]["sparse"] = {{"count", 99}};
   EXPECT_TRUE(file.load());
-  // The accessor and the stream must have the same components.
+  // The accessor and the stream must have the same number of components.
   File other(attributes, Store::draco_sequential, 0, false);
   other.document()["accessors"][0]["type"] = "VEC3";
   other.document()["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]

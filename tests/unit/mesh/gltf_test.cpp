@@ -96,7 +96,7 @@ TEST(MeshGltf, transforms_of_nodes_are_applied_in_double) {
       {{"mesh", 0}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}, {"scale", {2, 1, 1}}}};
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
-  // (1, 0, 0) doubled along x, rotated to y.
+  // (1, 0, 0) is doubled along x and rotated to y.
   EXPECT_NEAR(loaded->mesh.positions[1].x, 433210.123456, 1e-9);
   EXPECT_NEAR(loaded->mesh.positions[1].y, 4581236.567891, 1e-9);
   EXPECT_EQ(loaded->mesh.positions[1].z, 612.25);
@@ -183,7 +183,8 @@ TEST(MeshGltf, a_material_chooses_its_texture_coordinates_and_transforms_them) {
   EXPECT_EQ(mesh.materials[0].wrap_u, mesh::Wrap::clamp);
   EXPECT_EQ(mesh.materials[0].wrap_v, mesh::Wrap::mirror);
   EXPECT_NEAR(mesh.materials[0].color.g, 0.7354, 1e-3) << "0.5 of the light, as pictures store it";
-  // u = 1: scaled to 2, rotated a quarter counter-clockwise (with v down: to v = −2), moved.
+  // u = 1 is scaled to 2, rotated counter-clockwise by 90° (to v = −2, because v points down), and
+  // moved.
   EXPECT_NEAR(mesh.corner_uvs[1].x, 0.5, 1e-6);
   EXPECT_NEAR(mesh.corner_uvs[1].y, 1 - (0.25 - 2), 1e-6);
 }
@@ -224,7 +225,7 @@ TEST(MeshGltf, meshopt_views_are_decoded_and_need_no_fallback) {
         {"byteStride", stride},
         {"count", count},
         {"mode", mode}};
-    view["buffer"] = 77;  // the fallback that does not exist
+    view["buffer"] = 77;  // a fallback that does not exist
   };
   compress(0, vertices, 12, 4, "ATTRIBUTES");
   compress(1, triangles, 2, 6, "TRIANGLES");
@@ -272,7 +273,7 @@ TEST(MeshGltf, parts_without_positions_are_passed_over_and_said) {
   EXPECT_EQ(count_of(loaded->repairs, "ignored parts of meshes without positions"), 1u);
 }
 
-// EXT_mesh_gpu_instancing of the square's node.
+// Adds EXT_mesh_gpu_instancing to the node of the square.
 nlohmann::json& instanced(test::GltfBuilder& builder, const nlohmann::json& attributes) {
   builder.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
   builder.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
@@ -283,7 +284,7 @@ TEST(MeshGltf, instances_stand_where_their_translation_rotation_and_scale_say) {
   auto builder = square();
   const int translations =
       builder.add(std::vector<float>{10, 0, 0, 0, 20, 0, 0, 0, 30}, kFloat, "VEC3");
-  // No rotation, a quarter about z, no rotation; as normalized shorts, as the extension allows.
+  // No rotation, 90° about z, no rotation. The extension allows these normalized shorts.
   const auto half = static_cast<std::int16_t>(std::lround(32767 * std::sqrt(0.5)));
   const int rotations =
       builder.add(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, half, half, 0, 0, 0, 32767}, 5122,
@@ -305,7 +306,7 @@ TEST(MeshGltf, instances_stand_where_their_translation_rotation_and_scale_say) {
   expect_near(corner(1), {11, 0, 0});
   expect_near(corner(7), {0, 22, 0});  // (1, 0, 0), doubled along x, rotated to y
   expect_near(corner(12), {0, 0, 30});
-  // The mirrored instance reverses its triangles.
+  // The mirrored instance reverses the order of its triangle corners.
   EXPECT_GT(glm::cross(corner(13) - corner(12), corner(14) - corner(12)).z, 0);
   EXPECT_NEAR(mesh::surface_area(loaded->mesh), 4, 1e-4);
   EXPECT_TRUE(loaded->repairs.empty());

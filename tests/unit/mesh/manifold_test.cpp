@@ -29,7 +29,7 @@ double volume(const mesh::TriangleMesh& mesh) {
   return six / 6;
 }
 
-// A box from `low` to `high` as OBJ; `first` is the number of its first vertex.
+// Returns a box from `low` to `high` as OBJ. `first` is the number of its first vertex.
 std::string box(double low, double high, int first, bool outward) {
   std::string text;
   for (int i = 0; i < 8; ++i) {
@@ -111,7 +111,8 @@ TEST(MeshManifold, a_fin_is_cut_off_and_the_surface_under_it_stays_whole) {
 }
 
 TEST(MeshManifold, boxes_that_touch_in_an_edge_or_a_corner_come_apart) {
-  // The second box shares the edge (1,1,·) of the first, the third its corner (0,0,0).
+  // The second box shares the edge (1,1,·) of the first box. The third box shares its corner
+  // (0,0,0).
   std::string text = box(0, 1, 1, true);
   auto moved = [](std::string shape, glm::dvec3 by) {
     std::string out;

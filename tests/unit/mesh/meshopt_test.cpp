@@ -1,5 +1,5 @@
-// Version 1 of the attribute stream and the COLOR filter of KHR_meshopt_compression, which the
-// installed library cannot write: meshoptimizer 1.3 made the streams below from the values that the
+// Version 1 of the attribute stream and the COLOR filter of KHR_meshopt_compression. The installed
+// library cannot write them, so meshoptimizer 1.3 made the streams below from the values that the
 // tests compute.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ Bytes decoded(const std::string& base64) {
   return mesh::decode_data_uri("data:;base64," + base64).value();
 }
 
-// Two blocks, with all modes of bytes (0 to 8 bits, zeros, literals) and of channels (bytes,
-// shorts, words by exclusive or).
+// Two blocks with all modes of bytes (0 to 8 bits, zeros, literals) and of channels (bytes, shorts,
+// exclusive-or words).
 const std::string kStream =
     "oZk5GgBqqqqqqgZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZm"
     "ZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZm+v///wACIiRERmZo"
@@ -80,7 +80,7 @@ TEST(MeshMeshopt, a_stream_that_is_cut_or_longer_or_of_an_unknown_channel_is_ref
   const Bytes whole = decoded(kStream);
   const mesh::MeshoptShape shape{"ATTRIBUTES", "", kCount, kStride};
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    // of exactly this size
+    // A copy of exactly this size, so the sanitizer detects any read beyond its end.
     const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_FALSE(mesh::decode_meshopt(cut, shape, kMax)) << size;
   }

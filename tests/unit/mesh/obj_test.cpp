@@ -72,7 +72,7 @@ TEST(MeshObj, numbers_may_carry_a_plus_and_an_exponent_and_stay_double) {
 }
 
 TEST(MeshObj, a_concave_polygon_keeps_its_area_and_winding) {
-  // An L, from above and from below; and a comb whose convex corners are not all ears.
+  // An L-shape from above and from below, and a comb on which some convex corners are not ears.
   for (const std::string face : {"f 1 2 3 4 5 6\n", "f 6 5 4 3 2 1\n", "f 3 4 5 6 1 2\n"}) {
     const auto loaded =
         load_text("v 0 0 5\nv 3 0 5\nv 3 1 5\nv 1 1 5\nv 1 3 5\nv 0 3 5\n" + face, "a.obj");
@@ -90,7 +90,7 @@ TEST(MeshObj, a_concave_polygon_keeps_its_area_and_winding) {
       "v 0 0 0\nv 9 0 1\nv 9 5 1\nv 7 1 .7\nv 5 5 .5\nv 3 1 .3\nv 1 5 .1\nf 1 2 3 4 5 6 7\n",
       "a.obj");
   ASSERT_TRUE(comb);
-  const double flat_area = 26.5;  // shoelace of the comb in xy
+  const double flat_area = 26.5;  // area of the comb in the xy plane, by the shoelace formula
   EXPECT_NEAR(mesh::surface_area(comb->mesh), flat_area, flat_area * 0.02);
 }
 
@@ -128,7 +128,7 @@ TEST(MeshObj,
       1u);
   EXPECT_EQ(count_of(loaded->repairs, "faces that name normals which the file does not have"), 1u);
   EXPECT_EQ(count_of(loaded->repairs, "triangles without texture coordinates"), 1u);
-  // None of them exist, also with indices counted from the end.
+  // None of these indices exist, including those that count from the end.
   const auto none = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/-3/-3 -2/-2/-2 -1/-1/-1\n", "a.obj");
   ASSERT_TRUE(none) << none.error().detail;
   EXPECT_TRUE(none->mesh.corner_uvs.empty());
@@ -138,7 +138,7 @@ TEST(MeshObj,
   EXPECT_EQ(count_of(none->repairs, "faces that name normals which the file does not have"), 1u);
 }
 
-// UTF-16 with its byte order mark; including characters of two units.
+// Returns UTF-16 with its byte order mark, including characters of two units.
 std::string utf16(const std::u16string& text, bool big_endian) {
   std::string bytes;
   for (const char16_t unit : u"\ufeff" + text) {

@@ -11,7 +11,8 @@ namespace {
 
 using mesh::measure_open_edges;
 
-// Open strips of two triangles, next to each other, with the given lengths and 1 wide.
+// Returns separate strips of two triangles with the given lengths and a width of 1, next to each
+// other.
 mesh::Geometry strips(const std::vector<double>& lengths) {
   mesh::Geometry geometry;
   geometry.origin = {5, 5, 0};

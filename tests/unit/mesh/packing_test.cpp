@@ -22,7 +22,7 @@ Outline polygon(const std::vector<glm::vec2>& corners) {
   return outline;
 }
 
-// A ring with this outer and inner side: the inner rim has the opposite direction.
+// Returns a square ring with this outer and inner side. The inner rim has the opposite direction.
 Outline ring(float outer, float inner) {
   Outline outline = polygon({{0, 0}, {outer, 0}, {outer, outer}, {0, outer}});
   const float a = (outer - inner) / 2, b = a + inner;
@@ -60,7 +60,7 @@ TEST(mesh_packing, a_mask_holds_the_texels_that_the_shape_touches_and_no_hole) {
     }
 }
 
-// Quarter turns move points on the lines between texels to the other side of a line.
+// Quarter turns move points on a line between texels to the other side of that line.
 TEST(mesh_packing, a_mask_holds_the_texels_of_the_laid_out_shape_in_every_turn) {
   const double density = 16;
   const Outline steps =
@@ -171,7 +171,7 @@ TEST(mesh_packing, does_not_depend_on_the_number_of_threads) {
   }
 }
 
-// Triangles of many sizes, all different.
+// Returns triangles of many sizes, each one different.
 std::vector<Outline> many_triangles(int count) {
   std::vector<Outline> outlines;
   for (int i = 0; i < count; ++i) {
@@ -205,8 +205,8 @@ TEST(mesh_packing, the_first_step_foretells_the_density_of_the_second) {
 }
 
 TEST(mesh_packing, charts_of_a_single_texel_each_are_packed_or_refused_but_not_shrunk_for_ever) {
-  // By their area with the gaps 600 would fit, but no more than 24 fit next to each other between
-  // the rims.
+  // By their area including the gaps, 600 charts would fit. But at most 24 charts fit next to each
+  // other between the rims.
   std::vector<Outline> outlines(600);
   for (auto& outline : outlines) {
     outline.segments = {{0, 0}, {1, 1}};

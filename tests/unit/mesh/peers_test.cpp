@@ -1,5 +1,5 @@
-// Files of other projects' test suites on which a reader once failed, next to the source tree, each
-// with its expected result.
+// Files from the test suites of other projects, which are next to the source tree. A reader failed
+// on each of these files. Each test has the expected result.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -122,7 +122,8 @@ TEST_F(MeshPeers, khr_meshopt_needs_no_fallback) {
   EXPECT_NEAR(mesh::surface_area(loaded->mesh), 32.1248186, 1e-5) << "as another decoder has it";
 }
 
-// Its textures have no picture, which is not an error; but it has no positions and no scene either.
+// Its textures have no image, which is not an error. But the file has no positions and no scene
+// either.
 TEST_F(MeshPeers, a_file_without_any_positions_is_refused_for_that_and_not_for_its_textures) {
   const auto loaded = load({"texcoord-flip.gltf", "texcoord-flip.bin"});
   ASSERT_FALSE(loaded);

@@ -127,7 +127,7 @@ TEST_P(PlyEncodings, a_file_cut_anywhere_is_refused_and_never_read_beyond_its_en
   ASSERT_TRUE(load_text(file.bytes(), "a.ply"));
   const std::size_t end = file.bytes().size() - (GetParam() == PlyWriter::Encoding::ascii ? 2 : 0);
   for (std::size_t size = 0; size < end; ++size) {
-    // A heap block of exactly this size, so that the sanitizer detects any read past it.
+    // A heap block of exactly this size, so the sanitizer detects any read beyond its end.
     const std::vector<std::uint8_t> cut(file.bytes().begin(),
                                         file.bytes().begin() + static_cast<std::ptrdiff_t>(size));
     Progress progress;
@@ -192,7 +192,7 @@ TEST(MeshPly, a_face_of_more_corners_than_are_taken_is_refused_before_they_are_r
   for (int i = 0; i < 4; ++i) file.put(1.0f * (i & 1)).put(1.0f * (i >> 1)).put(0.25f);
   const int corners = static_cast<int>(mesh::kMaxPolygonCorners) + 1;
   file.put(corners);
-  // no such vertex: it is not even read
+  // These vertices do not exist, but the reader does not even read their indices.
   for (int i = 0; i < corners; ++i) file.put(std::uint8_t{9});
   const auto loaded = load_text(file.bytes(), "a.ply");
   ASSERT_FALSE(loaded);

@@ -1,6 +1,6 @@
-// Imports every scan next to the source tree, except for the database, each in a separate process,
-// so that its peak memory is known; compares the result with figures of a reader that shares no
-// code with this one. Prints a table, which docs/reference/formats.md shows.
+// Imports every scan next to the source tree, except for the database. Each import runs in a
+// separate process, which gives its peak memory. Compares the result with figures of a reader that
+// shares no code with this one. Prints a table, which docs/reference/formats.md shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -34,7 +34,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool kMemoryIsReal = false;  // includes the sanitizer's memory
+constexpr bool kMemoryIsReal = false;  // includes the memory of the sanitizer
 #else
 constexpr bool kMemoryIsReal = true;
 #endif
@@ -43,13 +43,13 @@ constexpr int kResolution = 2048;
 const fs::path kData = STRATA_TEST_DATA;
 
 struct Scan {
-  std::string file;  // the mesh
+  std::string file;  // mesh file
   std::vector<std::string> companions = {};
 };
 
 struct Outcome {
   json report;
-  double megabytes = 0;  // peak
+  double megabytes = 0;  // peak memory
   std::uint64_t bytes = 0;
 
   bool imported() const { return report.contains("triangles"); }
@@ -133,7 +133,7 @@ class MeshScans : public testing::Test {
   static void SetUpTestSuite() {
     std::ifstream in(kData / "FACTS.json");
     std::string text{std::istreambuf_iterator<char>(in), {}};
-    // for the area of n05
+    // The area of n05 is NaN, which JSON does not allow.
     for (std::size_t at; (at = text.find(": NaN")) != text.npos;) text.replace(at, 5, ": null");
     facts_ = json::parse(text, nullptr, false);
   }
@@ -142,7 +142,7 @@ class MeshScans : public testing::Test {
       GTEST_SKIP() << "NO SCANS in " << kData << ": nothing of real files is tested";
   }
 
-  // Unpacks compressed scans first, as a person does.
+  // Unpacks compressed scans first, as users do.
   static Outcome import(const Scan& scan) {
     std::vector<mesh::InputFile> files;
     for (const std::string& name : scan.companions) files.push_back({name, kData / name});
@@ -254,8 +254,8 @@ TEST_F(MeshScans, good_files_have_the_measured_triangles_positions_and_area) {
                   outcome.count("dropped degenerate") + outcome.count("dropped duplicate") +
                   outcome.count("dropped triangles") + outcome.count("dropped slivers"),
               fact["triangles"].get<std::uint64_t>());
-    // Both instances of n16 are measured with all vertices of both primitives; each uses half of
-    // them.
+    // The figures count both instances of n16 with all vertices of both primitives, although each
+    // instance uses half of them.
     const std::uint64_t repeated = scan.file.find("n16") == scan.file.npos
                                        ? fact.value("duplicate_position_vertices", 0u)
                                        : 160;
@@ -267,10 +267,9 @@ TEST_F(MeshScans, good_files_have_the_measured_triangles_positions_and_area) {
     }
     EXPECT_EQ(outcome.report.value("faults", 0u), 0u) << "the mesh is a surface now";
     EXPECT_EQ(outcome.report["refused_by_openmesh"], 0) << "the mesh is a surface now";
-    // Another decoder measured Draco and quantized files.
+    // Another decoder measured the Draco files and the quantized files.
     const double tolerance = scan.file.ends_with(".glb") ? 1e-5 : 1e-9;
-    // The figures count duplicates twice, and a fan over the concave pentagon of n09 folds over
-    // itself.
+    // The figures count duplicates twice. A fan over the concave pentagon of n09 overlaps itself.
     if (measured.value("duplicate_faces", 0) == 0 && scan.file.find("n09") == scan.file.npos &&
         !fact["surface_area"].is_null()) {
       const double area = fact["surface_area"];
@@ -338,7 +337,7 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
     if (!a.textures.empty() && !b.textures.empty()) {
       EXPECT_EQ(a.textures[0].bytes, b.textures[0].bytes);
     }
-    // Encoders reorder triangles: compares them by their positions.
+    // Encoders reorder triangles, so this compares them by position.
     const auto keys = [](const mesh::TriangleMesh& mesh) {
       std::vector<std::array<double, 5>> of_triangles;
       for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
@@ -353,7 +352,7 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
       return of_triangles;
     };
     const auto of_a = keys(a), of_b = keys(b);
-    // Searches a grid cell and its neighbors for the nearest one.
+    // Searches a grid cell and its neighbors for the nearest triangle.
     const double cell = std::max(pair.position * 20, 1e-4);
     std::multimap<std::array<long, 3>, std::size_t> grid;
     const auto cell_of = [&](const std::array<double, 5>& key) {
@@ -361,7 +360,7 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
                                  std::lround(key[2] / cell)};
     };
     for (std::size_t i = 0; i < of_b.size(); ++i) grid.emplace(cell_of(of_b[i]), i);
-    double worst_position = 0, worst_uv = 0;  // of each triangle and its twin
+    double worst_position = 0, worst_uv = 0;  // between each triangle and the nearest one
     for (const auto& key : of_a) {
       double position = 1e300, uv = 1e300;
       const auto at = cell_of(key);

@@ -24,8 +24,9 @@ std::array<glm::dvec3, 3> corners(const Geometry& geometry, std::size_t triangle
   return {at(0), at(1), at(2)};
 }
 
-// Returns the nearest distance to a triangle by another method than the tree's: the plane if the
-// foot is inside, otherwise the three segments.
+// Returns the distance to a triangle by another method than the tree. It is the distance to the
+// plane if the foot of the perpendicular is inside the triangle, otherwise the least distance to
+// the three sides.
 double oracle_distance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) {
   double best = 1e300;
   for (int k = 0; k < 3; ++k) {
@@ -41,7 +42,7 @@ double oracle_distance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) 
   return inside ? std::min(best, std::abs(glm::dot(p - t[0], n))) : best;
 }
 
-// Returns the distance along the ray by Möller and Trumbore, or infinity.
+// Returns the distance along the ray by the method of Möller and Trumbore, or infinity.
 double oracle_hit(const glm::dvec3& o, const glm::dvec3& d, const std::array<glm::dvec3, 3>& t) {
   const glm::dvec3 e1 = t[1] - t[0], e2 = t[2] - t[0], p = glm::cross(d, e2), s = o - t[0],
                    q = glm::cross(s, e1);
@@ -107,7 +108,8 @@ TEST_F(SearchTreeOracle, the_first_hit_of_a_ray_is_the_nearest_of_all_triangles)
 }
 
 TEST_F(SearchTreeOracle, no_ray_from_inside_a_closed_wall_escapes) {
-  // Aimed exactly at vertices and edges, where an inexact test lets rays pass between triangles.
+  // The rays are aimed exactly at vertices and edges, where an inexact test lets rays pass between
+  // triangles.
   const auto base = tree_.first_hit({0, 0, geometry_->box_min.z - 50}, {0, 0, 1});
   ASSERT_TRUE(base);
   const glm::vec3 inside = base->position + glm::vec3(0, 0, 2);
@@ -172,7 +174,7 @@ TEST(MeshSearchTree, triangles_that_are_flat_in_float_are_found_without_nan) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1e-9, 0, 0}, {0, 1e-9, 0}, {1000, 0, 0}, {1000, 1000, 0}};
   mesh.triangles = {0, 1, 2, 0, 3, 4};
-  // origin 500 500 0: the first triangle is one point in float
+  // The origin is (500, 500, 0), so the first triangle is a single point in float.
   const SearchTree tree(geometry_of(mesh));
   const auto hit = tree.nearest({-500, -500, 3}, 10);
   ASSERT_TRUE(hit);

@@ -70,7 +70,7 @@ TEST(SectionArea, is_only_what_the_other_planes_keep) {
 
 TEST(SectionArea, is_unknown_where_the_surface_is_open) {
   auto open = box({0, 0, 0}, {1, 1, 1});
-  open.triangles.resize(open.triangles.size() - 6);  // without its right side
+  open.triangles.resize(open.triangles.size() - 6);  // removes the right side
   EXPECT_FALSE(
       mesh::cut_areas(geometry_of(open), std::vector<glm::dvec4>{{0, 0, 1, -0.4}})[0].area);
   EXPECT_NEAR(area(open, {{1, 0, 0, -0.5}}), 1, 1e-9) << "this cut does not meet the hole";
@@ -78,7 +78,7 @@ TEST(SectionArea, is_unknown_where_the_surface_is_open) {
 
 TEST(SectionArea, closes_a_small_crack) {
   auto cracked = ball();
-  // without the triangles of one column in one row
+  // Remove the triangles of one column in one row.
   cracked.triangles.erase(cracked.triangles.begin() + 600, cracked.triangles.begin() + 606);
   EXPECT_NEAR(area(cracked, {{0, 0, 1, 0.02}}), kPi, 0.01);
   EXPECT_NEAR(area(cracked, {{0, 1, 0, 0.02}}), kPi, 0.01);

@@ -44,7 +44,7 @@ TEST(MeshStl, a_text_file_is_read_with_its_polygons_and_names) {
 }
 
 TEST(MeshStl, faults_are_refused_by_name) {
-  // a binary file would declare 538976288 triangles here
+  // As a binary file, these bytes would declare 538976288 triangles.
   std::string other_text = "v 0 0 0\nf 1 1 1\n";
   other_text.insert(0, 200, ' ');
   const std::pair<std::string, std::string> bad[] = {

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kResolution = 256;
 
-// One texel at a time, by the definition in the header, without the product's code.
+// Computes one texel at a time by the definition in the header, without the code under test.
 class Oracle {
  public:
   explicit Oracle(const Geometry& geometry)
@@ -88,8 +88,8 @@ class Oracle {
     return std::abs(e.x * f.y - e.y * f.x) < 1e-6;
   }
 
-  // Returns the surface area of triangle t over the square of one texel, by clipping the polygon at
-  // its four sides.
+  // Returns the area of triangle t on the square of one texel, by clipping the triangle at the four
+  // sides.
   double piece(std::size_t t, int x, int y) const {
     std::vector<glm::dvec2> polygon{uv(t, 0), uv(t, 1), uv(t, 2)};
     const auto size = [](const std::vector<glm::dvec2>& p) {
@@ -198,7 +198,7 @@ std::vector<Case> cases() {
     own.corner_uvs = mesh.corner_uvs;
     all.push_back({name + "_own_uvs", build_geometry(mesh, own)});
   }
-  // Far denser than the texels: most triangles cover no center.
+  // The triangles are much smaller than the texels, so most of them cover no texel center.
   const auto dense = test::sphere(200, 0.01);
   all.push_back({"dense_sphere", build_geometry(dense, *make_atlas(dense, 128, progress))});
   return all;
@@ -237,8 +237,8 @@ TEST_P(EveryGeometry, places_surface_texels_on_their_triangle) {
       const auto [slot, index] = texel_at(map, x, y);
       const glm::dvec3 difference =
           glm::dvec3(map.position(slot, index)) - oracle.position(t, x + 0.5, y + 0.5);
-      // A texel whose position another block's gutter uses is on that block's grid, at most 2^-20
-      // of the model.
+      // If the gutter of another block uses the position of a texel, that position is on the grid
+      // of the other block. The difference is at most 2^-20 of the model.
       ASSERT_LT(glm::length(difference), 2e-6 * size) << x << " " << y;
     }
 }
@@ -258,7 +258,7 @@ TEST_P(EveryGeometry, gives_gutter_texels_the_position_of_the_nearest_surface_te
       ++gutter;
       const auto [slot, index] = texel_at(map, x, y);
       const auto [owner_slot, owner_index] = texel_at(map, nearest.x, nearest.y);
-      // to the last bit
+      // The positions must be identical to the last bit.
       ASSERT_EQ(map.position(slot, index), map.position(owner_slot, owner_index)) << x << " " << y;
       ASSERT_EQ(map.area[std::size_t{slot} * 64 + index], 0);
     }
@@ -291,7 +291,7 @@ TEST_P(EveryGeometry, credits_each_piece_to_the_texel_it_lies_on_inside_an_islan
   const Oracle oracle(geometry());
   const SurfaceMap map = bake(geometry());
   if (map.overlap_texels > 0) GTEST_SKIP() << "pieces of overlapping islands go elsewhere";
-  // Texels whose 8 neighbors are surface get no area from outside their island's rim.
+  // A texel whose 8 neighbors are surface gets no area from outside the rim of its island.
   std::vector<double> expected(kResolution * kResolution, 0);
   for (std::size_t t = 0; t < geometry().triangle_count(); ++t) {
     const auto [x0, x1] = std::minmax({oracle.uv(t, 0).x, oracle.uv(t, 1).x, oracle.uv(t, 2).x});
@@ -414,7 +414,8 @@ TEST_P(EveryGeometry, gutter_texels_get_the_bits_of_the_surface_texels_that_they
       if (is_surface(map, x, y)) {
         expected = (given[slot] >> index) & 1u;
       } else if (packed_at(map, x, y) != kNoPosition) {
-        // The bake may resolve ties: any of the nearest has the position of the gutter texel.
+        // The bake may resolve ties in any way. Each of the nearest texels has the position of the
+        // gutter texel.
         const auto position = map.position(slot, index);
         for (const TexelOffset o : kGutterRingOffsets) {
           const int ox = x + o.x, oy = y + o.y;
@@ -429,7 +430,7 @@ TEST_P(EveryGeometry, gutter_texels_get_the_bits_of_the_surface_texels_that_they
     }
 }
 
-// Two parallel squares of different size over the same texels.
+// Returns two parallel squares of different sizes that cover the same texels.
 Geometry overlapping_squares() {
   TriangleMesh mesh;
   Atlas atlas;

@@ -80,7 +80,7 @@ TEST(ObjMaterials, names_in_another_encoding_are_found_and_told_as_utf8) {
   const auto loaded = load_texts(
       {{"pot.obj", kVertices + kTwoFaces},
        {"pot.mtl", "newmtl left\nmap_Kd Gr\xfcn.png\nnewmtl right side\nmap_Kd Wei\xdf.png\n"},
-       {"Gr\ufffdn.png", kBlue}});  // as received through a form
+       {"Gr\ufffdn.png", kBlue}});  // the name as a form sends it
   ASSERT_TRUE(loaded) << loaded.error().detail;
   ASSERT_EQ(loaded->mesh.textures.size(), 1u);
   EXPECT_EQ(loaded->mesh.textures[0].name, "Gr\ufffdn.png");

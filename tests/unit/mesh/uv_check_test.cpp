@@ -97,8 +97,8 @@ TEST(mesh_uv_check, refuses_surface_without_area_in_the_texture) {
   EXPECT_THAT(atlas.error().detail, HasSubstr("have no area in the texture"));
 }
 
-// Expects that only the faulty face is moved, at half the size of the rest or more, and that all
-// others keep their place.
+// Expects that only the faulty face is moved, at no less than half the scale of the rest, and that
+// all other faces keep their position.
 void expect_one_moved(const TriangleMesh& mesh, std::uint32_t face, const std::string& why) {
   const auto atlas = keep(mesh, 1024);
   ASSERT_TRUE(atlas) << atlas.error().detail;
@@ -130,7 +130,7 @@ TEST(mesh_uv_check, one_faulty_face_is_moved_and_the_rest_stays) {
   expect_one_moved(with({{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}}, 11), 11, "have no area");
   expect_one_moved(with({{1.5f, 0.5f}, {1.8f, 0.5f}, {1.8f, 0.8f}}, 0), 0,
                    "lie outside the unit square");
-  // Over nearly all others, and the first of the file.
+  // This face overlaps nearly all others, although it is the first face of the file.
   expect_one_moved(with({{0, 0}, {1, 0}, {0.5f, 1}}, 0), 0, "overlap others");
 }
 

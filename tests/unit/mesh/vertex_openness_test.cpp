@@ -45,7 +45,7 @@ TEST(VertexOpenness, of_a_wall_does_not_depend_on_the_winding) {
 }
 
 TEST(VertexOpenness, darkens_the_corner_of_two_walls) {
-  // a floor and a wall, finely divided
+  // A finely divided floor and wall.
   mesh::TriangleMesh corner;
   const int n = 20;
   const auto sheet = [&](const auto& place) {

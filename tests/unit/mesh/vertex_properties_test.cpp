@@ -24,7 +24,8 @@ const char* const kHeader =
     "property uchar red\nproperty ushort quality\nproperty float confidence\n"
     "element face 1\nproperty list uchar int vertex_indices\n";
 
-// Three corners of quality 10, 20, 30 and confidence 0.5, after an element that is not a vertex.
+// Returns a PLY file with three vertices of quality 10, 20 and 30 and confidence 0.5. They follow
+// an element of another type.
 std::string scan(Encoding encoding) {
   test::PlyWriter ply(encoding, kHeader);
   ply.put(std::uint8_t{2}).put(1.5f).put(2.5f).put(std::int32_t{7});
@@ -67,7 +68,7 @@ TEST(VertexProperties, of_a_file_that_ends_early_or_has_none_such_are_refused) {
     const std::string whole = scan(encoding);
     for (std::size_t length = 0; length + 16 < whole.size(); length += 3) {
       const auto cut = read_vertex_property(bytes_of(whole.substr(0, length)), "quality");
-      if (cut) continue;  // the missing part follows the vertices
+      if (cut) continue;  // the missing part is after the vertices
       EXPECT_EQ(cut.error().code, ErrorCode::invalid);
     }
     EXPECT_FALSE(
@@ -105,7 +106,7 @@ TEST(VertexProperties, are_mixed_in_a_triangle_but_keys_are_not) {
   corner(1) = 20;
   EXPECT_NEAR(value_in_triangle(geometry, values, 0, {0.25f, 0.75f, 0}, false), 17.5, 1e-9);
   EXPECT_EQ(value_in_triangle(geometry, values, 0, {0.25f, 0.75f, 0}, true), 20);
-  // a corner without one
+  // One corner has no value.
   EXPECT_NEAR(value_in_triangle(geometry, values, 0, {0.25f, 0.25f, 0.5f}, false), 15, 1e-9);
   corner(0) = corner(1) = std::nan("");
   EXPECT_TRUE(std::isnan(value_in_triangle(geometry, values, 0, {0.25f, 0.75f, 0}, true)));

@@ -7,7 +7,7 @@
 namespace strata::net {
 namespace {
 
-// Returns "begin-end" of the sent range, before `end`; "all"; "none".
+// Returns the range to send as "begin-end", excluding `end`, or "all", or "none".
 std::string parsed(std::string_view header, std::uint64_t bytes = 1000) {
   const auto range = requested_range(header, bytes);
   if (!range) return "none";

@@ -1,5 +1,5 @@
-// Content encodings: the ones that clients may request, and every encoded answer decodes to the
-// original.
+// Content encodings: those that clients may request, and the decoding of each encoded response to
+// the original.
 #include "net/http/compression.h"
 
 #include <brotli/decode.h>

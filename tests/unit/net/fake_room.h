@@ -53,7 +53,8 @@ class FakeParticipant final : public room::Participant {
   Uuid session_;
 };
 
-// These keep every edit until the test answers it, and have one layer and one surface image.
+// Fakes of the parts of a room. They hold every edit until the test completes it, and have one
+// layer and one surface image.
 class FakeLayers final : public room::Layers {
  public:
   FakeLayers() {
@@ -214,7 +215,7 @@ class FakeParticipants final : public room::Participants {
       {random_uuid(), "anna", "", "#112233", room::Pointing{{1, 2, 3}, {}}}};
 };
 
-// The parts that a live session uses.
+// The parts of a room that a live session uses.
 class FakeRoom final : public room::Room {
  public:
   FakeRoom() {

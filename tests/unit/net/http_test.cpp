@@ -56,7 +56,7 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// --- targets
+// --- Targets
 
 TEST(Target, path_and_query_are_decoded) {
   const Request request = parsed("/models/muro%203?coords=POINT+Z(1%202%203)&f=csv");
@@ -83,7 +83,7 @@ TEST(Target, a_query_parameter_given_twice_is_refused) {
   EXPECT_EQ(result.error().field, "limit");
 }
 
-// --- answers
+// --- Responses
 
 TEST(Respond, only_the_first_answer_counts) {
   std::vector<int> answers;
@@ -113,7 +113,7 @@ TEST(Problems, carry_what_rfc_9457_names_and_the_field) {
   EXPECT_EQ(json["field"], "coords");
 }
 
-// --- cookies and origins
+// --- Cookies and origins
 
 TEST(Cookie, is_found_among_others) {
   EXPECT_EQ(cookie_value("a=1; strata_session=abc; b=2", "strata_session"), "abc");
@@ -210,7 +210,7 @@ TEST(Origin, an_upgrade_by_cookie_needs_an_origin_and_by_token_does_not) {
   EXPECT_TRUE(check_upgrade_origin(from("http://strata.local:8080", true), {}));
 }
 
-// --- types that a client accepts
+// --- Types that a client accepts
 
 TEST(Accept, takes_a_type_by_its_closest_range) {
   EXPECT_TRUE(accepts_type("", "application/json"));
@@ -228,7 +228,7 @@ TEST(Accept, takes_a_type_by_its_closest_range) {
   EXPECT_FALSE(accepts_type(",;q=x", "application/json"));
 }
 
-// --- points
+// --- Points
 
 TEST(Point, is_read_in_every_spelling) {
   for (const char* text : {"POINT Z(1 -2.5 3e2)", "POINT Z (1 -2.5 3e2)", "point(1 -2.5 3e2)",
@@ -250,7 +250,7 @@ TEST(Point, what_is_no_point_is_refused_by_field) {
   }
 }
 
-// --- speed
+// --- Rates
 
 TEST(TokenBucket, lets_a_burst_pass_and_then_the_rate) {
   const auto start = TokenBucket::Clock::now();
@@ -305,7 +305,7 @@ TEST(WorkerPool, refuses_when_too_much_waits_and_ends_what_it_took) {
   EXPECT_FALSE(pool.post([] {}));
 }
 
-// --- the page's files
+// --- Files of the page
 
 TEST(StaticFiles, serves_files_with_type_and_version) {
   const Folder folder;
@@ -401,7 +401,7 @@ TEST(StaticFiles, a_missing_page_says_so) {
   EXPECT_EQ(StaticFiles(folder.path()).serve(parsed("/")).status, 503);
 }
 
-// --- uploads
+// --- Uploads
 
 Request upload_of(const fs::path& file, const std::string& type) {
   Request request;
@@ -535,7 +535,7 @@ TEST(ByteBudget, what_is_held_bounds_what_may_be_taken) {
   EXPECT_FALSE(budget.take(1));
 }
 
-// --- pages and figures
+// --- Pages and figures
 
 TEST(Problems, text_cannot_become_markup) {
   EXPECT_EQ(html_escape("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");

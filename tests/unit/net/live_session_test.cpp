@@ -67,7 +67,7 @@ struct Live : testing::Test {
                                             room::Portrait{"Anna Ost"}, std::nullopt, socket);
     shared->sockets->add(socket, session, "secret");
   }
-  // Searches for the record on a worker when editing begins.
+  // Begins or ends editing a record. When editing begins, a worker looks up the record.
   void edit_record(LiveSession& of, std::int64_t key, bool editing,
                    const json& more = json::object()) {
     json message{{"op", "record.edit"}, {"table", 4}, {"key", key}, {"editing", editing}};
@@ -177,7 +177,7 @@ TEST_F(Live, every_message_it_sends_keeps_the_contract) {
   }
   EXPECT_EQ(socket->of("presence").size(), 1u);
   for (const auto& message : socket->sent) {
-    // its model is invented and has no valid bounds
+    // The model of the welcome message is invented and has no valid bounds.
     if (message["op"] == "welcome") continue;
     const auto parsed = protocol::parse_server_message(message.dump());
     EXPECT_TRUE(parsed) << message.dump() << "\n" << (parsed ? "" : parsed.error().detail);
@@ -284,13 +284,13 @@ TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {
   ASSERT_EQ(others_socket->of("record.editors").size(), 1u);
   EXPECT_EQ(others_socket->of("record.editors")[0]["records"].size(), 2u) << "all that there are";
 
-  edit_record(*other, 7, true);  // anna has it
+  edit_record(*other, 7, true);  // anna is editing it
   EXPECT_EQ(others_socket->of("record.editors").size(), 1u);
   edit_record(*other, 7, true, {{"take_over", true}});
   const json taken{{"table", 4}, {"key", 7}, {"session", others}, {"user", "bea"}};
   for (const auto& hears : {socket, others_socket})
     EXPECT_EQ(hears->of("record.editors").back()["records"], json::array({taken}));
-  edit_record(*session, 7, false);  // ends her edit
+  edit_record(*session, 7, false);  // ends anna's edit
   EXPECT_EQ(socket->of("record.editors").back()["records"], json::array({taken}));
   edit_record(*session, 8, false);
   EXPECT_EQ(others_socket->of("record.editors").back()["records"],
@@ -430,12 +430,12 @@ TEST_F(Live, others_hear_that_the_layer_was_edited_and_the_author_does_not) {
 TEST_F(Live, bad_messages_name_the_field_and_the_connection_lives_on) {
   hello();
   json wrong = begin(stroke);
-  wrong["value"] = 400;  // the layer is u8
+  wrong["value"] = 400;  // too large for a u8 layer
   say(wrong);
   wrong["value"] = 3;
   wrong["layer"] = "nothing";
   say(wrong);
-  say(extend(stroke, 0, {{1, 1}}));  // never begun
+  say(extend(stroke, 0, {{1, 1}}));  // this stroke was never begun
   EXPECT_FALSE(session->on_text("{"));
   session->on_binary();
   json singular = {{"op", "camera"}, {"seq", 1}};
@@ -477,7 +477,7 @@ TEST_F(Live, who_looks_at_the_past_may_not_paint) {
   ASSERT_EQ(problems.size(), 2u);
   EXPECT_EQ(problems[0]["status"], 409);
   EXPECT_TRUE(room->edits_.held.empty());
-  // Another view may show the past next to the newest state.
+  // Another view may show an earlier state next to the newest one.
   say({{"op", "layers"}, {"layers", nlohmann::json::array()}});
   say({{"op", "layers"}, {"view_id", 1}, {"layers", nlohmann::json::array()}, {"at", 0}});
   say({{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
@@ -574,7 +574,7 @@ TEST_F(Live, the_brush_in_hand_is_told_with_the_place_that_it_points_at) {
   camera["seq"] = 1;
   say(camera);
   say({{"op", "presence"}, {"pointer", {10, 20}}, {"radius", 2.5}});
-  shared->queries.reset();  // answers the pending query
+  shared->queries.reset();  // completes the pending query
   ASSERT_EQ(room->participants_.newest->pointers.size(), 1u);
   ASSERT_TRUE(room->participants_.newest->pointers[0]);
   EXPECT_EQ(room->participants_.newest->pointers[0]->position, glm::dvec3(4, 5, 6));
@@ -597,7 +597,7 @@ TEST_F(Live, frames_are_counted_and_stop_with_the_socket) {
   session->on_closed();
   session.reset();
   socket.reset();
-  room->participants_.sends.at(0)({message});  // from a late encoder
+  room->participants_.sends.at(0)({message});  // a late encoder
 }
 
 TEST_F(Live, after_a_restart_the_batch_before_is_looked_up_off_the_socket_thread) {

@@ -1,4 +1,5 @@
-// Waiting queries: few of one person at once, in turns, up to a limit.
+// Waiting queries: a user has few running queries, users take turns, and the number of queries is
+// limited.
 #include "net/http/question_desk.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ Request from(const std::string& user, Role role = Role::viewer) {
 
 class Desk : public testing::Test {
  protected:
-  // After this, the objects that a query captured may be destroyed, not before.
+  // Waits until no query is waiting or running. Only then may the objects that queries captured be
+  // destroyed.
   void all_answered() {
     while (desk_.waiting() + desk_.under_way() > 0) std::this_thread::yield();
   }

@@ -1,4 +1,4 @@
-// protocol/frame.md numbers the rules; the web client's tests also read the golden vectors.
+// protocol/frame.md numbers the rules. The web client's tests read the same golden vectors.
 #include <gtest/gtest.h>
 
 #include <fstream>

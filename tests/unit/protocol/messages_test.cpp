@@ -1,4 +1,4 @@
-// The web client's tests also read the fixtures and golden vectors of protocol/: both languages
+// The web client's tests read the same fixtures and golden vectors of protocol/, so both languages
 // must agree.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using nlohmann::json;
 
 struct Fixture {
   std::string name;
-  std::string schema;  // a definition's name, or ClientMessage
+  std::string schema;  // name of a definition, or ClientMessage
   json content;
   std::string text() const {
     return content.contains("text") ? content["text"].get<std::string>() : content["json"].dump();
@@ -84,7 +84,7 @@ TEST(ProtocolMessages, every_client_message_has_a_valid_fixture_that_survives_re
     const auto again = parse_client_message(to_text(*message));
     ASSERT_TRUE(again) << f.name << ": " << to_text(*message) << again.error().detail;
     EXPECT_EQ(*message, *again) << f.name;
-    // All members of the client are kept; missing ones get their defaults.
+    // All members that the client sends must be kept. Missing members get their defaults.
     const json written = json::parse(to_text(*message));
     for (const auto& [member, value] : f.content["json"].items())
       if (!value.is_null() && member != "camera" && member != "edit") {
@@ -161,8 +161,8 @@ TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
 }
 
 TEST(ProtocolMessages, a_problem_keeps_its_bounds_whatever_was_sent) {
-  // The text of the client is in the detail and in the field; each cut is within a character of
-  // three bytes.
+  // The text of the client is in the detail and in the field. Each `before` cuts the text at
+  // another byte of a three-byte character.
   for (const std::size_t before : {0, 1, 2}) {
     std::string sent(before, 'x');
     for (int i = 0; i < 5000; ++i) sent += "語";
@@ -233,7 +233,7 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
     EXPECT_FALSE(read);
     return read ? Error{} : read.error();
   };
-  const std::string bom = "\xEF\xBB\xBF";  // which only the careful reader accepts
+  const std::string bom = "\xEF\xBB\xBF";  // only the careful reader accepts it
   const Error expected =
       from_json<PositionsRequest>(json{{"points", json(100'001, {1, 2, 3})}}).error();
   for (const std::string& before : {std::string(), bom}) {
@@ -244,8 +244,8 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
     EXPECT_EQ(problem.detail, expected.detail);
     EXPECT_EQ(problem_of(before + R"({"points":[[1,2,3],[1,2,3,4]]})").field, "points[1]");
   }
-  // Neither reader builds the rest, so it is not checked; with the careful reader the rest need not
-  // even be JSON.
+  // Neither reader builds the items beyond the limit, so they are not checked. With the careful
+  // reader, they need not even be JSON.
   EXPECT_EQ(problem_of(bom + R"({"points":[)" + points + "no JSON").field, "points");
   const auto within = parse<PositionsRequest>(R"({"points":[[1,2,3]],"layers":["a","b"]})");
   ASSERT_TRUE(within) << within.error().detail;
@@ -312,8 +312,8 @@ TEST(ProtocolMessages, the_fast_reader_leaves_what_is_wrong_to_the_careful_one) 
   EXPECT_NE(problem.error().detail.find("byte 9"), std::string::npos) << problem.error().detail;
 }
 
-// Random changes of the fixtures' bytes: everything that the fast reader accepts is JSON, with the
-// value that nlohmann-json reads.
+// Changes random bytes of the fixtures. Every text that the fast reader accepts must be JSON, with
+// the same value as nlohmann-json reads.
 TEST(ProtocolMessages, the_fast_reader_reads_what_the_careful_one_would) {
   std::vector<std::string> texts{
       "[0,-0,-0.0,1,-1,18446744073709551615,9223372036854775808,-9223372036854775808,1.5e-310,0.1,"
@@ -345,7 +345,7 @@ TEST(ProtocolMessages, every_schema_can_be_built) {
   for (int i = 0; i < kSchemaCount; ++i) {
     const auto schema = static_cast<Schema>(i);
     EXPECT_FALSE(name(schema).empty());
-    // Null is valid for only one schema: that of a cell without a value.
+    // Null is valid for only one schema, which describes a cell without a value.
     EXPECT_EQ(validate(schema, json(nullptr)).has_value(), schema == Schema::CellValue)
         << name(schema);
   }

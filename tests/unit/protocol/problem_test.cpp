@@ -27,7 +27,7 @@ TEST(ProtocolProblem, every_error_code_has_a_type_a_status_and_words) {
     EXPECT_EQ(code_of_problem_type(problem_type(code)), code);
     EXPECT_EQ(is_server_failure(code), http_status(code) >= 500) << name(code);
     EXPECT_TRUE(types.insert(problem_type(code)).second) << name(code);
-    // For several codes with one status, the first one or `unavailable` represents it.
+    // If several codes share a status, the first code or `unavailable` represents that status.
     EXPECT_EQ(http_status(code_of_http_status(http_status(code))), http_status(code));
   }
   EXPECT_EQ(problem_kinds().size(), types.size());

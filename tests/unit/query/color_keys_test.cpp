@@ -8,7 +8,7 @@
 namespace strata::query {
 namespace {
 
-// Paper with a red and a blue area and a thin green line, noisy as a scan.
+// Returns paper with a red area, a blue area and a thin green line, with the noise of a scan.
 Picture scanned_map() {
   Picture picture{200, 100, {}};
   std::mt19937 random(3);

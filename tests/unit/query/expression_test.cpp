@@ -1,4 +1,4 @@
-// The language of formulas over layers, and the texels for which they are true.
+// The language of formulas over layers, and the texels for which conditions are true.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSide = 256;
 
-// Four of five texels are surface; the others are gutter.
+// Four of five texels are surface. The others are gutter.
 mesh::SurfaceMap full_map() {
   mesh::SurfaceMap map;
   map.resolution = kSide;
@@ -65,7 +65,7 @@ TestLayer layer(const std::string& slug, ValueType type, int resolution,
   return made;
 }
 
-const TestLayer& wet() {  // a value in two of three texels
+const TestLayer& wet() {  // two of three texels have a value
   static const TestLayer made = layer("wet", ValueType::f32, kSide, [](int x, int y) -> Value {
     if ((x + y) % 3 == 0) return {};
     return x % 16 == 7 ? std::numeric_limits<float>::infinity() : (x - y) / 16.0;
@@ -93,7 +93,7 @@ const TestLayer& fine() {
 
 std::vector<LayerView> views() { return {wet().view, crack().view, coarse().view, fine().view}; }
 
-// The values of the layers at a texel; nothing if they have no finite value.
+// The values of the layers at a texel. A value is missing if it is not finite.
 struct At {
   Value wet, crack, coarse;
   double fine;
@@ -212,7 +212,8 @@ TEST(Expression, layers_of_every_type_and_resolution_read_alike) {
     const auto value = [&](int x, int y) -> Value {
       return (x + 2 * y) % 5 == 0 ? Value() : Value((7 * x + y) % 120 + low);
     };
-    // The same content at the map's own resolution and at half of it, where one texel covers four.
+    // The same content at the resolution of the map and at half of that, where one texel covers
+    // four.
     const auto own = layer("own", type, kSide, [&](int x, int y) { return value(x / 2, y / 2); }),
                half = layer("half", type, kSide / 2, value);
     const auto selection = [&](const char* text) {
@@ -276,7 +277,7 @@ TEST(Expression, a_long_row_of_alternatives_is_not_deep) {
   EXPECT_EQ(parsed->parts.size(), 200u);
 }
 
-// The record k of `roof-crack`'s keys.
+// The record of the key k of `roof-crack`.
 struct Finding {
   double width;
   bool wet;
@@ -286,7 +287,7 @@ std::optional<Finding> finding(double key) {
   return Finding{key * 2 - 1, key == 2};
 }
 
-// "a, b, …": every `step`th number, times `unit`.
+// Returns "a, b, …": every `step`th number, multiplied by `unit`.
 std::string numbers_between(int low, int high, int step, double unit = 1) {
   std::ostringstream text;
   for (int n = low; n <= high; n += step) text << (n == low ? "" : ",") << n * unit;
@@ -427,7 +428,7 @@ TEST(Expression, parts_over_records_are_looked_up_by_key) {
        [](int, int, const At& a) {
          return a.crack && *a.crack >= 0 && *a.crack != 2 && a.wet && *a.wet > 0;
        }},
-      // other keys have unknown values
+      // Other keys have unknown values.
       {"roof-crack.width is null", [](int, int, const At&) { return false; }},
   };
   for (const auto& [text, expected] : cases) {
@@ -479,12 +480,12 @@ TEST(Expression, the_largest_parts_that_read_one_record_are_answered_once_a_reco
     return *split_records(*parse_condition(text, ""), "");
   };
   EXPECT_EQ(split("a.b = 'x' and a.c > 1 and wet > 0").parts.size(), 2u);
-  // `and` joins all three
+  // `and` joins all three conditions.
   EXPECT_EQ(split("(a.b = 'x' and a.c > 1) and wet > 0").parts.size(), 2u);
   EXPECT_EQ(split("not (a.b = 'x' or a.c > 1) and wet > 0").parts.size(), 1u);
   EXPECT_EQ(split("a.c + 1 > a.d * 2").parts.size(), 1u);
   EXPECT_EQ(split("a.c > b.c").parts.size(), 2u);
-  // once, although named twice
+  // The part occurs once, although the layer is named twice.
   EXPECT_EQ(split("a.c > wet or a.c < 0 - wet").parts.size(), 1u);
   EXPECT_EQ(split("wet > 1").parts.size(), 0u);
   EXPECT_EQ(split("a.material.code = 'x'").parts[0].expression.parts[0].path,

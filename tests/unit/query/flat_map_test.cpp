@@ -152,7 +152,8 @@ TEST(FlatMap, a_picture_stands_where_its_world_file_says) {
     const std::uint8_t alpha = grey == 60 ? 0 : 255;
     picture.rgba.insert(picture.rgba.end(), {value, value, value, alpha});
   }
-  // Pixels of 2 units; the center of the first at (101, 199); rows run downward.
+  // The pixels have a side of 2 units. The center of the first pixel is at (101, 199), and rows go
+  // downwards.
   const PlacedPicture placed(picture, {2, 0, 0, -2, 101, 199});
   EXPECT_EQ(placed.luminance_at({100.1, 199.9}), 10);
   EXPECT_EQ(placed.luminance_at({103, 199}), 20);
@@ -161,7 +162,7 @@ TEST(FlatMap, a_picture_stands_where_its_world_file_says) {
   EXPECT_EQ(placed.luminance_at({105, 197}), std::nullopt) << "transparent";
   for (const glm::dvec2 outside : {glm::dvec2(99.9, 199), {106.1, 199}, {101, 200.1}, {101, 195.9}})
     EXPECT_EQ(placed.luminance_at(outside), std::nullopt);
-  // Rotated by a quarter: columns run along +y, rows along +x.
+  // The image is rotated by 90°: columns go along +y, and rows along +x.
   const PlacedPicture turned(picture, {0, 2, 2, 0, 0, 0});
   EXPECT_EQ(turned.luminance_at({0, 2}), 20);
   EXPECT_EQ(turned.luminance_at({2, 0}), 40);

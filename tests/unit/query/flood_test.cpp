@@ -1,4 +1,4 @@
-// Connectivity across the surface, including seams of the atlas.
+// Connectivity across the surface, including the seams of the atlas.
 #include "query/conditions/flood.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,8 @@ bool is_in(const TexelSelection& selection, std::uint32_t texel) {
   return (selection[texel / 64] >> (texel % 64)) & 1u;
 }
 
-// Pieces of the mesh: triangles that share an edge, or an island of the atlas.
+// Returns the piece of the mesh for each triangle. Triangles that share an edge or an island of the
+// atlas belong to the same piece.
 std::vector<std::uint32_t> pieces_of_triangles(const mesh::Geometry& geometry) {
   std::vector<std::uint32_t> parent(geometry.triangle_count());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -74,8 +75,8 @@ TEST(Flood, the_pieces_of_the_texels_are_the_pieces_of_the_mesh) {
     Progress progress;
     const auto owners = mesh::bake_texel_owners(surface.geometry, kResolution, progress);
     const auto pieces = pieces_of_triangles(surface.geometry);
-    std::map<std::uint32_t, std::uint64_t> texels;       // for each piece of the mesh
-    std::map<std::uint32_t, std::uint32_t> first_texel;  // its first texel
+    std::map<std::uint32_t, std::uint64_t> texels;       // per piece of the mesh
+    std::map<std::uint32_t, std::uint32_t> first_texel;  // first texel of each piece
     for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
       const std::uint32_t piece = pieces[owners->triangle[texel]];
       ++texels[piece];
@@ -108,7 +109,7 @@ TEST(Flood, neighbours_are_mutual) {
 }
 
 TEST(Flood, neighbours_are_near_each_other_on_the_surface) {
-  // The triangles at the poles are from a few texels wide to less than one.
+  // The width of the triangles at the poles is between a few texels and less than one texel.
   for (const int segments : {24, 48, 96, 160}) {
     SCOPED_TRACE(segments);
     const Surface surface = surface_of("sphere", test::sphere(segments), kResolution);
@@ -166,8 +167,7 @@ TEST(Flood, the_same_value_is_followed_across_seams_and_not_across_other_values)
 
 TEST(Flood, from_where_nothing_is_what_holds_nothing_is_connected) {
   const Surface torus = surface_of("torus", test::torus(40), 1024);
-  // A ring of the torus is painted at x = 0 on both sides: it divides the unpainted rest into two
-  // halves.
+  // Two rings of the torus are painted at x = 0. They divide the unpainted rest into two halves.
   const auto rings = [](glm::vec3 p) { return std::abs(p.x) < 0.06f ? 1 : 0; };
   expect_connected(torus, rings, [](glm::vec3 p) { return p.x >= 0.06f; });
 }
@@ -179,7 +179,7 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
     const mesh::SurfaceMap& map = surface.map;
     const glm::vec3 size = surface.geometry.box_max - surface.geometry.box_min;
     const float cell = std::max({size.x, size.y, size.z}) / 3;
-    // Cells of space with three values; one in four is unpainted.
+    // The cells have three values, and one in four cells is unpainted.
     LayerView view;
     view.layer.type = ValueType::u8;
     view.layer.resolution = map.resolution;
@@ -216,8 +216,8 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
   }
 }
 
-// By the legend: each value, or ranges; areas by a plain sum over texels, pieces by flooding a
-// layer of the classes instead.
+// The classes of the legend are single values or ranges. The expected areas are plain sums over
+// texels. The expected pieces come from floods on a layer of the class numbers.
 TEST(Quantities, are_those_of_a_sum_over_every_texel_and_of_floods) {
   const Surface surface = surface_of("torus", test::torus(40), kResolution);
   const mesh::SurfaceMap& map = surface.map;
@@ -309,7 +309,7 @@ TEST(Flood, a_pot_is_one_piece_though_its_atlas_has_many) {
   std::uint32_t start = 0;
   for_each_surface_texel(pot.map, [&](std::uint32_t texel) { start = texel; });
   EXPECT_EQ(count(select_piece(pot.map, pot.graph, start)), pot.map.surface_texels);
-  // The memory of the graph compared with the map's.
+  // The graph must use much less memory than the map.
   EXPECT_LT(pot.graph.bytes(), pot.map.bytes() / 8);
 }
 

@@ -59,7 +59,7 @@ TEST(MapTiff, its_place_is_that_of_the_centre_of_the_first_pixel) {
   EXPECT_EQ(area->world->y, 199.875);
   EXPECT_EQ(area->world->x_per_column, 0.5);
   EXPECT_EQ(area->world->y_per_row, -0.25);
-  // A tie point in the middle of the picture; then one that refers to a pixel's center.
+  // First a tie point in the middle of the image, then a tie point that refers to a pixel center.
   const auto middle =
       inspect(grey({scale, TiffFile::doubles(33922, {2, 1, 0, 101, 199.75, 0})}).write());
   ASSERT_TRUE(middle && middle->world);
@@ -71,7 +71,7 @@ TEST(MapTiff, its_place_is_that_of_the_centre_of_the_first_pixel) {
   EXPECT_EQ(point->world->x, 100);
   EXPECT_EQ(point->world->y, 200);
   EXPECT_EQ(point->crs, "EPSG:25830");
-  // Rotated by a quarter, as a matrix.
+  // A matrix that rotates by 90°.
   const auto matrix = TiffFile::doubles(34264, {0, 2, 0, 10, 2, 0, 0, 20, 0, 0, 0, 0, 0, 0, 0, 1});
   const auto turned = inspect(grey({matrix}).write());
   ASSERT_TRUE(turned && turned->world);
@@ -156,7 +156,7 @@ TEST(MapTiff, that_cannot_be_read_is_refused) {
   TiffFile turned = grey();
   turned.orientation = 6;
   EXPECT_FALSE(inspect(turned.write()));
-  // Tags of another type than in the standard are ignored.
+  // Tags with another type than the standard specifies are ignored.
   const auto strange = inspect(
       grey({TiffFile::shorts(33550, {1, 1, 0}), TiffFile::shorts(33922, {0, 0, 0, 1, 1, 0})})
           .write());

@@ -75,13 +75,13 @@ TEST(Perimeter, two_classes_share_a_border_and_what_is_valid_has_only_its_own) {
   const Surface surface = sheet(0);
   const auto halves = [](glm::vec3 p) { return p.x < 0 ? 1 : 2; };
   const auto each = measure(surface, halves);
-  expect_length(each.all, 4, 0.03);  // the open edge of the mesh, where seams end
+  expect_length(each.all, 4, 0.03);  // open edge of the mesh, where seams end
   expect_length(each.of_class.at(1), 3, 0.03);
   expect_length(each.of_class.at(2), 3, 0.03);
   const auto one = measure(surface, halves, {});
   EXPECT_EQ(one.all, each.all);
   EXPECT_EQ(one.of_class.at(0), each.all);
-  // Only the selected texels.
+  // Measure only the selected texels.
   TexelSelection within(surface.map.surface_mask.size(), 0);
   test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
     if (glm::length(surface.map.position(texel / 64, static_cast<int>(texel % 64))) < 0.2f)

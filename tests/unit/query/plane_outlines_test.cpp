@@ -52,14 +52,14 @@ Surface flat_sheet(const glm::dvec3& offset = glm::dvec3(0)) {
   return test::surface_of("sheet", test::transformed(test::open_grid(24, 0), 1, offset), 1024);
 }
 
-// In model space, with its center at the sheet's.
+// Returns the value at a point in model space. The center of the disc is the center of the sheet.
 int disc_with_a_core(glm::vec3 p) {
   const float r = std::hypot(p.x, p.y);
   return r < 0.1f ? 2 : r < 0.3f ? 1 : 0;
 }
 
-// Only the sheet's lower left and upper right quarters, each with a hole, joined at the center
-// vertex, where the first rim begins.
+// Returns only the lower left and the upper right quarter of the sheet, each with a hole. They meet
+// at the center vertex, where the first rim begins.
 Surface two_lobes() {
   Surface surface = flat_sheet();
   mesh::Geometry& geometry = surface.geometry;
@@ -73,7 +73,7 @@ Surface two_lobes() {
   for (std::size_t i = 0; i < geometry.indices.size(); i += 3) {
     std::array corners{geometry.indices[i], geometry.indices[i + 1], geometry.indices[i + 2]};
     const glm::vec2 middle = place(corners[0]) + place(corners[1]) + place(corners[2]);
-    // of three corners
+    // The argument is the sum over three corners.
     const auto is_hole = [](float sum) { return std::abs(sum) > 0.6f && std::abs(sum) < 0.9f; };
     if (middle.x * middle.y < 0 || (is_hole(middle.x) && is_hole(middle.y))) continue;
     for (int turn = 0; turn < 3; ++turn) {
@@ -137,7 +137,7 @@ TEST(PlaneOutlines, areas_end_where_the_surface_ends) {
 }
 
 TEST(PlaneOutlines, seams_of_the_atlas_are_no_borders) {
-  // The whole ball is one chart or many; from any side it is a disc without holes.
+  // The whole ball is one chart or many. From any side, its outline must be a disc without holes.
   const Surface ball = test::surface_of("ball", test::sphere(48), 1024);
   const double radius = (ball.geometry.box_max.x - ball.geometry.box_min.x) / 2;
   for (const OutlinePlane plane :
@@ -148,7 +148,7 @@ TEST(PlaneOutlines, seams_of_the_atlas_are_no_borders) {
     EXPECT_EQ(made.at(1)[0].rings.size(), 1u);
     EXPECT_NEAR(area_of(made.at(1)) / (kPi * radius * radius), 1, 0.01);
   }
-  // A cap on several charts.
+  // A cap that extends over several charts.
   const auto cap = [&](glm::vec3 p) { return p.z > 0.6 * radius ? 1 : 0; };
   const PlaneOutlines made = outlines(ball, cap);
   ASSERT_EQ(made.at(1).size(), 1u);

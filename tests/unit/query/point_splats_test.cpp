@@ -28,7 +28,7 @@ Surface surface_of(const mesh::TriangleMesh& mesh) {
   return surface;
 }
 
-// At the surface texel nearest to a point.
+// Returns a splat at the surface texel that is nearest to a point.
 PointSplat splat_at(const mesh::SurfaceMap& map, const glm::vec3& point, std::uint32_t bits) {
   PointSplat splat;
   float least = 1e30f;
@@ -46,10 +46,10 @@ PointSplat splat_at(const mesh::SurfaceMap& map, const glm::vec3& point, std::ui
 struct Texel {
   glm::vec3 position;
   bool surface;
-  std::optional<std::uint32_t> bits;  // the painted texels
+  std::optional<std::uint32_t> bits;  // set for painted texels
 };
 
-// All surface and gutter texels with the value that a result paints there.
+// Returns all surface and gutter texels with the value that the result paints there.
 std::vector<Texel> texels_of(const mesh::SurfaceMap& map,
                              const std::map<TileAddress, TileData>& painted) {
   std::vector<Texel> texels;

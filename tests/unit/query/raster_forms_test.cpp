@@ -1,5 +1,5 @@
-// TIFF and NumPy files with every type of number, byte order and layout have the same texels; and
-// GIS programs can read Strata's TIFF.
+// TIFF and NumPy files give the same texels with every type of number, byte order and layout. Also,
+// GIS programs can read Strata's TIFF files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr int kSide = kTileSize;
 constexpr double kNodata = 120;
 
 struct Form {
-  char kind;  // as NumPy names it: u, i, f
+  char kind;  // the letter of NumPy: u, i or f
   int bytes;
   std::string name() const { return std::string(1, kind) + std::to_string(bytes); }
 };
@@ -37,7 +37,7 @@ Layer layer_of(ValueType type) {
   return layer;
 }
 
-// The one raster that all files contain: `row` counts from the top.
+// The raster that all files contain. `row` counts from the top.
 bool is_painted(int x, int row) { return (x + 3 * row) % 5 != 0; }
 double value_at(int x, int row) { return (7 * x + 3 * row) % 101; }
 
@@ -98,7 +98,8 @@ void set_size(TIFF* tiff, const TiffKind& kind) {
   }
 }
 
-// The pixels of one plane of the current directory: `pixel(x, row)` has its bytes.
+// Writes the pixels of one plane of the current directory. `pixel(x, row)` returns the bytes of a
+// pixel.
 void write_plane(TIFF* tiff, const TiffKind& kind, std::uint16_t plane,
                  const std::function<Bytes(int x, int row)>& pixel) {
   const std::size_t bytes = pixel(0, 0).size();
@@ -231,7 +232,7 @@ TEST(QueryRasterForms, a_mask_may_have_one_or_eight_bits_in_strips_and_tiles) {
 }
 
 struct NpyKind {
-  std::string value;  // "<f4"
+  std::string value;  // such as "<f4"
   Form form;
   bool big_endian = false, by_columns = false, structured = false;
 };
@@ -265,7 +266,7 @@ TEST(QueryRasterForms, a_numpy_array_of_every_kind_and_order_brings_the_same_tex
           const NpyKind kind{order + form.name(), form, order == '>', by_columns, structured};
           SCOPED_TRACE(kind.value + (by_columns ? " Fortran" : " C") +
                        (structured ? " structured" : ""));
-          const bool with_gaps = form.kind == 'f' && !structured;  // NaN
+          const bool with_gaps = form.kind == 'f' && !structured;  // NaN marks a gap
           const Bytes bytes = write_npy(kind, [&](int x, int row) {
             return with_gaps && !is_painted(x, row) ? std::numeric_limits<double>::quiet_NaN()
                                                     : value_at(x, row);
@@ -364,7 +365,8 @@ TEST(QueryRasterForms, files_with_a_mask_or_planes_that_are_cut_or_damaged_never
     }
 }
 
-// As GDAL expects it: an internal mask for all types, and NaN with its tag for floats.
+// The file marks unpainted texels as GDAL expects: an internal mask for all types, and for floats
+// also NaN and its tag.
 TEST(QueryRasterForms, our_tiff_marks_what_is_not_painted_for_gis) {
   for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i16,
                           ValueType::f16, ValueType::f32}) {

@@ -25,8 +25,8 @@ Layer layer_of(ValueType type, int resolution = 384) {
   return layer;
 }
 
-// Values of the whole range, including 0 (which is also a value) and both limits, in some tiles
-// only.
+// Paints some of the tiles with values of the whole range, including both limits and 0, which is
+// also a value.
 TileMap paint(const Layer& layer, unsigned seed = 1) {
   std::mt19937 random(seed);
   const double values[] = {0, 1, lowest_value(layer.type), highest_value(layer.type),
@@ -93,7 +93,7 @@ TEST(QueryRaster, an_empty_layer_comes_back_empty) {
   }
 }
 
-// Row 0 of the file is the top of the texture; tiles count from the bottom.
+// Row 0 of the file is the top of the texture, but tiles count from the bottom.
 TEST(QueryRaster, the_first_row_of_a_file_is_the_top_of_the_texture) {
   const Layer layer = layer_of(ValueType::u16, 256);
   auto tile = std::make_shared<TileData>(ValueType::u16);
@@ -159,7 +159,7 @@ TEST(QueryRaster, a_tiff_is_tiled_and_says_what_its_samples_are) {
   }
 }
 
-// As other programs write them: strips, another codec, big-endian.
+// Other programs write strips, another codec and big-endian numbers.
 TEST(QueryRaster, a_striped_big_endian_tiff_of_another_program_is_read) {
   const Layer layer = layer_of(ValueType::i16, 256);
   const auto path = std::filesystem::path(testing::TempDir()) / "strata_striped.tif";
@@ -275,7 +275,8 @@ TEST(QueryRaster, a_truncated_file_is_refused_where_texels_are_missing) {
     ASSERT_TRUE(bytes);
     for (std::size_t size = 0; size < bytes->size(); size += 1 + bytes->size() / 150) {
       const auto back = format.decode(layer, std::span(*bytes).first(size));
-      // The end of a TIFF has its comments and its mask: without them all texels are complete.
+      // The end of a TIFF contains comments and the mask. Without these, all texels are still
+      // complete.
       if (back && format.decode == decode_tiff && size > bytes->size() * 3 / 4)
         expect_equal(*back, paint(layer));
       else
@@ -284,7 +285,7 @@ TEST(QueryRaster, a_truncated_file_is_refused_where_texels_are_missing) {
   }
 }
 
-// Tests only that decoding neither crashes nor hangs; the sanitizer build detects more.
+// Tests only that the decoder neither crashes nor hangs. The sanitizer build detects more faults.
 TEST(QueryRaster, flipped_bits_never_crash) {
   std::mt19937 random(5);
   for (const auto& format : kFormats) {
@@ -294,8 +295,8 @@ TEST(QueryRaster, flipped_bits_never_crash) {
     int refused = 0;
     for (int round = 0; round < 600; ++round) {
       Bytes broken = *bytes;
-      // Wrong values have most effect in headers and directories: at the start, or (TIFF) at the
-      // end.
+      // Wrong values have the greatest effect in headers and directories. These are at the start,
+      // or at the end for TIFF.
       const std::size_t area =
           round % 3 == 0 ? broken.size() : std::min<std::size_t>(broken.size(), 400);
       const std::size_t from = round % 3 == 1 ? broken.size() - area : 0;

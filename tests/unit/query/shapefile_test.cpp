@@ -191,8 +191,8 @@ TEST(Shapefile, that_cannot_be_read_is_refused_with_the_reason) {
   }
 }
 
-// Changes every byte of small files in turn, and every length: the result is an answer or a
-// refusal.
+// Changes every byte of small files in turn, and truncates them to every length. The reader must
+// return a map or an error.
 TEST(Shapefile, damaged_anywhere_it_is_read_or_refused) {
   const std::string shp = shp_of(kThree), dbf = dbf_of({{"ID", 'N', 4, 0, {"8", "9", "1"}},
                                                         {"T", 'C', 4, 0, {"a", "b", "c"}}});

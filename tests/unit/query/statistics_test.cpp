@@ -19,8 +19,8 @@ namespace {
 
 constexpr glm::dvec3 kOrigin{4'000'000.0, 500'000.0, 100.0};
 
-// A handmade map: `share` of the blocks exist, with surface, gutter and empty texels and random
-// areas and places.
+// Returns an artificial map in which a share of the blocks exist. The blocks have surface, gutter
+// and empty texels, with random areas and positions.
 mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
   std::mt19937 random(seed);
   mesh::SurfaceMap map;
@@ -75,7 +75,7 @@ struct Sample {
   glm::dvec3 position;
 };
 
-// The oracle: every texel one by one, through the map's and the tiles' own accessors.
+// The oracle: reads every texel separately, through the accessors of the map and the tiles.
 std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) {
   std::vector<Sample> all;
   for (const auto& [address, tile] : view.snapshot.tiles) {
@@ -159,7 +159,7 @@ TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
   }
 }
 
-// Returns the expected quantiles from the same values, with every texel of the area in order.
+// Returns the expected quantiles of the same values, from all texels sorted by value.
 Quantiles quantiles_of(std::vector<Sample> all) {
   std::ranges::sort(all, {}, &Sample::value);
   double area = 0, sum = 0;
@@ -185,7 +185,7 @@ TEST(QueryStatistics, the_mean_of_values_of_mixed_size_is_right_to_the_last_digi
     }
     tile = mixed;
   }
-  // products of these values and areas are whole numbers of 2^-76
+  // The products of these values and areas are integer multiples of 2^-76.
   __extension__ using Wide = __int128;
   Wide weighted = 0;
   double area = 0;
@@ -223,7 +223,7 @@ TEST(QueryStatistics, quantiles_are_those_of_all_texels_in_order) {
       const auto got = statistics(view, map, kOrigin, 0.01, {.quantiles = true});
       ASSERT_TRUE(got.quantiles);
       const Quantiles expected = quantiles_of(samples(view, map));
-      // Sums in another order may differ by rounding, so the next value is also correct.
+      // Another order of the sum may change its rounding, so the next value is also correct.
       const double step = is_float(type) ? 0.125 : 1.0;
       for (std::size_t i = 0; i < expected.size(); ++i)
         EXPECT_NEAR((*got.quantiles)[i], expected[i], distinct > 1000 ? step : 0) << kQuantiles[i];
@@ -394,7 +394,7 @@ TEST(QueryStatistics, gutter_texels_do_not_count) {
   mesh::SurfaceMap map = make_map(256, 1.0, 3);
   const LayerView view = make_layer(ValueType::u8, map, 3, 1, true);
   const auto before = statistics(view, map, kOrigin, 1);
-  // the other seven rows of each block become gutter
+  // The other seven rows of each block become gutter.
   for (auto& mask : map.surface_mask) mask &= 0xff;
   const auto after = statistics(view, map, kOrigin, 1);
   EXPECT_LT(after.texels, before.texels / 7);

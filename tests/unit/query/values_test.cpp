@@ -15,7 +15,7 @@ namespace {
 
 constexpr glm::dvec3 kOrigin{4'000'000.0, 500'000.0, 100.0};
 
-// A square of 2 × 2 around the origin at z = 0, facing +z, with uv from (0,0) to (1,1).
+// Returns a square of 2 × 2 around the origin at z = 0 that faces +z, with uv from (0,0) to (1,1).
 std::shared_ptr<const mesh::Geometry> square() {
   auto geometry = std::make_shared<mesh::Geometry>();
   geometry->origin = kOrigin;
@@ -68,7 +68,7 @@ TEST(QueryValues, the_edges_of_the_texture_belong_to_its_outer_texels) {
 
 TEST(QueryValues, the_nearest_point_is_found_in_world_coordinates) {
   const mesh::SearchTree tree(square());
-  // uv (0.75, 0.25): position (0.5, -0.5)
+  // uv (0.75, 0.25) is the position (0.5, -0.5).
   const LayerView view = layer_with(ValueType::f32, 256, 192, 64, 0.5);
   const auto point = nearest_point(tree, kOrigin, kOrigin + glm::dvec3(0.504, -0.496, 3), {view});
   ASSERT_TRUE(point.hit);
@@ -131,8 +131,8 @@ TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
   EXPECT_FALSE(height());
   camera.section = {{1, 0, 0, -kOrigin.x - 1.5}};  // misses the ray
   EXPECT_FALSE(height());
-  // From below, with a plane between the eye and the lower square's back: the solid between them is
-  // closed there.
+  // From below, the plane is between the eye and the back of the upper square. The solid between
+  // the plane and that square is closed at the plane.
   camera.view = glm::lookAt(kOrigin + glm::dvec3(0, 0, -5), kOrigin, glm::dvec3(0, 1, 0));
   camera.section = {{0, 0, 1, -kOrigin.z + 0.5}};
   EXPECT_FALSE(height());
@@ -142,7 +142,7 @@ TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
 
 TEST(QueryProfile, a_line_over_a_plane_is_as_long_as_it_was_drawn_and_reads_what_lies_under_it) {
   const mesh::SearchTree tree(square());
-  // one texel: from the middle to 2/256
+  // One texel, from the middle to 2/256.
   const LayerView view = layer_with(ValueType::u8, 256, 128, 128, 9);
   const std::vector<glm::dvec3> places = {kOrigin + glm::dvec3(-0.5, 0.004, 0.3),
                                           kOrigin + glm::dvec3(0.5, 0.004, 0.3)};

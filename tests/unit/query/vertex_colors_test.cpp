@@ -10,8 +10,8 @@
 namespace strata::query {
 namespace {
 
-// Four vertices at the corners of the unit square of texture coordinates, with one scan color;
-// vertex 4 has the place of vertex 3.
+// Returns four vertices at the corners of the unit square of texture coordinates, with the same
+// scan color. Vertex 4 has the position of vertex 3.
 std::shared_ptr<const mesh::Geometry> square() {
   auto geometry = std::make_shared<mesh::Geometry>();
   for (int i = 0; i < 5; ++i) {
@@ -54,8 +54,8 @@ Rgb at(const VertexColors& colors, std::vector<std::uint32_t> vertices) {
   return colors.at(vertices);
 }
 
-// The compositing of pictures, implemented again: each color covers the content below it by opacity
-// times alpha.
+// A second implementation of the compositing of images: each color covers the content below it by
+// opacity times alpha.
 Rgb composed(glm::dvec3 below, const std::vector<std::pair<Rgba, double>>& inks) {
   for (const auto& [ink, opacity] : inks) {
     const double cover = opacity * ink[3] / 255;
@@ -128,7 +128,8 @@ TEST(VertexColors, a_place_on_a_seam_has_the_first_valid_texel_of_its_vertices) 
 }
 
 TEST(VertexColors, photos_lie_below_the_layers_by_their_opacity_and_alpha) {
-  // Two by two: the lower left is vertex 0's, the upper right vertex 3's.
+  // An image of 2 × 2 pixels. The lower left pixel belongs to vertex 0, the upper right one to
+  // vertex 3.
   const Picture photo{2, 2, {0, 0, 0, 255, 200, 100, 0, 255, 255, 255, 255, 255, 0, 0, 0, 0}};
   VertexColors colors(square());
   colors.add_photo(photo, 0.5);

@@ -20,7 +20,7 @@ struct Block {
   mesh::SurfaceMap::PackedBox box;
 };
 
-// Texels around a point, some without a position.
+// Returns texels around a point, some of them without a position.
 Block random_block(std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-1, 1);
   const glm::vec3 center(uniform(random), uniform(random), uniform(random));
@@ -34,7 +34,7 @@ Block random_block(std::mt19937& random) {
   return block;
 }
 
-// Dots at every scale.
+// Returns a shape of dots of many sizes.
 std::shared_ptr<const ShapeTexture> random_shape(std::mt19937& random) {
   ShapeBits bits{};
   for (int dot = 0; dot < 12; ++dot) {
@@ -114,7 +114,7 @@ TEST(BlockTest, every_vector_unit_of_this_machine_decides_as_plain_code_but_for_
       for (int t = 0; t < 64; ++t)
         ASSERT_FALSE(block.positions[std::size_t(t)] == mesh::kNoPosition && (plain >> t & 1))
             << "no surface there";
-      // The information that the tool covers the block only saves work.
+      // The flag that the tool covers the block only saves work.
       const std::uint64_t in_tool = test_block_on(VectorUnit::plain)(
           stroke.test, block.positions.data(), block.box, stroke.segments, true);
       ASSERT_EQ(plain & ~in_tool, 0u);

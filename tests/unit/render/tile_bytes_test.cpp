@@ -7,7 +7,7 @@
 namespace strata::render {
 namespace {
 
-// Words that are full, empty, and random.
+// Returns a mask of full, empty and random words.
 TileMask random_mask(unsigned seed) {
   std::mt19937_64 random(seed);
   TileMask mask;

@@ -8,7 +8,8 @@
 namespace strata::store {
 namespace {
 
-// A result with one row, as the server sends it: in binary format, most significant byte first.
+// A result with one row, as PostgreSQL sends it: in binary format, with the most significant byte
+// first.
 class Row {
  public:
   Row& integer(std::int64_t value) {

@@ -28,7 +28,7 @@ FlowControl ready(int window) {
   return flow;
 }
 
-// Draws, sends and acknowledges all frames of the flow; returns the number of draws.
+// Draws, sends and acknowledges all frames of the flow. Returns the number of draws.
 int settle(FlowControl& flow) {
   int draws = 0;
   while (auto draw = flow.next()) {
@@ -235,7 +235,7 @@ TEST(StreamFlow, a_message_that_the_camera_stands_still_gives_the_still_frame_at
   FlowControl flow = ready(2);
   flow.on_camera(1, camera_at(1), true);
   settle(flow);
-  flow.on_camera(2, camera_at(1), false);  // the same place
+  flow.on_camera(2, camera_at(1), false);  // the same camera position
   const auto still = flow.next();
   ASSERT_TRUE(still);
   EXPECT_EQ(still->quality, Quality::still);
@@ -339,9 +339,6 @@ TEST(StreamFlow,
   EXPECT_FALSE(draw->changed);
 }
 
-// A client model that checks the guarantees under any order of events: at the end the screen shows
-// the newest camera with every edit, at full quality, and the number of unacknowledged frames never
-// exceeds the window.
 TEST(StreamFlow, a_picture_at_rest_is_refined_once) {
   FlowControl flow(2, 0, 16);
   flow.on_ready();
@@ -429,6 +426,9 @@ TEST(StreamFlow, a_refinement_that_was_not_drawn_is_tried_again_only_as_told) {
   EXPECT_EQ(flow.next()->samples, 4);
 }
 
+// A model of a client checks the guarantees under any order of events. At the end, the screen must
+// show the newest camera with every edit, at full quality. The number of unacknowledged frames must
+// never exceed the window.
 TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_complete) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     std::mt19937 random(seed);
@@ -436,8 +436,8 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
     const int window = 1 + roll(3);
     FlowControl flow = ready(window);
     std::optional<FlowControl::Draw> out;
-    std::set<int> unseen;  // edits that no sent picture shows
-    std::set<int> in_out;  // the ones of them that were made before the draw began
+    std::set<int> unseen;  // edits that no sent frame shows
+    std::set<int> in_out;  // unseen edits that precede the draw
     std::uint64_t sent = 0, acked = 0, camera_seq = 0;
     Camera newest = camera_at(0), shown;
     bool shown_still = false;

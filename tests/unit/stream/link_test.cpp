@@ -11,19 +11,19 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = LinkPace::Clock;
 
-// A link with a delay and a rate, and a renderer that makes a picture whenever the pace's window
-// has room. With simulated time.
+// Simulates a link with a delay and a rate, and a renderer that makes a frame whenever the window
+// of the pace has space. Time is simulated too.
 class Simulation {
  public:
   Clock::duration delay = 0ms;  // round trip
   double bytes_per_s = 1e9;
   Clock::duration drawing = 25ms;
-  Clock::duration showing = 0ms;  // the browser's time for a picture of any size
+  Clock::duration showing = 0ms;  // time of the browser for a frame of any size
   bool moving = true;
 
   LinkPace pace;
 
-  // Returns the number of moving frames shown in that time.
+  // Returns the number of moving frames that are shown in this time.
   int run(Clock::duration how_long) {
     const auto end = now_ + how_long;
     int shown = 0;
@@ -91,7 +91,7 @@ TEST(LinkPace, full_color_comes_with_100_Mbit_and_not_with_50) {
     SCOPED_TRACE(bytes_per_s);
     Simulation link;
     link.delay = 5ms;
-    link.drawing = 1ms;  // so that frames wait for each other and show the link's rate
+    link.drawing = 1ms;  // frames wait for each other and show the link's rate
     link.bytes_per_s = bytes_per_s;
     link.run(10s);
     EXPECT_EQ(link.pace.moving().jpeg.full_color, full);
@@ -158,7 +158,7 @@ TEST(LinkPace, over_8_Mbit_and_80_ms_pictures_come_in_time) {
 TEST(LinkPace, a_slow_link_has_small_pictures_soon) {
   Simulation link;
   link.delay = 80ms;
-  link.bytes_per_s = 0.25e6;  // 2 Mbit/s, where an unreduced picture takes 240 ms
+  link.bytes_per_s = 0.25e6;  // 2 Mbit/s, where an unreduced frame takes 240 ms
   link.run(3s);
   EXPECT_GE(link.pace.step(), 1);
   EXPECT_GE(link.run(10s), 100);

@@ -138,7 +138,7 @@ TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {
   EXPECT_EQ(pool.encoded(), 2u);
   for (const Jpegs& jpegs : few) EXPECT_EQ(jpegs, few[0]) << "one object for all";
   EXPECT_LT(few[0]->at(0).size(), more[0]->at(0).size());
-  // Another frame with the same pixels is a different picture.
+  // Another frame with the same pixels must be encoded separately.
   pool.encode(frame_of(gradient(64, 64), 64, 64), {20, false}, into(few));
   wait_for(42);
   EXPECT_EQ(pool.encoded(), 3u);

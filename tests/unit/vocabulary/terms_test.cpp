@@ -259,7 +259,7 @@ TEST(SearchText, case_and_accents_make_no_difference) {
   EXPECT_EQ(search_text("\xff"), "\xff");
 }
 
-// --- a list of terms as a table
+// --- A list of terms as a table
 
 class List : public testing::Test {
  protected:

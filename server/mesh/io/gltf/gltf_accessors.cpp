@@ -10,7 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-// Zeros take no bytes in a file: any accessor may have this many, independent of the file sizes.
+// Zeros take no bytes in a file. An accessor may have this many zeros independent of the file
+// sizes.
 constexpr std::uint64_t kZerosAlways = 1u << 20;
 
 int components_of(const std::string& type) {
@@ -59,7 +60,7 @@ Result<GltfDocument::Layout> GltfDocument::layout(std::uint64_t accessor, const 
   const std::uint64_t size =
       static_cast<std::uint64_t>(bytes_of_component(form->component_type)) * form->components;
   layout.stride = size;
-  if (!source.contains("bufferView")) {  // zeros, for sparse values to change
+  if (!source.contains("bufferView")) {  // all zeros, which sparse values may replace
     std::uint64_t most = kZerosAlways;
     for (const auto& file : files_->all()) most += file.bytes.size();
     if (form->count > most)

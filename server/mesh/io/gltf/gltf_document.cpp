@@ -17,10 +17,11 @@ using nlohmann::json;
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 constexpr std::size_t kMaxJson = std::size_t{256} << 20;
-// Limit for the bytes of all decompressed views together: twice the needs of the largest mesh.
+// The limit for the bytes of all decompressed views together. It is twice as much as the largest
+// mesh needs.
 constexpr std::uint64_t kMaxDecoded = std::uint64_t{4} << 30;
 
-// Extensions that a file may require: the reader supports them, or they change the appearance only.
+// Extensions that a file may require. The reader supports them, or they only change the appearance.
 constexpr std::array<std::string_view, 12> kKnownExtensions{
     "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
     "KHR_mesh_quantization",      "EXT_mesh_gpu_instancing", "KHR_texture_transform",

@@ -11,10 +11,11 @@
 
 namespace strata::mesh {
 
-// The parts of a glTF 2.0 file (Khronos, "glTF 2.0 Specification"): its JSON and its buffers, in
-// the GLB, in separate files, in data URIs, or compressed by EXT_meshopt_compression or
-// KHR_meshopt_compression. Every offset, count and index is checked here; data are copied only
-// where necessary. Errors are those of `refuse_file`. Any thread, one at a time.
+// The parts of a glTF 2.0 file (Khronos, "glTF 2.0 Specification"): its JSON and its buffers. The
+// buffers are in the GLB, in separate files or in data URIs, or are compressed with
+// EXT_meshopt_compression or KHR_meshopt_compression. Every offset, count and index is checked
+// here. Data are copied only if necessary. Errors are those of `refuse_file`. Can be used on any
+// thread, but only on one thread at a time.
 class GltfDocument {
  public:
   static Result<GltfDocument> open(const InputFiles& files);
@@ -24,15 +25,15 @@ class GltfDocument {
   // Returns an element of one of the top-level arrays.
   Result<const nlohmann::json*> element(const char* array, std::uint64_t index) const;
 
-  // The bytes of a buffer view, decompressed. Valid for the lifetime of the document.
+  // The decompressed bytes of a buffer view. They are valid for the lifetime of the document.
   struct View {
     std::span<const std::uint8_t> bytes;
     std::uint64_t stride = 0;  // 0: elements follow each other
   };
   Result<View> view(std::uint64_t index);
 
-  // The declaration of an accessor's values, also where a compression extension stores the values.
-  // `what` names them in error messages.
+  // The declaration of an accessor's values. It also exists if a compression extension stores the
+  // values. `what` is the name of the values in error messages.
   struct Form {
     std::uint64_t count = 0;
     int component_type = 0, components = 0;
@@ -40,8 +41,8 @@ class GltfDocument {
   };
   Result<Form> form(std::uint64_t accessor, const std::string& what) const;
 
-  // The values of an accessor as real numbers, `components` each. Normalized integers become 0…1 or
-  // −1…1; with `normalize` all integers do. Sparse values are applied.
+  // The values of an accessor as real numbers, `components` numbers per value. Normalized integers
+  // become 0…1 or −1…1. With `normalize`, all integers do. Sparse values are applied.
   struct Values {
     std::uint64_t count = 0;
     int components = 0;
@@ -50,7 +51,7 @@ class GltfDocument {
   Result<Values> values(std::uint64_t accessor, const std::string& what, bool normalize = false);
   Result<std::vector<std::uint32_t>> indices(std::uint64_t accessor);
 
-  // An image's encoded bytes, copied; empty where its file was not uploaded.
+  // A copy of an image's encoded bytes. It is empty if the file was not uploaded.
   struct Image {
     std::string name;
     std::vector<std::uint8_t> bytes;
@@ -73,8 +74,8 @@ class GltfDocument {
     std::uint64_t stride = 0;
   };
   Result<Layout> layout(std::uint64_t accessor, const std::string& what);
-  // Calls put(number of the element, its bytes) for the elements of the buffer view, then for the
-  // sparse ones.
+  // Calls put(number of the element, its bytes) for the elements of the buffer view, and then for
+  // the sparse elements.
   template <class Put>
   Result<void> for_each_element(std::uint64_t accessor, const std::string& what,
                                 const Layout& layout, Put&& put);
@@ -87,16 +88,16 @@ class GltfDocument {
   std::uint64_t decoded_bytes_ = 0;  // of decoded_views_
 };
 
-// Members of a glTF JSON object. A missing member has the default; one of the wrong type is
-// refused.
+// Functions that read members of a glTF JSON object. A missing member has the default value. A
+// member of the wrong type is refused.
 Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* name,
                                    std::uint64_t otherwise);
-// refused where it is missing
+// refuses a missing member
 Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* name);
 Result<std::vector<double>> real_numbers(const nlohmann::json& object, const char* name,
                                          const std::vector<double>& otherwise);
 std::string text_of(const nlohmann::json& object, const char* name);
-// Returns a member that is an object; otherwise an empty object.
+// Returns the member if it is an object. Otherwise returns an empty object.
 const nlohmann::json& object_in(const nlohmann::json& object, const char* name);
 
 }  // namespace strata::mesh

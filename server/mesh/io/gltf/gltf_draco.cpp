@@ -9,7 +9,7 @@
 namespace strata::mesh {
 namespace {
 
-// 0 for a type that accessors do not have.
+// Returns 0 for a type that accessors cannot have.
 int component_type_of(draco::DataType type) {
   switch (type) {
     case draco::DT_INT8: return kByte;
@@ -33,7 +33,7 @@ double raw_number(const std::uint8_t* at, draco::DataType type) {
   }
 }
 
-// Reads the stored numbers and converts them as the accessor declares.
+// Reads the stored numbers and converts them as declared by the accessor.
 Result<GltfDocument::Values> read_attribute(const draco::Mesh& mesh, const std::string& name,
                                             const DracoRequest& request) {
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(request.id);

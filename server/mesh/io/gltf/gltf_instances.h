@@ -6,18 +6,21 @@
 
 namespace strata::mesh {
 
-// More instances of one node are refused: nobody paints on so many one by one.
+// A node with more instances is refused, because users cannot paint on so many instances
+// individually.
 constexpr std::uint64_t kMaxInstances = 1'000'000;
 
-// The transform of glTF: translation, rotation (a quaternion x y z w, of any length) and scale.
+// Returns the transform of glTF: translation, rotation (a quaternion x y z w of any length) and
+// scale.
 glm::dmat4 gltf_transform(const glm::dvec3& translation, const glm::dvec4& rotation,
                           const glm::dvec3& scale);
 
-// The places where EXT_mesh_gpu_instancing repeats the mesh of a node.
+// The transforms with which EXT_mesh_gpu_instancing repeats the mesh of a node.
 class GltfInstances {
  public:
-  // A node without the extension has one instance, at the node. Fails as `refuse_file` does: counts
-  // that differ, number types that the extension does not allow, more than kMaxInstances.
+  // A node without the extension has one instance, at the node. Fails like `refuse_file` for counts
+  // that differ, number types that the extension does not allow, and more than kMaxInstances
+  // instances.
   static Result<GltfInstances> read(GltfDocument& document, const nlohmann::json& node);
 
   std::uint64_t count() const { return count_; }
@@ -25,7 +28,7 @@ class GltfInstances {
 
  private:
   std::uint64_t count_ = 1;
-  GltfDocument::Values translations_, rotations_, scales_;  // `count_` each, or empty
+  GltfDocument::Values translations_, rotations_, scales_;  // `count_` values each, or empty
 };
 
 }  // namespace strata::mesh

@@ -109,8 +109,9 @@ class MaterialReader {
     return {};
   }
 
-  // Returns the plain picture where there is one; otherwise that of an extension, in another
-  // format. Nothing: glTF allows a texture without a picture, which another extension may supply.
+  // Returns the plain image if it exists, otherwise the image of an extension in another format.
+  // Returns nothing if no image is found. glTF allows a texture without an image, which another
+  // extension may supply.
   static Result<std::optional<std::uint64_t>> image_of(const json& texture) {
     if (texture.contains("source")) return optional_number(texture);
     for (const char* extension :
@@ -125,7 +126,7 @@ class MaterialReader {
     if (!number) return tl::unexpected(number.error());
     return *number;
   }
-  // Also lists the extensions that may supply a picture.
+  // Also lists the extensions that may supply an image.
   static std::string title_of(const json& texture, std::uint64_t index) {
     std::string title = "texture " + std::to_string(index);
     const json& extensions = object_in(texture, "extensions");
@@ -135,7 +136,7 @@ class MaterialReader {
     return mended_utf8(first_bytes(title, 200));
   }
 
-  // The rotation is counterclockwise where v points down (KHR_texture_transform).
+  // The rotation is counterclockwise with v pointing down (KHR_texture_transform).
   static Result<void> read_transform(const json& transform, GltfMaterial& result) {
     const auto offset = real_numbers(transform, "offset", {0, 0}),
                scale = real_numbers(transform, "scale", {1, 1});

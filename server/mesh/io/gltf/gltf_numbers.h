@@ -8,8 +8,8 @@
 
 namespace strata::mesh {
 
-// Numbers as the accessors of a glTF declare their storage (glTF 2.0, 3.6.2), from any source of
-// bytes.
+// Functions for numbers in the storage types of glTF accessors (glTF 2.0, 3.6.2), from any source
+// of bytes.
 
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
               kUnsignedInt = 5125, kFloat = 5126;
@@ -38,8 +38,8 @@ inline std::string name_of_component(int type) {
   }
 }
 
-// Converts a stored number: a normalized integer is a share of the largest of its type, 0…1 or
-// −1…1. Types of 4 bytes are never normalized.
+// Converts a stored number. A normalized integer becomes a share of the largest number of its type,
+// 0…1 or −1…1. Types with 4 bytes are never normalized.
 inline double gltf_number(double stored, int type, bool normalized) {
   if (!normalized) return stored;
   switch (type) {

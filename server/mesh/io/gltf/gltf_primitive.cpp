@@ -15,8 +15,8 @@ using Values = GltfDocument::Values;
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
 
-// The form of an attribute that Strata needs. KHR_mesh_quantization adds integers for positions and
-// texture coordinates; they are read even if the file does not name the extension.
+// The required form of an attribute. KHR_mesh_quantization adds integers for positions and texture
+// coordinates. They are read even if the file does not name the extension.
 struct Attribute {
   std::string name;
   Values* values;
@@ -50,7 +50,7 @@ class PrimitiveReader {
     }
     const auto& draco = object_in(object_in(source_, "extensions"), "KHR_draco_mesh_compression");
     if (!accessors_.contains("POSITION") && !object_in(draco, "attributes").contains("POSITION")) {
-      // allowed by glTF: an extension that is not supported here may supply them
+      // glTF allows this; an extension that is not supported here may supply positions
       ++remarks_.without_positions;
       return std::nullopt;
     }
@@ -64,7 +64,7 @@ class PrimitiveReader {
 
  private:
   // Checks the number type of this accessor. Returns true for integers that should be normalized
-  // but are not declared so.
+  // but are not declared as normalized.
   Result<bool> must_normalize(const Attribute& attribute, std::uint64_t accessor,
                               const GltfDocument::Form& form) {
     const std::string name =
@@ -88,7 +88,7 @@ class PrimitiveReader {
     return taken;
   }
 
-  // The attributes of a Draco primitive outside its stream are read as usual.
+  // Attributes of a Draco primitive that are not in its stream are read as usual.
   Result<void> read_plain(const Attribute& attribute) {
     if (attribute.values->components != 0 || !accessors_.contains(attribute.name)) return {};
     const auto accessor = STRATA_TRY(whole_number(accessors_, attribute.name.c_str()));
@@ -118,7 +118,7 @@ class PrimitiveReader {
     if (source_.contains("indices")) {
       const auto accessor = STRATA_TRY(whole_number(source_, "indices"));
       const auto form = STRATA_TRY(document_.form(accessor, "indices"));
-      // Draco stores a strip as its triangles.
+      // Draco stores a strip as separate triangles.
       const std::uint64_t announced = primitive_.mode == kTriangles ? form.count / 3 : form.count;
       most = std::min(most, announced);
     }
@@ -170,7 +170,7 @@ class PrimitiveReader {
     return {};
   }
 
-  // Primitives share accessors: each keeps the vertices that its triangles use.
+  // Primitives share accessors. Each primitive keeps only the vertices that its triangles use.
   void keep_used_vertices() {
     std::vector<std::uint32_t> number(primitive_.positions.count, kUnused), used;
     for (std::uint32_t& index : primitive_.indices) {

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr std::uint64_t kTrianglesBetweenReports = 1u << 20;
 
-// Node transforms stay in double to the end: a translation may be a geographic position.
+// Node transforms stay in double precision, because a translation may be a geographic position.
 class GltfReader {
  public:
   GltfReader(GltfDocument document, const InputFiles& files, Progress& progress,
@@ -42,7 +42,7 @@ class GltfReader {
     note(loaded_.repairs, "ignored skins and morph targets", ignored_motion_);
     note(loaded_.repairs, "colours taken as normalised, which their accessors do not say",
          remarks_.colors_taken_as_normalized);
-    loaded_.unit = Unit::m;  // both by the specification
+    loaded_.unit = Unit::m;  // both values are defined by the specification
     loaded_.up = "y";
     return std::move(loaded_);
   }
@@ -68,7 +68,7 @@ class GltfReader {
     glm::dmat4 world_from_parent;
   };
 
-  // The nodes of the default scene; without scenes, all nodes without a parent.
+  // Returns the nodes of the default scene. Without scenes, returns all nodes without a parent.
   Result<std::vector<Visit>> roots() {
     const json& root = document_.root();
     std::vector<Visit> roots;
@@ -182,8 +182,8 @@ class GltfReader {
     if (!primitive) return tl::unexpected(primitive.error());
     if (!*primitive || (*primitive)->most_triangles() == 0) return {};
     const std::uint64_t triangles = (*primitive)->most_triangles(), count = instances.count();
-    // A few bytes can request any number of copies: their size is checked before they are made.
-    // Some triangles of strips only join others.
+    // A few bytes can request any number of copies, so their size is checked before they are made.
+    // Some triangles of strips only connect other triangles.
     const std::uint64_t room =
         max_triangles_ - std::min<std::uint64_t>(loaded_.mesh.triangle_count(), max_triangles_);
     const std::uint64_t most =
@@ -232,7 +232,7 @@ class GltfReader {
       std::uint32_t a = indices[primitive.mode == kTriangleFan ? 0 : i], b = indices[i + 1],
                     c = indices[i + 2];
       if (primitive.mode == kTriangleStrip) {
-        if (a == b || b == c || c == a) continue;  // they only join strips
+        if (a == b || b == c || c == a) continue;  // only connects strips
         if (i % 2 == 1) std::swap(a, b);
       }
       if (mirrored) std::swap(b, c);
@@ -241,7 +241,7 @@ class GltfReader {
     return {};
   }
 
-  // COLOR_0 is linear; vertex colors here are sRGB, as in pictures.
+  // COLOR_0 is linear. Vertex colors of a mesh are sRGB, as in images.
   void append_colors(const GltfDocument::Values& colors, std::size_t first, std::size_t count) {
     auto& out = loaded_.mesh.vertex_colors;
     if (colors.components == 0) {

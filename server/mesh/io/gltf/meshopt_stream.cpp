@@ -16,8 +16,8 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t kSecondVersion = 0xa1;
-// The largest compression ratio of a stream: in version 0, two bits encode 16 bytes of a vertex,
-// and in version 1, 256.
+// The largest compression ratio of a stream. Two bits encode 16 bytes of a vertex in version 0 and
+// 256 bytes in version 1.
 constexpr std::uint64_t kMaxGain = 64, kMaxGainOfSecond = 1024;
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kMinTail = 24;
@@ -27,8 +27,8 @@ std::uint16_t unzigzag16(std::uint16_t v) {
   return static_cast<std::uint16_t>((v >> 1) ^ -(v & 1));
 }
 
-// Version 1 of the attribute stream (KHR_meshopt_compression, appendix A), which the library of
-// Debian 12 does not support.
+// Decodes version 1 of the attribute stream (KHR_meshopt_compression, appendix A). The library of
+// Debian 12 does not support this version.
 class AttributeStream {
  public:
   AttributeStream(std::span<const std::uint8_t> bytes, std::size_t count, std::size_t stride)
@@ -55,7 +55,8 @@ class AttributeStream {
   }
 
  private:
-  // The deltas of a block, by bytes of the element: those of byte k begin at k × 256.
+  // Reads the deltas of a block, ordered by the bytes of the element. The deltas of byte k begin at
+  // k × 256.
   bool read_deltas(std::size_t size) {
     const std::size_t control = at_;
     if (!take(stride_ / 4)) return false;
@@ -83,7 +84,7 @@ class AttributeStream {
     return true;
   }
 
-  // A value with all bits set is replaced by a byte after the group.
+  // A byte after the group replaces a value with all bits set.
   bool read_group(int bits, std::uint8_t* out) {
     if (bits == 0) {
       std::fill_n(out, kGroup, std::uint8_t{0});
@@ -93,7 +94,8 @@ class AttributeStream {
     if (!take(kGroup / each)) return false;
     const int sentinel = (1 << bits) - 1;
     for (std::size_t i = 0; i < kGroup; ++i) {
-      // The first single bit is the lowest; the first of wider values is the highest.
+      // For single bits, the first value is in the lowest bit. For wider values, it is in the
+      // highest bits.
       const std::size_t place = bits == 1 ? i % each : each - 1 - i % each;
       const int value =
           bytes_[packed + i / each] >> (place * static_cast<std::size_t>(bits)) & sentinel;
@@ -148,8 +150,8 @@ class AttributeStream {
   std::array<std::uint8_t, 256 * 256> deltas_{};
 };
 
-// YCoCg with a precision encoded in the alpha (appendix B, filter 4), which the library does not
-// support either.
+// Decodes YCoCg with a precision encoded in the alpha value (appendix B, filter 4). The library
+// does not support this filter either.
 template <class Unsigned, class Signed>
 void decode_colors(Bytes& out, std::size_t count) {
   constexpr double kMax = std::numeric_limits<Unsigned>::max();

@@ -15,7 +15,7 @@ namespace {
 
 jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
   jobs::ShapeRecipe recipe;
-  recipe.kind = *jobs::parse_shape_kind(name(body.kind));  // the schema has the same names
+  recipe.kind = *jobs::parse_shape_kind(name(body.kind));  // the schema uses the same names
   recipe.radius_mm = body.radius_mm;
   recipe.distance_mm = body.distance_mm;
   recipe.rays = body.rays;

@@ -5,14 +5,15 @@
 
 namespace strata::net {
 
-// POST …/layers with `compute`: starts the job that computes the layer from the model's shape. The
-// properties that the request sets in `layer` have precedence over those of the recipe.
+// POST …/layers with `compute`. Starts the job that computes the layer from the shape of the model.
+// Properties in the request (`layer`) have precedence over those of the recipe.
 Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
                                     const protocol::LayerCreate& body, Layer layer);
 
-// POST …/layers with `expression`: makes the layer and computes it, or removes the layer if it
-// cannot be computed. Returns 201, or 202 with a job if the expression reads the surface's shape.
+// POST …/layers with `expression`. Creates the layer and computes it. Removes the layer if the
+// computation fails. Returns 201, or 202 with a job if the expression reads the shape of the
+// surface.
 Result<Response> create_formula_layer(const RouteContext& context, JobIdempotency& book,
                                       const Request& request,
                                       const std::shared_ptr<room::Room>& room, Layer layer,

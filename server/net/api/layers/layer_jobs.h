@@ -7,17 +7,18 @@
 
 namespace strata::net {
 
-// Makes and paints layers; returns the job's report (null: none). On the job's thread.
+// Creates and paints layers on the thread of the job. Returns the report of the job, or null for no
+// report.
 using MakeLayers =
     std::function<Result<nlohmann::json>(app::NewLayers& layers, Progress& progress)>;
 
-// Answers 202 with a job that makes layers of the room: all of them, or no layer if the job fails
-// or is canceled. With an Idempotency-Key a repeat finds the job, also after a restart of the
+// Returns 202 with a job that adds layers to the room. If the job fails or is canceled, it adds no
+// layer. With an Idempotency-Key, a repeated call finds the job, even after a restart of the
 // server.
 Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& book,
                                  const Request& request, const std::shared_ptr<room::Room>& room,
                                  MakeLayers make);
-// For a route's `replay`: answers from the stored result of a job that succeeded.
+// For `replay` of a route. Creates the response from the stored result of a job that succeeded.
 Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& book,
                                   const Request& request, const nlohmann::json& stored);
 

@@ -31,7 +31,7 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& row : rows.rows) {
     nlohmann::json entry = to_json(row);
-    // The old expression may name layers that fewer people can see now.
+    // An old expression may name layers that are now visible to fewer users.
     if (entry.contains("expression")) {
       const auto seen = STRATA_TRY(app::sees_all_of(context.store, request.role(), layer.model_id,
                                                     entry.at("expression").get<std::string>()));
@@ -76,7 +76,7 @@ Result<Target> target_of(const RouteContext& context, const Request& request) {
   return Target{std::move(room), std::move(layer)};
 }
 
-// Runs `make` for the layer that the path names and applies the edit that `make` returns.
+// Runs `make` for the layer in the path and applies the edit that `make` returns.
 template <class Make>
 Handler editing(const RouteContext& context, Make make) {
   return [&context, make](const Request& request, const Respond& respond) {
@@ -101,7 +101,8 @@ Result<room::EditRequest> review_edit(const Request& request, const Target& targ
     return fail(ErrorCode::invalid, "Edits not specified",
                 "Specify the edits whose review you want to undo.", "edits");
   auto edit = bare_edit(request, target, std::string(name(decision)));
-  edit.id = edit_id(request, target.layer, "review");  // a key is for one decision of any kind
+  // The same key cannot be used for two decisions.
+  edit.id = edit_id(request, target.layer, "review");
   if (body.edits) edit.record["edits"] = *body.edits;
   if (body.user) edit.record["user"] = *body.user;
   if (body.reason) edit.record["reason"] = *body.reason;
@@ -111,7 +112,7 @@ Result<room::EditRequest> review_edit(const Request& request, const Target& targ
   return edit;
 }
 
-// Undo and redo take no members; an absent body is the same as an empty object.
+// Undo and redo have no members. An absent body is equivalent to an empty object.
 Result<void> check_empty(const Request& request) {
   if (request.body.empty()) return {};
   STRATA_TRY(body_of<protocol::Empty>(request));

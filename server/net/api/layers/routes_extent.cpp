@@ -18,8 +18,8 @@
 namespace strata::net {
 namespace {
 
-// Returns the extent of the records that a person highlights, with their painted texels, lines and
-// points. The page moves the camera there and shows their area.
+// Returns the extent of the highlighted records, including their painted texels, lines and points.
+// The page moves the camera there and shows the area of the records.
 Result<Response> extent(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::Highlight>(request));
   auto room = open_room(context, request);

@@ -14,8 +14,8 @@ namespace {
 
 enum class FeatureFormat { geojson, gpkg };
 
-// Returns the format in `f`, otherwise the one that `Accept` names, otherwise GeoJSON. 406 for
-// other formats.
+// Returns the format in the query parameter `f` or, if it is absent, the format in `Accept`. The
+// default is GeoJSON. Returns 406 for unsupported formats.
 Result<FeatureFormat> feature_format(const Request& request) {
   const auto format = request.query.find("f");
   if (format == request.query.end())

@@ -54,7 +54,7 @@ Result<Palette> palette_of(const std::optional<nlohmann::json>& requested, Value
   return palette_from_json(*requested);
 }
 
-// A condition paints one value where it is true.
+// Returns false for a condition because it only paints one value where it is true.
 bool computes_numbers(const protocol::LayerCreate& body) {
   if (!body.expression) return body.compute.has_value();
   const auto expression = app::parse_formula(*body.expression);
@@ -70,7 +70,7 @@ Palette palette_of_condition(const std::string& label) {
   return palette;
 }
 
-// Nothing: an empty text.
+// Returns nothing for an empty name.
 std::optional<std::string> group_of(const std::string& text) {
   const std::string group(trimmed(text));
   return group.empty() ? std::nullopt : std::optional(group);
@@ -138,7 +138,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   layer.palette = std::move(palette);
   layer.opacity = body.opacity;
   layer.blend = body.blend.value_or(LayerBlend::normal);
-  // A computed layer must not cover the layers that other people look at.
+  // By default, a computed layer must not cover the layers that other users work with.
   layer.visible = body.visible.value_or(!is_computed);
   layer.locked = body.locked.value_or(is_computed);
   layer.review = body.review;
@@ -158,7 +158,8 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
     auto table = table_of_project(context.store, model.project_id, *body.table, "table");
     if (!table) return tl::unexpected(table.error());
     layer.table = table->id;
-    if (!body.palette && term_columns(*table)) layer.palette = terms_palette({});  // by terms
+    // Colors the layer by terms.
+    if (!body.palette && term_columns(*table)) layer.palette = terms_palette({});
   }
   Column name;
   name.name = "Name";
@@ -188,9 +189,9 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
   return answer(*created);
 }
 
-// An expression makes a numeric layer a computed one; an empty one makes it an ordinary layer that
-// keeps its values. `before`: the former visibility: people who see the layer only now must not see
-// hidden layers through it.
+// Sets or removes the expression of a numeric layer. With an empty expression, the layer becomes an
+// ordinary layer and keeps its values. `before` is the former visibility. Users who can see the
+// layer only now must not see hidden layers through it.
 Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& body,
                          Visibility before, Layer& layer) {
   const bool is_seen_by_more = layer.formula && layer.visibility < before;
@@ -214,7 +215,7 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& bod
       app::read_formula(room, body.expression ? *body.expression : layer.formula->expression,
                         automatic, layer.visibility, layer.id);
   if (!formula) return tl::unexpected(formula.error());
-  // The new expression will overwrite the painted values.
+  // A different expression will overwrite the painted values.
   const bool is_other = !layer.formula || layer.formula->expression != formula->expression;
   layer.formula = std::move(*formula);
   if (is_other) {
@@ -247,7 +248,7 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::LayerPatch>(request));
   auto room = STRATA_TRY(open_room(context, request));
-  // Reads the stored layer, because the room's copy may be slightly older.
+  // Reads the stored layer because the room's copy may be slightly out of date.
   auto layer =
       context.store.layers().find(room->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());

@@ -1,4 +1,4 @@
-// Paints maps and measurements as one edit.
+// Routes that paint a map or measurements as one edit.
 #include "app/maps/map_contents.h"
 #include "app/maps/map_legend.h"
 #include "app/maps/map_values.h"
@@ -34,7 +34,7 @@ constexpr double kMaxLength_mm = 1e7;
 
 struct Painted {
   TileMap tiles;
-  nlohmann::json record;  // describes the input in the journal
+  nlohmann::json record;  // description of the input for the journal
 };
 
 struct Target {
@@ -42,7 +42,7 @@ struct Target {
   Layer layer;
 };
 
-// Runs `paint` for the layer that the path names.
+// Runs `paint` for the layer in the path.
 template <class Paint>
 Handler painting(const RouteContext& context, const std::string& op, Paint paint) {
   return [&context, op, paint](const Request& request, const Respond& respond) {
@@ -57,7 +57,7 @@ Handler painting(const RouteContext& context, const std::string& op, Paint paint
     edit.record.update(painted->record);
     for (const auto& [name, value] : request.query) edit.record[name] = value;
     edit.edit = room::ImportEdit{std::move(painted->tiles), true};
-    // Includes the names that the map added.
+    // Finds the layer again because its legend now contains the names from the map.
     const auto named = (*room)->layers().find(to_string(layer->id));
     if (!named) return respond(named.error());
     if (auto made = app::records_from_legend(context, *named, room::painted_by(*named, edit),
@@ -92,7 +92,8 @@ Result<Painted> paint_point_measurements(const Request& request, const Target& t
                  {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
 }
 
-// Reads the values that a map paints at a place, and the keys that it adds to the layer's legend.
+// Returns the values that a map paints at each position, and the keys that the map adds to the
+// layer's legend.
 using MakeValues = Result<app::MapValues> (*)(const app::MapOptions& options,
                                               const app::MapFiles& files,
                                               const app::MapTarget& target, ByteBudget& budget);

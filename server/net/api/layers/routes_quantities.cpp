@@ -30,7 +30,7 @@ namespace {
 
 using Names = app::RecordNames;
 
-// Quantities of the lines and points of the records that have some. `names` as in RecordMeasures.
+// Quantities of all records with lines or points. `names` are the names in RecordMeasures.
 struct OfFeatures {
   std::vector<std::string> names;
   std::map<std::int64_t, std::vector<double>> of_key;
@@ -49,7 +49,7 @@ struct OfFeatures {
   }
 };
 
-// `model`: only the features on this model.
+// If `model` is set, counts only the lines and points on this model.
 Result<OfFeatures> features_of(const RouteContext& context, const Table& table, Role seen_by,
                                const std::optional<Model>& model, std::optional<std::int64_t> at) {
   store::RecordQuery query;
@@ -180,7 +180,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   Names names;
   OfFeatures features;
   if (target.layer.table) {
-    std::optional<std::int64_t> records_at;  // the records as they were at that edit
+    std::optional<std::int64_t> records_at;  // sequence of the table at that edit
     if (target.at) {
       auto found = context.store.tables().sequence_when(*target.layer.table, target.layer.model_id,
                                                         *target.at);
@@ -213,7 +213,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   return response;
 }
 
-// --- quantities of a table, over all models with layers that hold its keys
+// --- quantities of a table, for all models with layers that contain its keys
 
 struct OfLayer {
   Model model;
@@ -229,7 +229,7 @@ Result<std::vector<OfLayer>> of_layers(const RouteContext& context, TableId tabl
     if (layer.sequence == 0) continue;  // the layer was never painted
     auto room = STRATA_TRY(context.rooms.open(to_string(layer.model_id), seen_by));
     auto all = room->queries().quantities(layer.slug);
-    if (!all && all.error().code == ErrorCode::not_found) continue;  // deleted in the meantime
+    if (!all && all.error().code == ErrorCode::not_found) continue;  // the layer is deleted
     if (!all) return tl::unexpected(all.error());
     if (all->classes.empty()) continue;
     OfLayer of_layer{room->model(), std::move(layer), {}};

@@ -21,7 +21,7 @@
 namespace strata::net {
 namespace {
 
-constexpr double kShortestNormal = 1e-12;  // of a plane
+constexpr double kShortestNormal = 1e-12;  // of a plane's normal
 
 std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
   std::vector<std::string> slugs;
@@ -29,7 +29,7 @@ std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
   return slugs;
 }
 
-// Returns the layers that the body names, or all.
+// Returns the layers in the request body, or all layers if the body names none.
 Result<std::vector<Layer>> requested_layers(
     const room::Room& room, const std::optional<std::vector<protocol::LayerRef>>& requested) {
   if (!requested) return room.layers().all();

@@ -82,14 +82,14 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
                                body.max_angle};
 }
 
-// Returns a copy of the source's layer for the target.
+// Returns a copy of a layer of the source model for the target model.
 Layer copy_of(const Layer& from, int resolution, int order, const jobs::TransferRequest& request) {
   Layer layer = from;
   layer.id = 0;
   layer.resolution = resolution;
   layer.order = order;
-  layer.locked = false;   // people continue to edit the layer here
-  layer.formula.reset();  // the transfer copies its values unchanged
+  layer.locked = false;   // users continue to edit the copy
+  layer.formula.reset();  // the transfer copies the values unchanged
   layer.origin.reset();
   layer.edited_by_hand = false;
   layer.description += (layer.description.empty() ? "" : "\n\n") +
@@ -165,7 +165,8 @@ Result<Response> list_properties(const RouteContext& context, const Request& req
   return json_response({{"properties", std::move(list)}, {"total", total}});
 }
 
-// Returns the scan that `requested` names, or the only scan with an order of vertices.
+// Returns the scan with the name `requested`. If it is empty, returns the only scan whose format
+// keeps the order of vertices.
 Result<std::string> scan_of(const Model& model, const std::string& requested) {
   std::vector<std::string> scans;
   for (const SourceFile& source : model.source_files) {
@@ -206,7 +207,7 @@ void write_vertices(const RouteContext& context, const Request& request, const R
   if (!tiles) {
     Error problem = tiles.error();
     if (problem.field == "type")
-      problem.field = "body";  // the layer exists already, so the values are the cause
+      problem.field = "body";  // the values are the cause because the layer already exists
     return respond(problem);
   }
   room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};

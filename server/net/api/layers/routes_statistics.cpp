@@ -114,7 +114,7 @@ Result<room::Selection::Changed> changed_of(const RouteContext& context, const r
   return changed;
 }
 
-// Returns the edit that paints where the condition is true.
+// Returns the edit that paints the texels where the condition is true.
 Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& body,
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
@@ -140,7 +140,7 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
                       request.author());
 }
 
-// Returns a PNG that is white where the byte is 1, and transparent elsewhere.
+// Returns a PNG that is white where the byte is 1 and transparent elsewhere.
 std::vector<std::uint8_t> selection_png(const std::vector<std::uint8_t>& seen, int width,
                                         int height) {
   std::vector<std::uint8_t> rgba(seen.size() * 4, 0);
@@ -200,9 +200,9 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   respond(std::move(response));
 }
 
-constexpr const char* kNoValue = "–";  // where one of the two layers has no value
+constexpr const char* kNoValue = "–";  // one of the two layers has no value
 
-// Returns the names of one side of a cross-table.
+// Returns the names for one axis of a cross-table.
 Result<std::vector<std::string>> side_names(const RouteContext& context, const room::Room& room,
                                             const Layer& layer, Role role,
                                             const std::vector<query::CrossTable::Key>& side,
@@ -211,18 +211,18 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
   std::vector<double> values;
   for (const auto& key : side)
     if (key) values.push_back(*key);
-  std::optional<std::int64_t> records_at;  // the records as they were at that edit
+  std::optional<std::int64_t> records_at;  // sequence of the table at that edit
   if (layer.table && at) {
     const auto found =
         STRATA_TRY(context.store.tables().sequence_when(*layer.table, room.model().id, *at));
     records_at = found;
   }
   auto names = app::class_names(context.store, layer, role, values, records_at, language);
-  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // the last key
+  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // for the last key
   return names;
 }
 
-// Returns the table with names and sums, in the unit that suits the total.
+// Returns the table with names and sums, in the unit that suits the total area.
 app::Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
                     const std::vector<std::string>& row_names,
                     const std::vector<std::string>& column_names) {
@@ -259,7 +259,7 @@ app::Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Lay
 
 Result<Response> cross_table(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::CrossTableRequest>(request));
-  // Scripts without `f` get keys; a sheet is for people and gets names.
+  // A script that sends no `f` gets keys. A sheet contains names because users read it.
   const bool as_csv = !request.query.contains("f") &&
                       request.header("accept").find("text/csv") != std::string_view::npos;
   const auto format =

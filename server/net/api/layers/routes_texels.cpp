@@ -30,9 +30,9 @@
 namespace strata::net {
 namespace {
 
-// per texel of an imported file: a double and a validity byte
+// Bytes per texel of an imported file: a double and a validity byte.
 constexpr std::uint64_t kTexelBytes = 9;
-// of the largest layer
+// The maximum size for the largest layer.
 constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * kTexelBytes) + (1u << 20);
 
 struct Format {
@@ -52,7 +52,8 @@ Result<const Format*> format_of(const Request& request) {
               "Request texels.tif, texels.png, texels.npy or texels.csv.", "format");
 }
 
-// With the valid plane, uncompressed; a TIFF stores that plane in the value's type, too.
+// The uncompressed size, including the plane with the validity. A TIFF stores this plane in the
+// type of the values.
 std::uint64_t raster_bytes(const Layer& layer) {
   return std::uint64_t(layer.resolution) * layer.resolution * 2 *
              std::uint64_t(bytes_per_texel(layer.type)) +
@@ -85,7 +86,7 @@ Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
               "body");
 }
 
-// Runs before the body is read, if the request has a Content-Length.
+// Checks the size before the body is read, if the request has a Content-Length.
 Result<void> check_raster(const RouteContext& context, const Request& request) {
   STRATA_TRY(format_of(request));
   auto layer = STRATA_TRY(stored_layer(context, request));
@@ -121,13 +122,13 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   apply_edit(context, request, *room, std::move(edit), respond);
 }
 
-// --- text lines
+// --- texels as lines of text
 
 constexpr std::size_t kPieceBytes = 1u << 16;
 
 std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
   std::set<std::int64_t> keys;
-  std::optional<std::uint32_t> last;  // neighboring texels mostly share a key
+  std::optional<std::uint32_t> last;  // adjacent texels mostly have the same key
   query::for_each_sample(texels, [&](const query::TexelSample& sample) {
     if (last != sample.bits) keys.insert(sample.bits);
     last = sample.bits;
@@ -136,7 +137,7 @@ std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
   return {keys.begin(), keys.end()};
 }
 
-// Adds columns of the records that the keys name, with their values at `at`.
+// Adds columns with values of the records that the keys refer to, at the sequence `at`.
 Result<void> add_columns(const RouteContext& context, Role seen_by,
                          const std::vector<std::string>& column_refs,
                          const query::SurfaceTexels& texels, std::optional<std::int64_t> at,
@@ -226,7 +227,7 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
 void add_texel_routes(Router& router, const RouteContext& context) {
   const std::string pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}";
   auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
-  // Must precede the pattern that accepts any extension.
+  // Must come before the pattern that accepts any extension.
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/texels.csv",
               .handler = answering([&context](const Request& request) {

@@ -16,13 +16,14 @@
 namespace strata::net {
 namespace {
 
-// The file to send and its reservation of memory.
+// The file to send and the memory reserved for it.
 struct VertexFile {
   MemoryLedger::Share memory;
   query::VertexPly ply;
 };
 
-// Returns the layers in the query, in its order; without any, all layers in theirs.
+// Returns the layers in the query, in the same order. Without this parameter, returns all layers in
+// the order of the model.
 Result<std::vector<query::LayerView>> layer_views(const Request& request, room::Room& room,
                                                   room::At at) {
   std::vector<Layer> layers = room.layers().all();
@@ -43,8 +44,8 @@ Result<std::vector<query::LayerView>> layer_views(const Request& request, room::
   return views;
 }
 
-// Whether the vertices get the colors of the layers. By default they keep those of the scan, so
-// that a client that imports the mesh as a scan again does not get the layers as its colors.
+// Returns whether the vertices get the colors of the layers. By default, they keep the colors of
+// the scan. A client can then import the mesh as a scan again without the colors of the layers.
 Result<bool> wants_layer_colors(const Request& request) {
   const std::string colors = request.query_or("colors", "scan");
   if (colors != "scan" && colors != "layers")
@@ -55,8 +56,8 @@ Result<bool> wants_layer_colors(const Request& request) {
   return colors == "layers";
 }
 
-// Returns the layers in the drawing order: the named ones in the order of the query, otherwise the
-// visible ones in the order of the model.
+// Returns the layers in drawing order. These are the layers in the query, in the same order, or the
+// visible layers in the order of the model.
 std::vector<query::LayerView> shown_layers(const Request& request,
                                            std::vector<query::LayerView> views) {
   if (request.query.contains("layers")) return views;

@@ -22,7 +22,7 @@ using app::FigureRequest;
 
 constexpr Rgba kPaper{255, 255, 255, 255};
 
-// Directions, papers and formats have the order of the contract, so that a cast converts them.
+// Directions, paper sizes and formats have the same order in the API, so a cast converts them.
 static_assert(static_cast<int>(protocol::FigureDirection::right) ==
                   static_cast<int>(figure::Direction::right) &&
               static_cast<int>(protocol::FigureRequestPaper::a3) ==
@@ -30,7 +30,7 @@ static_assert(static_cast<int>(protocol::FigureDirection::right) ==
               static_cast<int>(protocol::FigureFormat::pdf) ==
                   static_cast<int>(figure::Format::pdf));
 
-// Reads the shown layers and images into `figure`; returns the camera, if there is one.
+// Copies the shown layers and images to `figure`. Returns the camera, if there is one.
 Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
                                          const protocol::FigureRequest& body,
                                          FigureRequest& figure) {
@@ -56,7 +56,8 @@ Result<std::optional<Camera>> read_shown(const RouteContext& context, const Requ
   return std::optional<Camera>(saved.camera);
 }
 
-// Returns the middle of the camera's window; its depth does not affect the drawing plane.
+// Returns the point in the middle of the camera's window. Its depth does not affect the drawing
+// plane.
 glm::dvec3 middle_of(const Camera& camera, const Model& model) {
   const Ray ray = ray_through_pixel(camera, camera.width / 2.0, camera.height / 2.0);
   const glm::dvec3 to_model = (model.bounds_min + model.bounds_max) / 2.0 - ray.origin;
@@ -125,8 +126,8 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
   const auto camera = STRATA_TRY(read_shown(context, request, body, figure));
   STRATA_TRY(read_direction(body, camera, figure));
   const auto at = STRATA_TRY(find_sequence(context, *figure.room, body.at));
-  // Selects the layers before it reads the state of the review: a layer that becomes visible later
-  // must not appear in the figure without marks.
+  // Selects the layers before it reads the state of the review. Otherwise, a layer that becomes
+  // visible in the meantime would appear in the figure without marks.
   for (Layer& layer : figure.room->layers().all())
     if (figure.shown.shown.of(layer.id).visible.value_or(layer.visible))
       figure.layers.push_back(layer);

@@ -5,8 +5,8 @@
 
 namespace strata::net {
 
-// Reads the figure from the body. Refuses (422): a view together with the settings that it
-// replaces, two directions, a normal without a direction, labels of a layer without keys.
+// Reads the figure from the request body. Refuses (422) a view together with settings that it
+// replaces, two directions, a normal without a direction, and labels for a layer without keys.
 Result<app::FigureRequest> read_figure_request(const RouteContext& context, const Request& request);
 
 }  // namespace strata::net

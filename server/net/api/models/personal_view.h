@@ -4,8 +4,8 @@
 
 namespace strata::net {
 
-// Returns a user's stored settings of how the layers of a model are shown, as the protocol's
-// PersonalView. Contains only entities that their role can see. Blocks.
+// Returns the layer settings that a user has stored for a model, as PersonalView of the protocol.
+// Contains only entities that the role can see. Blocks.
 Result<nlohmann::json> personal_view(store::Store& store, const std::string& user, Role role,
                                      const room::Room& room);
 

@@ -8,10 +8,11 @@
 
 namespace strata::net {
 
-// A CPU takes this time at most for the samples of a picture, or of each 2 million pixels.
+// The maximum time that a CPU spends on the samples of an image, or of each 2 million pixels of an
+// image.
 constexpr std::chrono::milliseconds kPictureSamplesTime{5000};
 
-// Renders a picture to keep: JPEG of good quality, or PNG. Encodes while the GPU renders.
+// Renders an image file: a JPEG of good quality, or a PNG. Encodes the file while the GPU renders.
 Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown,
                                   const Camera& camera, bool is_png);
 

@@ -1,5 +1,5 @@
-// Threads of comments on a model. Everybody reads them, and annotators write. An author can change
-// his or her own comments; a curator can delete any.
+// Comment threads of a model. Viewers can read them, and annotators can write them. Authors can
+// change their own comments. Curators can delete all comments.
 #include <set>
 
 #include "core/log.h"
@@ -33,7 +33,7 @@ using protocol::CommentEventEvent;
 using store::Comment;
 using store::Comments;
 
-constexpr double kMaxDistance = 0.05;  // to the surface, as a fraction of the model's diagonal
+constexpr double kMaxDistance = 0.05;  // from the surface, as a fraction of the model's diagonal
 
 nlohmann::json to_json(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
 
@@ -60,7 +60,7 @@ nlohmann::json to_json(const Comment& comment) {
   return json;
 }
 
-// Returns the people that a comment and a change of it may name.
+// Returns the users whose names may occur in a comment and in a change to it.
 Result<People> people_of(const RouteContext& context, const Comment& comment,
                          const std::string& asking) {
   std::vector<std::string> names{comment.user, asking};
@@ -149,7 +149,7 @@ Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
   return Comment::Place{nearest.position, glm::dvec3(nearest.normal)};
 }
 
-// Sets the layer and the record that the body names.
+// Sets the layer and the record that the request body names.
 Result<void> put_subject(const RouteContext& context, const room::Room& room,
                          const protocol::CommentCreate& body, Comment& comment) {
   if (!body.layer) {

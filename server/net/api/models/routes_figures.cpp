@@ -1,4 +1,4 @@
-// Figures: drawings to scale as files.
+// Figures, which are files with drawings to scale.
 #include <boost/algorithm/string/predicate.hpp>
 
 #include "domain/scene/model.h"
@@ -11,10 +11,10 @@
 namespace strata::net {
 namespace {
 
-// for drawings that are made at the same time; A3 at 600 dpi has 260 MB
+// The memory for simultaneous drawings. An A3 drawing at 600 dpi needs 260 MB.
 constexpr std::uint64_t kFigureBytes = 320u << 20;
 
-// RFC 7240: commas separate preferences.
+// Preferences are separated by commas (RFC 7240).
 bool wants_job(const Request& request) {
   for (std::string preference : split_list(std::string(request.header("prefer")))) {
     preference.erase(0, preference.find_first_not_of(" \t"));

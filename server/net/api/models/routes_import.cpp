@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Reads everything except the file from the query.
+// Reads all parameters of the import from the query. The files are in the body.
 Result<jobs::ImportRequest> import_request(const RouteContext& context, const Request& request) {
   jobs::ImportRequest requested;
   requested.name = request.query_or("name", {});
@@ -71,15 +71,15 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   return requested;
 }
 
-// Runs before the upload, whose form may contain the file's name.
+// Runs before the upload. The file name may be in the form, which is not read yet.
 Result<void> check_import(const RouteContext& context, const Request& request) {
   auto requested = STRATA_TRY(import_request(context, request));
   if (requested.files[0].filename.empty()) requested.files[0].filename = "named in the body.ply";
   return jobs::check(requested);
 }
 
-// Moves the upload to another name: the answer deletes the request's file, but the job needs it
-// longer.
+// Renames the uploaded file, because the request's file is deleted after the response but the job
+// still needs it.
 Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const fs::path& file,
                                                    const fs::path& folder) {
   if (file != request.body_file) return std::make_shared<TemporaryFile>(file);
@@ -107,7 +107,7 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
     stored_files.push_back(std::move(file));
     requested->files.push_back({upload.filename, stored_files.back()->path});
   }
-  // The name in the query has precedence over the name in a form.
+  // The file name in the query has precedence over the file name in a form.
   if (requested->files.size() == 1 && !named.empty()) requested->files[0].filename = named;
   STRATA_TRY(jobs::check(*requested));
 
@@ -133,7 +133,8 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
   return job_response(context, job);
 }
 
-// The import succeeded. Only the server process that ran the job still has it.
+// Creates the response for an import that succeeded. Only the server process that ran the job still
+// lists that job.
 Result<Response> repeat_import(const RouteContext& context, JobIdempotency& book,
                                const Request& request, const nlohmann::json& stored) {
   auto known = STRATA_TRY(book.find(request));

@@ -91,7 +91,7 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
 
 Result<Response> change_model(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::ModelPatch>(request));
-  // The room notifies the participants of the model.
+  // Changes the model through its room because the room notifies the participants.
   auto room = STRATA_TRY(open_room(context, request));
   Model model = room->model();
   STRATA_TRY(check_if_match(request, model.version));

@@ -1,4 +1,4 @@
-// Orthophotos that become surface images.
+// Orthophotos that are added as surface images.
 #include <algorithm>
 #include <bit>
 
@@ -62,7 +62,7 @@ Result<SurfaceImage> bake(room::Room& room, const OrthophotoRequest& requested,
   const jobs::OrthophotoSampler sampler(map.picture, map.world,
                                         texel_area(room.model(), requested.resolution));
   if (progress.cancelled()) return cancelled_problem();
-  Layer colors;  // never stored; its numbers are RGBA
+  Layer colors;  // not stored; its numbers are RGBA values
   colors.type = ValueType::u32;
   colors.resolution = requested.resolution;
   const auto tiles =

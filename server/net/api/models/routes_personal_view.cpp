@@ -1,4 +1,4 @@
-// The settings with which a user shows the layers of a model; private to the user.
+// The private settings of a user for the layers of a model.
 #include "domain/people/role.h"
 #include "net/api/addressed.h"
 #include "net/api/models/personal_view.h"

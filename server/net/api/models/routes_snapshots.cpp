@@ -1,5 +1,5 @@
-// Snapshots of a model: named states. Everybody reads them, and annotators make them. An author can
-// change his or her own snapshots; a curator can change any.
+// Snapshots, which are named states of a model. Viewers can read them, and annotators can create
+// them. Authors can change their own snapshots. Curators can change all of them.
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "net/api/addressed.h"
@@ -70,8 +70,8 @@ Result<Response> get_snapshot(const RouteContext& context, const Request& reques
   return with_etag(json_response(to_json(request, snapshot)), request, snapshot.version);
 }
 
-// Returns the stored form of a state. The room refuses states that are not in the journal yet,
-// since the journal may still refuse their edits.
+// Converts a state to its stored format. Refuses states that are not in the journal yet because the
+// journal may still refuse their edits.
 Result<nlohmann::json> content_of(const RouteContext& context, const room::Room& room,
                                   const std::optional<protocol::At>& at) {
   const std::int64_t durable = room.edits().durable_sequence();

@@ -44,7 +44,7 @@ Result<Response> list_surface_images(const RouteContext& context, const Request&
   return response;
 }
 
-// Reads everything except the picture from the query.
+// Reads all properties except the image itself from the query.
 Result<SurfaceImage> new_surface_image(const Request& request) {
   SurfaceImage image;
   image.name = request.query_or("name", {});
@@ -74,7 +74,7 @@ Result<Response> create_surface_image(const RouteContext& context, const Request
   image.height = info.height;
   const bool stays = is_surface_image_format(info.format);
   image.media_type = media_type(stays ? info.format : PictureFormat::png);
-  // Decodes the whole picture, so that a picture that cannot be shown is refused now.
+  // Decodes the whole image to refuse an image that cannot be shown.
   const auto memory = STRATA_TRY(context.rooms.memory().reserve(
       std::uint64_t{stays ? 4u : 8u} * static_cast<std::uint64_t>(info.width) *
           static_cast<std::uint64_t>(info.height),
@@ -137,7 +137,7 @@ Result<Response> surface_image_picture(const RouteContext& context, const Reques
     auto number = STRATA_TRY(parse_integer(text, 16, 1024, "thumbnail"));
     side = static_cast<int>(number);
   }
-  // In full size a picture of a scan equals the scan's file.
+  // In full size, an image of a scan is equivalent to the file of the scan.
   if (!side) STRATA_TRY(check_source_download(request, model));
   auto bytes = STRATA_TRY(context.store.surface_images().picture(image.id));
   if (!side) return bytes_response(std::move(bytes), image.media_type);

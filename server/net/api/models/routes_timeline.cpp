@@ -1,4 +1,4 @@
-// The history of a model: its edits over time, and what differs between two states of a layer.
+// The history of a model: its edits over time, and the differences between two states of a layer.
 #include <algorithm>
 #include <charconv>
 
@@ -124,7 +124,7 @@ Result<Response> steps(const RouteContext& context, const Request& request) {
   return json_response(answer);
 }
 
-// What undo and redo would change, for the caller.
+// Returns the edits that undo and redo would change for the caller.
 Result<Response> undo_steps(const RouteContext& context, const Request& request) {
   const auto limit = STRATA_TRY(number_in(request, "limit", 1, kMaxSteps));
   const auto model = STRATA_TRY(stored_model(context, request));
@@ -132,7 +132,7 @@ Result<Response> undo_steps(const RouteContext& context, const Request& request)
   query.limit = static_cast<int>(limit.value_or(kUsualSteps));
   for (const Layer& layer : STRATA_TRY(context.store.layers().of_model(model.id, request.role()))) {
     query.layers.push_back(layer.id);
-    // Only a curator can change an accepted edit.
+    // Only curators can change an accepted edit.
     if (layer.review && request.role() < Role::curator) query.pending_only.push_back(layer.id);
   }
   const auto found =
@@ -163,7 +163,7 @@ Result<Response> difference(const RouteContext& context, const Request& request)
     return tl::unexpected(std::move(problem));
   };
   const auto from = STRATA_TRY(sequence_of(body.from, "from"));
-  // A state that does not change during the answer, so that its sequence is that of the answer.
+  // Uses a durable state, which cannot change while the response is created.
   std::optional<std::int64_t> to = room->edits().durable_sequence();
   if (body.to) to = STRATA_TRY(sequence_of(*body.to, "to"));
   std::optional<room::Outline> outline;

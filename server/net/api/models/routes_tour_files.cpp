@@ -1,4 +1,4 @@
-// Files of tours: pictures, sounds and videos at stops, subtitles, and logos.
+// Files of tours: images, sounds and videos at stops, subtitles, and logos.
 #include <algorithm>
 #include <array>
 
@@ -27,7 +27,7 @@ using Kind = protocol::TourFileKind;
 constexpr const char* kTourFile =
     "Send the file as the body, with its `name` in the address. A tour accepts pictures (JPEG, "
     "PNG, WebP), sounds (MP3, M4A, WAV, FLAC, Ogg), videos (MP4, WebM) and subtitles (WebVTT).";
-constexpr int kMaxSide = 8192;  // of pictures: browsers decode them whole
+constexpr int kMaxSide = 8192;  // of images, because browsers decode them completely
 
 std::uint64_t max_bytes(Kind kind) {
   switch (kind) {
@@ -44,7 +44,7 @@ Result<store::NamedPart> find_tour(const RouteContext& context, const Request& r
   return context.store.tours().find(model.id, request.param("tour"));
 }
 
-// A WebVTT file begins with its name, after which a line ends or a comment follows (W3C WebVTT, 4).
+// A WebVTT file begins with its signature, followed by a line end or a comment (W3C WebVTT, 4).
 bool is_webvtt(const std::vector<std::uint8_t>& head) {
   std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);

@@ -1,4 +1,4 @@
-// Tours of a model. Everybody reads them; curators make and change them.
+// Tours of a model. Viewers can read them, and curators can create and change them.
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
@@ -35,7 +35,7 @@ Result<Found> find_to_change(const RouteContext& context, const Request& request
   return found;
 }
 
-constexpr std::chrono::hours kUnusedFor{24};  // an open editor may still use a younger file
+constexpr std::chrono::hours kUnusedFor{24};  // an open editor may still use newer files
 
 Result<TourFilesById> files_of(const RouteContext& context, NamedPartId tour_id) {
   TourFilesById files;
@@ -44,8 +44,8 @@ Result<TourFilesById> files_of(const RouteContext& context, NamedPartId tour_id)
   return files;
 }
 
-// Takes over the members of a request that tours did not always have. An empty theme or list
-// removes the stored one.
+// Copies the optional members of a request: media, theme and names of classes. An empty theme or
+// list removes the stored one.
 template <class Body>
 Result<void> take_design(const RouteContext& context, const Request& request, const Model& model,
                          const Body& body, const TourFilesById& files, nlohmann::json& content) {
@@ -67,8 +67,8 @@ Result<void> take_design(const RouteContext& context, const Request& request, co
   return {};
 }
 
-// The answer is made within the transaction that stores the tour, so `tour_json` with the names is
-// read before it.
+// The transaction that stores the tour calls this function. `tour_json` contains the names and is
+// read before the transaction.
 Response answer_of(nlohmann::json tour_json, const NamedPart& now, int status) {
   tour_json.update(
       {{"id", now.id}, {"slug", now.slug}, {"time", utc_text(now.time)}, {"version", now.version}});
@@ -140,7 +140,7 @@ Result<Response> change_tour(const RouteContext& context, const Request& request
   const auto answer = [&](const NamedPart& now) { return answer_of(tour_json, now, 200); };
   const auto changed = STRATA_TRY(
       context.store.tours().update(tour, idempotent_response<NamedPart>(request, answer)));
-  // If it fails, the next change deletes them.
+  // Ignores errors, because the next change to the tour deletes these files.
   (void)context.store.tour_files().drop_unused(tour.id, files_in(changed.content), kUnusedFor);
   return answer(changed);
 }
@@ -151,7 +151,8 @@ Result<Response> delete_tour(const RouteContext& context, const Request& request
   const auto answer = [] { return empty_response(204); };
   const auto files = STRATA_TRY(files_of(context, found.tour.id));
   STRATA_TRY(context.store.tours().remove(found.tour, idempotent_response<>(request, answer)));
-  if (!files.empty()) (void)context.store.attachments().drop_orphans();  // else the next start does
+  // Ignores errors because the next start also deletes these files.
+  if (!files.empty()) (void)context.store.attachments().drop_orphans();
   end_kiosks(context, kiosks, "the tour was deleted");
   return answer();
 }

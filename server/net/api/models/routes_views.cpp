@@ -1,5 +1,5 @@
-// Saved views of a model. Everybody reads them, and annotators make them. An author can change his
-// or her own views; a curator can change any.
+// Saved views of a model. Viewers can read them, and annotators can create them. Authors can change
+// their own views. Curators can change all of them.
 #include <algorithm>
 #include <cmath>
 
@@ -27,9 +27,10 @@ namespace {
 using protocol::ViewEventEvent;
 using store::NamedPart;
 
-constexpr int kSamples = 16;  // of each pixel of a view's picture
+constexpr int kSamples = 16;  // per pixel of a view's image
 
-// Converts the shown settings of the body to their stored form, with ids, since slugs change.
+// Converts the shown settings in the body to their stored format, which contains ids because slugs
+// can change.
 template <class ViewBody>
 Result<nlohmann::json> content_of(const room::Room& room, const ViewBody& body,
                                   const Camera& camera) {
@@ -47,7 +48,7 @@ Result<nlohmann::json> content_of(const room::Room& room, const ViewBody& body,
   return content;
 }
 
-// The model as the caller sees it, and one of its views.
+// The room of a model and one of its saved views.
 struct Found {
   std::shared_ptr<room::Room> room;
   NamedPart view;
@@ -100,7 +101,7 @@ Result<Response> get_view(const RouteContext& context, const Request& request) {
                    found.view.version);
 }
 
-// Returns a picture of the view's current content, as the caller sees it.
+// Returns an image of the view with its current content, as visible to the caller.
 Result<Response> view_picture(const RouteContext& context, const Request& request) {
   std::optional<int> side;
   if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {

@@ -47,7 +47,7 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   return json_response(answer);
 }
 
-// Streams the events after `Last-Event-ID`, or from now.
+// Streams the events after `Last-Event-ID` or, without this header, from the current time.
 Result<Response> listen(const RouteContext& context, const Request& request) {
   const auto model = STRATA_TRY(stored_model(context, request));
   std::optional<store::ActivityPlace> after;

@@ -1,4 +1,4 @@
-// Signing in and out, and the changes that users make to their own account.
+// Sign-in, sign-out, and the changes that users can make to their own accounts.
 #include <memory>
 
 #include "core/text/timestamp.h"
@@ -83,7 +83,7 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
 }
 
 Result<Response> sign_out(const RouteContext& context, const Request& request) {
-  // A script's token stays valid: it is revoked by name, not by a sign-out.
+  // A token for scripts stays valid at a sign-out. Users revoke it explicitly.
   if (request.principal->by_cookie) {
     const std::string session = Authenticator::secret_of(request);
     STRATA_TRY(context.auth.end_session(session));
@@ -107,7 +107,8 @@ Result<Response> change_password(const RouteContext& context, LoginThrottle& gat
   STRATA_TRY(store::check_password(body.password, request.user(), "password"));
   const auto hash = STRATA_TRY(context.store.accounts().password_of(request.user()));
   if (!hash.empty()) {
-    // Limits the guesses of a person at another user's browser as much as those at the sign-in.
+    // Applies the limit for sign-ins, because a person at another user's browser could also guess
+    // the password.
     STRATA_TRY(gate.pass(address_of(request), request.user()));
     const auto fits =
         body.current ? store::password_fits(hash, *body.current) : Result<bool>(false);
@@ -220,7 +221,7 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
 
 void add_auth_routes(Router& router, const RouteContext& context) {
   auto gate = std::make_shared<LoginThrottle>();
-  // Changes that users make to their own account.
+  // For changes that users make to their own accounts.
   const auto add = [&](Method method, const std::string& pattern, auto answer,
                        const std::vector<std::string>& query = {}) {
     const bool has_body = method == Method::post || method == Method::patch;

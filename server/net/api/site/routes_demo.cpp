@@ -14,17 +14,17 @@
 namespace strata::net {
 namespace {
 
-// Only where the demo exists: the route would otherwise be a way to create it.
+// Requires an existing demo project. Otherwise, this route could create one.
 Result<Response> reset_demo(const RouteContext& context, const Request& request) {
   const auto project = STRATA_TRY(context.store.projects().find(jobs::kDemoProject));
   const auto job = STRATA_TRY(context.jobs.add(
       project.id,
-      // The queue outlives the templates of the context.
+      // Copies the templates because the queue outlives those in the context.
       [&store = context.store, &rooms = context.rooms,
        templates = context.templates](Progress& progress) -> Result<jobs::JobResult> {
         STRATA_TRY(app::erase_demo_story(store, [&rooms](ModelId model) { rooms.forget(model); }));
         const auto made = STRATA_TRY(app::make_demo_story(store, templates, progress));
-        // A room that was opened during the story does not know all of it.
+        // A room that was opened while the story was created does not contain all of it.
         rooms.forget(made.model.id);
         return jobs::JobResult(made.model.id);
       },

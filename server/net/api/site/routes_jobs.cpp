@@ -20,8 +20,9 @@ bool is_own(const jobs::JobStatus& job, const Principal& who) {
   return !job.user.empty() && job.user == who.user;
 }
 
-// The report or problem of a job may name layers that only curators see; curators start such jobs.
-// Only the user who requested a file gets it: it may contain data that others cannot see.
+// Returns the job as visible to `who`. The report or problem of a job may name layers that only
+// curators can see, and only curators start such jobs. Only the user who requested a file gets it
+// because it may contain data that is invisible to other users.
 nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
   if (job.result && !is_own(job, who)) job.result->file.reset();
   if (!sees(who.roles.in(job.project), Visibility::curators) && !is_own(job, who)) {
@@ -92,7 +93,8 @@ void add_job_routes(Router& router, const RouteContext& context) {
                               "job");
                 return file_response(job.result->file);
               }),
-              // A job makes one file, and its number is never used again.
+              // The state is the job number because a job creates only one file and job numbers are
+              // never reused.
               .state = [](const Request& request) { return std::optional(request.param("job")); }});
 }
 

@@ -1,4 +1,4 @@
-// Links for kiosks: the requests of curators, and those of a kiosk.
+// Links for kiosks: requests from curators, and requests from kiosks.
 #include <memory>
 
 #include "core/no_such.h"
@@ -100,12 +100,13 @@ Result<Response> change_kiosk(const RouteContext& context, const Request& reques
   const auto body = STRATA_TRY(body_of<protocol::KioskPatch>(request));
   const auto id = STRATA_TRY(id_of<KioskId>(request, "kiosk"));
   const auto kiosk = STRATA_TRY(context.store.kiosks().allow_phones(id, body.phones));
-  // The screen has the same name as its phones; it connects again.
+  // Closes the connections of the phones and of the screen, which have the same name. The screen
+  // then reconnects.
   if (!body.phones) end_kiosks(context, {id}, "the link for phones is switched off");
   return json_response(to_json(kiosk));
 }
 
-// --- requests of kiosks
+// --- requests from kiosks
 
 Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool is_phone,
                       bool wants_reload) {
@@ -145,10 +146,11 @@ Result<Response> kiosk_self(const RouteContext& context, const Request& request)
     return fail(ErrorCode::forbidden, "Not a kiosk",
                 "Only kiosks can read this. Send the cookie of a kiosk with `as=kiosk`, or its "
                 "bearer token.");
-  // By its secret, which says whether it is the screen or a phone.
+  // Finds the kiosk by its secret. The secret shows whether the client is the screen or a phone.
   const auto found = STRATA_TRY(context.store.kiosks().find(Authenticator::secret_of(request)));
   if (!found) return no_such("kiosk", to_string(request.principal->kiosk->id));
-  // Only records the visit, so a kiosk gets its answer even while the database refuses writes.
+  // Ignores errors because this call only records the visit. The kiosk gets its response even if
+  // the database refuses writes.
   if (!found->is_phone) (void)context.store.kiosks().seen(found->id, false);
   return self(context, *found, found->is_phone, !found->is_phone && found->wants_reload);
 }

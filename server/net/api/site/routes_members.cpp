@@ -1,4 +1,4 @@
-// The members of a project, and the people who can see it.
+// The members of a project, and the users who can see it.
 #include <set>
 
 #include "domain/people/role.h"
@@ -50,7 +50,7 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   return response;
 }
 
-// Leaves out people who may not sign in.
+// Leaves out users whose accounts are disabled.
 Result<Response> list_people(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
   const auto project = STRATA_TRY(stored_project(context, request));

@@ -70,7 +70,7 @@ Result<Response> with_invitation(const RouteContext& context, const Person& pers
   const auto link = context.store.tokens().create_link(TokenKind::invitation, person.name,
                                                        store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
-  // After a #: browsers do not send that part, so no log contains it.
+  // Browsers do not send the part after #, so no log contains the secret.
   return json_response({{"path", "/join#" + link->secret},
                         {"expires", utc_text(link->token.expires.value_or(link->token.created))},
                         {"user", to_json(person)}},
@@ -89,8 +89,8 @@ Result<Response> invite(const RouteContext& context, const Request& request) {
   return response;
 }
 
-// Returns the account that the caller may change. Users cannot change themselves here, so that a
-// server keeps an administrator, and nobody can change the owner.
+// Returns the account that the caller may change. Users cannot change their own accounts here, so a
+// site always has an administrator. The account of the owner cannot be changed here.
 Result<Person> somebody_else(const RouteContext& context, const Request& request) {
   auto person = STRATA_TRY(context.store.accounts().find(request.param("user")));
   if (person.name == request.user())
@@ -99,7 +99,7 @@ Result<Person> somebody_else(const RouteContext& context, const Request& request
   if (person.role == Role::owner)
     return fail(ErrorCode::conflict, "Cannot change the owner",
                 "Only the owner can change the owner's account.");
-  // Otherwise one administrator could sign in as another.
+  // Prevents an administrator from signing in as another administrator.
   if (person.role == Role::administrator && request.principal->role < Role::owner)
     return fail(ErrorCode::forbidden, "Not allowed",
                 "Only the owner can change accounts of administrators.");
@@ -121,19 +121,19 @@ Result<Response> change_person(const RouteContext& context, const Request& reque
 
 Result<Response> delete_person(const RouteContext& context, const Request& request) {
   const auto person = STRATA_TRY(somebody_else(context, request));
-  // Disables the account first, so that nobody writes under the name afterwards.
+  // Disables the account first to prevent further changes under this name.
   const auto out =
       context.store.accounts().update(person.id, {.full_name = {}, .role = {}, .disabled = true});
   if (!out) return tl::unexpected(out.error());
   context.auth.forget();
   context.live_sockets.close_user(person.name, kClosePolicy, "your account was deleted");
-  // The last strokes of the person may still be on their way to the journal.
+  // The journal may not yet contain the last strokes of the user.
   STRATA_TRY(context.rooms.settle());
   STRATA_TRY(context.store.accounts().remove(person.name));
   return empty_response(204);
 }
 
-// --- requests of invited people
+// --- requests from invited users
 
 Result<Person> invited_by(const RouteContext& context, const std::string& invitation) {
   const auto principal = STRATA_TRY(context.store.tokens().find(invitation));

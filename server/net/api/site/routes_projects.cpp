@@ -12,8 +12,9 @@
 namespace strata::net {
 namespace {
 
-// Returns the groups that give `who` a role in a project above the general role, where the person's
-// own role is lower. A token may allow less than these roles.
+// Returns the groups that give `who` a role in a project. Includes only roles above the user's role
+// on the site and above the user's own role in the project. A token may have a lower role than
+// these.
 Result<std::map<ProjectId, nlohmann::json>> groups_that_give(const RouteContext& context,
                                                              const Principal& who) {
   std::map<ProjectId, nlohmann::json> groups;
@@ -70,7 +71,7 @@ Result<Response> change_project(const RouteContext& context, const Request& requ
   auto project = STRATA_TRY(stored_project(context, request));
   STRATA_TRY(check_if_match(request, project.version));
   auto body = STRATA_TRY(body_of<protocol::ProjectPatch>(request));
-  // Curators can change the work settings of their project, but not its name and description.
+  // Curators can change the settings for work in their project, but not its name and description.
   if ((body.name || body.description) && request.role() < Role::administrator)
     return fail(ErrorCode::forbidden, "Not allowed",
                 "Only administrators can change the name and the description of a project.",

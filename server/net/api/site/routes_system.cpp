@@ -25,7 +25,7 @@ Response readiness(const RouteContext& context) {
   return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
 }
 
-// Tags the response with a hash of its bytes; 304 to a client that has them.
+// Adds a tag with a hash of the response's bytes. Returns 304 to a client that already has them.
 Response revalidated(Response response, const Request& request) {
   const auto tag = tag_of_body(response).value_or("");
   response.with("ETag", tag).with("Cache-Control", "no-cache");

@@ -35,7 +35,7 @@ Result<Response> list_templates(const RouteContext& context, const Request& requ
   const auto& templates = context.templates.all();
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(templates.size());
-  // The list is fixed at the start of the server, and so is its order.
+  // The list and its order do not change after the start of the server.
   std::int64_t place = 0;
   const auto part = slice_by(page, templates, [&place](const auto&) { return NumberKey{place++}; });
   if (!part) return tl::unexpected(part.error());
@@ -52,7 +52,7 @@ Response answer_with(const std::vector<Table>& tables, const std::vector<Layer>&
   return json_response(made, 201);
 }
 
-// A layer to make, and the position of its table in the template.
+// A layer to create, and the index of its table in the template.
 struct RequestedLayer {
   Layer layer;
   std::size_t table = 0;
@@ -95,7 +95,7 @@ Result<std::vector<RequestedLayer>> requested_layers(const protocol::Template& o
   return requested;
 }
 
-// Newest first, since columns of later tables name earlier tables.
+// Removes the newest table first because columns of later tables refer to earlier tables.
 void take_back(const RouteContext& context, const std::vector<Table>& tables) {
   for (auto table = tables.rbegin(); table != tables.rend(); ++table)
     if (auto gone = context.store.tables().remove(table->id);
@@ -158,7 +158,8 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     auto layers = STRATA_TRY(requested_layers(*of, *room, body.language));
     requested = std::move(layers);
   }
-  // The last creation stores the idempotent answer.
+  // The last operation stores the response for repeated calls. If there are no layers, it is the
+  // creation of the tables.
   const auto tables_alone = [](const std::vector<store::TableChange>& changes) {
     std::vector<Table> all;
     for (const auto& change : changes) all.push_back(change.table);

@@ -85,7 +85,7 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
   return answer(created);
 }
 
-// Returns a tool that can be changed: one that is not deleted.
+// Returns a tool that is not deleted and can therefore be changed.
 Result<Tool> present_tool(const RouteContext& context, const Request& request) {
   auto tool = context.store.tools().find(request.param("tool"));
   if (tool && tool->deleted)
@@ -124,7 +124,7 @@ Result<Response> tool_picture(const RouteContext& context, const Request& reques
   const Picture picture = picture_of(shape);
   Response response =
       bytes_response(encode_png(picture.rgba, picture.width, picture.height), "image/png");
-  // An id belongs to one shape permanently; a slug may move to another shape.
+  // An id always refers to the same brush shape. A slug may later refer to another shape.
   if (is_all_digits(request.param("tool")))
     response.with("Cache-Control", "private, max-age=31536000, immutable");
   return response;

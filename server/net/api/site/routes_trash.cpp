@@ -1,4 +1,4 @@
-// The trash of a project. A role that may delete such entities may restore them.
+// The trash of a project. A role that may delete an entity may also restore it.
 #include <charconv>
 
 #include "app/change_notifier.h"
@@ -101,7 +101,7 @@ Result<Response> list_trash(const RouteContext& context, const Request& request)
   return response;
 }
 
-// Returns both numbers of `5-17` or the only one of `3`; nothing for other text.
+// Returns the two numbers in `5-17`, or the number in `3`. Returns nothing for other text.
 std::optional<std::vector<std::int64_t>> numbers_of(std::string_view text) {
   std::vector<std::int64_t> numbers;
   for (;;) {
@@ -116,7 +116,7 @@ std::optional<std::vector<std::int64_t>> numbers_of(std::string_view text) {
   }
 }
 
-// `layer-3`, `model-7`, `record-5-17`.
+// Finds the entry for an address such as `layer-3`, `model-7` or `record-5-17`.
 Result<TrashEntry> find_entry(const RouteContext& context, const Request& request) {
   const auto project = STRATA_TRY(stored_project(context, request));
   const std::string_view ref = request.param("entry");
@@ -149,7 +149,7 @@ Result<Response> restore(const RouteContext& context, const Request& request) {
     const auto restored = context.store.trash().restore(entry, answer);
     return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());
   }
-  // The room notifies the participants of the model.
+  // Restores the layer through the room because the room notifies the participants.
   const auto room = STRATA_TRY(context.rooms.open(to_string(entry.model_id), request.role()));
   const auto restored = room->layers().restore(entry, answer);
   return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());

@@ -21,14 +21,14 @@ namespace {
 
 constexpr const char* kKey = "key";
 
-// Finds records by the value of a column, as people write it in file names.
+// Finds records by the value of a column in file names. Small differences in spelling are allowed.
 class Values {
  public:
   void add(const std::string& value, std::int64_t key) {
     exact_[value].insert(key);
     loose_[loose_name(value)].insert(key);
   }
-  // Returns the records with this text; one record if the text is unambiguous.
+  // Returns the records that have this value. Returns one record if the value is unambiguous.
   std::set<std::int64_t> find(std::string_view text) const {
     if (const auto same = exact_.find(std::string(text)); same != exact_.end()) return same->second;
     const auto similar = loose_.find(loose_name(text));
@@ -39,7 +39,7 @@ class Values {
   std::map<std::string, std::set<std::int64_t>> exact_, loose_;
 };
 
-// The names of the files of each record.
+// The file names of each record, by key.
 using Names = std::map<std::int64_t, std::set<std::string>>;
 
 Result<Names> attached_names(const RouteContext& context, const Author& who, const Table& table,

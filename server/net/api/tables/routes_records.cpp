@@ -32,14 +32,15 @@ constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
 
 constexpr std::size_t kMaxSortColumns = 16;
 
-// "name,-depth": a minus means descending. A repeated column has no effect.
+// Parses the sort order, such as "name,-depth". A minus means descending. A repeated column has no
+// effect.
 Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& text) {
   std::vector<std::pair<std::string, bool>> order;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     std::string word = text.substr(begin, end - begin);
     const bool descending = word.starts_with('-');
-    // a plus in a query is a space
+    // A plus in a query is decoded as a space.
     if (descending || word.starts_with('+') || word.starts_with(' ')) word.erase(0, 1);
     if (!word.empty() &&
         std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
@@ -54,7 +55,7 @@ Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& te
   return order;
 }
 
-// Sorts by a measure, such as the area on the layer; the database does every other sorting.
+// Sorts by a measure, such as the area on the layer. The database sorts by all other columns.
 Result<store::RecordPage> page_by_measure(const RouteContext& context,
                                           const app::RecordPlace& place,
                                           const app::RecordMeasures& measures, std::size_t measure,
@@ -67,7 +68,7 @@ Result<store::RecordPage> page_by_measure(const RouteContext& context,
   query.limit = store::kMaxRecords;
   query.offset = 0;
   auto page = STRATA_TRY(context.store.records().page(place.table.id, seen_by, query));
-  // computed once: a line may have thousands of vertices
+  // Computes each value only once because a line may have thousands of vertices.
   std::vector<std::pair<double, Record>> by_value;
   by_value.reserve(page.records.size());
   for (Record& record : page.records) {
@@ -86,8 +87,9 @@ Result<store::RecordPage> page_by_measure(const RouteContext& context,
         std::ranges::equal_range(by_value, value, comes_before, &std::pair<double, Record>::first);
     const auto same =
         std::find_if(low, high, [key](const auto& each) { return each.second.key == key; });
-    // If that record is gone, the records with the same value and higher keys follow: equal values
-    // are in key order, unless the request sorts by more columns.
+    // If that record is deleted, continues with the next record that has the same value and a
+    // higher key. Records with equal values are sorted by key unless the request sorts by more
+    // columns.
     begin = same != high ? same + 1 : std::find_if(low, high, [key](const auto& each) {
       return each.second.key > key;
     });
@@ -103,8 +105,8 @@ Result<store::RecordPage> page_by_measure(const RouteContext& context,
   return page;
 }
 
-// Returns a workbook with the columns of `records_csv`, with typed values; under a layer the last
-// column has areas in a readable unit.
+// Returns a workbook with the columns of `records_csv` and typed values. For a layer, the last
+// column contains areas in a readable unit.
 Result<Response> records_book(const RouteContext& context, const store::RecordPage& page,
                               const app::RecordMeasures& measures,
                               const app::WordsOfTables& words) {
@@ -158,7 +160,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     if (!condition) return tl::unexpected(condition.error());
     query.filter = std::move(*condition);
   }
-  // A table for work in another program is complete, unless the request limits it.
+  // A table for another program contains all records unless the request limits it.
   const bool whole = format != SheetFormat::json && !request.query.contains("limit");
   query.limit = whole ? store::kMaxRecords : page.limit;
   query.offset = page.offset;
@@ -167,7 +169,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     auto sequence = STRATA_TRY(sequence_at(context.store, place.table, at->second));
     query.at = sequence;
   }
-  // Uses the current columns: a column that no longer holds lines has no length.
+  // Uses the current columns. A column that no longer contains lines has no length.
   auto measures = STRATA_TRY(app::RecordMeasures::of_place(context, place, place.table.columns));
   const auto& names = measures.names();
   const auto measure =
@@ -303,7 +305,7 @@ nlohmann::json report_of(const app::RecordRows& rows, const TableChange& change,
         const auto found = rows.heads.find(column.id);
         head = found == rows.heads.end() ? column.name : found->second;
       }
-    // A relation of another table names a record that is missing in the text.
+    // The problem may be in a record of another table, which is not in the text.
     add(problem.index ? rows.lines[*problem.index] : 1, head, problem.problem);
   }
   const bool refused = !problems.empty();
@@ -329,7 +331,7 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
   store::WriteRecords write;
   write.records = rows.records;
   write.op = "import";
-  // Checks the other rows even if one cannot be parsed, so that one check finds all mistakes.
+  // Checks the other rows even if a row cannot be parsed, so one check finds all mistakes.
   write.dry_run = tried == "true" || !rows.mistakes.empty();
   const auto answer = [&rows](const TableChange& change) {
     return json_response(report_of(rows, change, false));
@@ -379,7 +381,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
     return json_response(to_json(record, seen_by(change.table, role).columns))
         .with("ETag", etag_of(record.version));
   };
-  // A record without changes makes no entry, and `change` does not contain it.
+  // A record without changes adds no entry to the journal, and `change` does not contain it.
   std::optional<Record> same;
   if (auto now = stored_record(context, place.table, request.role(), key, {}))
     same = std::move(*now);
@@ -395,7 +397,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   return keep(change);
 }
 
-// Call once nothing can paint the key.
+// Call it when no edit can paint the key anymore.
 Result<Response> delete_retired(const RouteContext& context, const Request& request,
                                 const Table& table, std::int64_t key,
                                 std::optional<std::int64_t> version, const std::string& texels,
@@ -439,9 +441,9 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
     to = number;
   }
   auto version = STRATA_TRY(expected_record_version(context, request, table, key));
-  // Checks that the record can be deleted, before any texel changes.
+  // Checks that the record can be deleted before any texel is changed.
   STRATA_TRY(context.store.records().remove(table.id, key, version, request.user(), true));
-  // A stroke that began before the deletion must not paint the key again.
+  // A stroke that began before the deletion must not paint the key afterwards.
   const auto retired = context.rooms.retire_key(table.id, key);
   auto deleted = retired ? delete_retired(context, request, table, key, version, texels, to)
                          : Result<Response>(tl::unexpected(retired.error()));

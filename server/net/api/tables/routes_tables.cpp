@@ -106,7 +106,7 @@ Result<Response> delete_table(const RouteContext& context, const Request& reques
   return empty_response(204);
 }
 
-// --- columns; If-Match takes the version of the table
+// --- columns; If-Match contains the version of the table
 
 std::optional<std::int64_t> expected_version(const Request& request, const Table& table) {
   return request.header("if-match").empty() ? std::nullopt : std::optional(table.version);
@@ -161,7 +161,8 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
   return answer(change);
 }
 
-// Null removes a default or a limit. The typed body cannot distinguish null from an absent member.
+// Null removes a default or a limit. The typed body has the same value for null and for an absent
+// member, so this function reads the JSON.
 Result<void> change(const RouteContext& context, const Request& request,
                     const protocol::ColumnPatch& patch, const Table& table, Column& column) {
   const auto body = nlohmann::json::parse(request.body);
@@ -208,7 +209,7 @@ Result<Response> show_column(const RouteContext& context, const Request& request
   };
   auto now = STRATA_TRY(context.store.tables().show_column(
       table.id, column.id, visibility, table.version, idempotent_response<Table>(request, answer)));
-  // Users who cannot see the column any longer get other colors, lines and points from it.
+  // For users who can no longer see the column, the colors, lines and points change.
   context.rooms.records_changed(now.id);
   tell_table(context.live_sockets, protocol::TableEventEvent::changed, now, request.user());
   return answer(now);
@@ -254,8 +255,8 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
   return answer(*done);
 }
 
-// A record that is above itself is impossible. Reports such cycles instead of refusing them, since
-// excavation drawings contain them and people must find them.
+// Finds records that are above themselves in a hierarchy. The server reports such cycles instead of
+// refusing them. Excavation drawings contain them, and users must find them.
 Result<Response> cycles(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(stored_table(context, request));
   auto column = STRATA_TRY(column_of(table, request));
@@ -276,7 +277,7 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
   return json_response({{"cycles", found}, {"total", found.size()}});
 }
 
-// --- history
+// --- classes and history
 
 Result<Response> classes(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(stored_table(context, request));
@@ -376,7 +377,7 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
   return answer(done);
 }
 
-// --- surface of the table's keys
+// --- areas of the table's keys
 
 Result<Response> areas(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(stored_table(context, request));

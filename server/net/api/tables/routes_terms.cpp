@@ -27,7 +27,7 @@ using TableChange = store::TableChange;
 constexpr std::uint64_t kMaxTermsBytes = 32u << 20;
 constexpr std::size_t kMaxListNameLength = 200;
 
-// Selects the format by the Content-Type.
+// The Content-Type selects the format.
 Result<TermList> read_terms(const Request& request) {
   const std::string type = to_lower(request.header("content-type"));
   const std::string kind = type.substr(0, std::min(type.find_first_of("; "), type.size()));
@@ -151,14 +151,14 @@ Result<Response> import_terms(const RouteContext& context, const Request& reques
 
 // --- reading
 
-// Marks the terms to list: those that contain the words, and their ancestors.
+// Marks the terms to list. These are the terms that match the words, and their ancestors.
 std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms,
                                    const std::vector<bool>& match) {
   std::map<std::int64_t, std::size_t> places;
   for (std::size_t i = 0; i < terms.size(); ++i) places[terms[i].key] = i;
   std::vector<bool> included = match;
-  // Descendants come later in the list, so the loop from the end marks each term before its parent
-  // is visited.
+  // Descendants come later in the list. The loop runs from the end, so it marks each term before it
+  // visits the parent.
   for (std::size_t i = terms.size(); i-- > 0;)
     if (included[i] && terms[i].depth > 0) included[places.at(*terms[i].parent)] = true;
   return included;

@@ -1,7 +1,7 @@
 #version 450 core
 layout(location = 0) in vec4 projected;
 layout(location = 1) uniform vec2 window_size;
-layout(location = 2) uniform vec2 center;   // window pixels, origin lower left
+layout(location = 2) uniform vec2 center;   // in window pixels, origin lower left
 layout(location = 3) uniform float radius;
 layout(location = 4) uniform float bias;
 layout(location = 5) uniform uint value;

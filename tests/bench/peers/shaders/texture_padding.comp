@@ -1,5 +1,5 @@
 #version 450 core
-// texture_padding.frag as a compute pass.
+// The algorithm of texture_padding.frag as a compute pass.
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(location = 5) uniform uint value;
 layout(location = 6) uniform uint edit_number;

@@ -1,6 +1,6 @@
 #version 450 core
-// Draws the mesh at its texture coordinates; interpolates clip coordinates of the scene's camera
-// for projection.
+// Draws the mesh at its texture coordinates. Interpolates the clip coordinates of the scene's
+// camera for the projection.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 uv;
 layout(location = 0) uniform mat4 clip_from_model;
