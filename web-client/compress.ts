@@ -1,5 +1,5 @@
-// Writes `FILE.br` and `FILE.gz` next to each text file of the build. The server sends them as they
-// are.
+// Writes `FILE.br` and `FILE.gz` next to each text file of the build. The server sends these files
+// unchanged.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";

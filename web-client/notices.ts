@@ -1,5 +1,5 @@
-// Writes `third-party-notices.txt` into the build: the licenses of the npm packages whose code or
-// fonts are in the build.
+// Adds `third-party-notices.txt` to the build. It contains the licenses of the npm packages whose
+// code or fonts are in the build.
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import type { Plugin } from "vite";
@@ -27,7 +27,7 @@ export function thirdPartyNotices(): Plugin {
         for (const id of part.type === "chunk"
           ? Object.keys(part.modules)
           : part.originalFileNames.map((name) => resolve(root, name))) {
-          // Rollup marks the modules that it generates from CommonJS with a zero byte.
+          // Rollup marks modules that it generates from CommonJS with a null byte.
           const found = kFolder.exec(id.replaceAll("\\", "/").replace(/^\0/, ""));
           if (found) packages.set(found[2]!, found[1]!);
         }

@@ -1,4 +1,4 @@
-// Writes the operations of the contract into docs.html, for browsers without JavaScript.
+// Writes the operations of the contract to docs.html, for browsers without JavaScript.
 import { readFileSync } from "node:fs";
 import type { Plugin } from "vite";
 

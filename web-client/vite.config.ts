@@ -8,7 +8,7 @@ import { operationsWithoutScript } from "./operations";
 // The server's address during development of the page with `npm run dev`.
 const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
 
-// Replaces Redoc's readers of other kinds of contracts.
+// Replaces the Redoc modules that read other contract formats.
 const unused = fileURLToPath(new URL("src/docs/unused.ts", import.meta.url));
 
 export default defineConfig({
@@ -24,9 +24,9 @@ export default defineConfig({
     outDir: "dist",
     target: "es2022",
     sourcemap: true,
-    manifest: true, // the import graph, for the test of the page's size
-    // The server's content security policy allows only files of the same origin: nothing is inlined
-    // into the page.
+    manifest: true, // the import graph, for the test of the page size
+    // The server's content security policy allows only files of the same origin, so the build
+    // inlines no files into the page.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     rollupOptions: {

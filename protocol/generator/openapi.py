@@ -9,7 +9,7 @@ from .schemas import Protocol, strip
 
 
 def point_to_components(node):
-    """References into the schema files become references to components."""
+    """Replaces references to the schema files by references to components."""
     if isinstance(node, dict):
         result = {}
         for key, value in node.items():
@@ -62,7 +62,7 @@ WITHOUT_ANSWER_ETAG = (
 
 
 def add_validators(document) -> None:
-    """Reads tell an ETag and know 304, and changes of what has a version know 428, without its being written at each of them."""
+    """Adds the ETag and 304 to reads, and 428 to changes of versioned entities, so openapi.yaml need not repeat them."""
     for path, item in document["paths"].items():
         for method, operation in item.items():
             if method == "parameters" or not path.startswith("/api/"):

@@ -1,4 +1,4 @@
-"""Reads the schema files into one bundle and gives every schema a type that the language writers understand."""
+"""Reads the schema files into one bundle and gives every schema a type that the language writers support."""
 
 import copy
 import json
@@ -11,7 +11,7 @@ MAX_INT32 = 2**31 - 1
 
 
 class SchemaError(Exception):
-    """A schema uses something that the writers do not know; the message names where."""
+    """A schema uses a feature that the writers do not support. The message contains the position."""
 
 
 @dataclass
@@ -53,13 +53,13 @@ class Definition:
 
     @property
     def op(self):
-        """The value of `op` of a message, None for other objects."""
+        """The value of `op` of a message, or None for other objects."""
         op = self.schema.get("properties", {}).get("op", {})
         return op.get("const")
 
 
 class Protocol:
-    """All definitions, by name; names are unique over the files."""
+    """All definitions, by name. Names are unique in all files."""
 
     def __init__(self, folder: pathlib.Path):
         self.definitions: dict[str, Definition] = {}
@@ -160,7 +160,7 @@ class Protocol:
         raise SchemaError(f"{where}: this oneOf is not known")
 
     def require_bounds(self, schema: dict, where: str):
-        """Every number, text and list is bounded, and every object is closed: STYLE of this protocol."""
+        """Checks that every number, text and list has bounds and that no object allows additional members."""
         needed = {
             "integer": ("minimum", "maximum"),
             "number": ("minimum|exclusiveMinimum", "maximum"),
@@ -186,7 +186,7 @@ class Protocol:
                 self.require_bounds(child, where + "[]")
 
     def dependencies(self, type_: Type) -> set[str]:
-        """Names of the definitions a type mentions."""
+        """Returns the names of the definitions to which a type refers."""
         if type_.kind == "ref":
             return {type_.name}
         if type_.kind == "union":
@@ -198,7 +198,7 @@ class Protocol:
         return found
 
     def in_order(self) -> list[Definition]:
-        """Definitions so that each comes after those it mentions."""
+        """Returns the definitions in an order in which each one follows the definitions to which it refers."""
         done: dict[str, Definition] = {}
 
         def visit(name):
@@ -213,7 +213,7 @@ class Protocol:
 
 
 def localize(schema):
-    """References to other files become references inside the bundle."""
+    """Replaces references to other files by references inside the bundle."""
     if isinstance(schema, dict):
         return {
             k: ("#" + v.split("#")[1] if k == "$ref" else localize(v)) for k, v in schema.items()
@@ -228,7 +228,7 @@ def camel(name: str) -> str:
 
 
 def strip(schema, drop):
-    """A copy without the keywords that `drop` names; names of members are not keywords."""
+    """Returns a copy without the keywords that `drop` selects. Names of members are not keywords."""
     if isinstance(schema, list):
         return [strip(v, drop) for v in schema]
     if not isinstance(schema, dict):
@@ -243,7 +243,7 @@ def strip(schema, drop):
 
 
 def as_draft_07(schema):
-    """The sources say `dependentRequired`, the word of JSON Schema 2020-12 and so of OpenAPI 3.1; validators of draft-07 know it as `dependencies`."""
+    """Replaces `dependentRequired` of JSON Schema 2020-12 (and OpenAPI 3.1) by `dependencies`, its name in draft-07."""
     if isinstance(schema, list):
         return [as_draft_07(v) for v in schema]
     if not isinstance(schema, dict):
@@ -253,7 +253,7 @@ def as_draft_07(schema):
 
 
 def bundle(protocol: Protocol) -> dict:
-    """One draft-07 document for test tools such as ajv: our own keywords and formats are left out."""
+    """Returns one draft-07 document for test tools such as ajv, without the keywords and formats of this project."""
     drop = lambda key: key.startswith("x-") or key == "format"
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
@@ -264,8 +264,8 @@ def bundle(protocol: Protocol) -> dict:
 
 
 def bundle_for_validation(protocol: Protocol) -> dict:
-    """What the server checks with. A choice by `op` becomes if/then, so that an error names the member that is wrong
-    instead of all choices; words for people are left out."""
+    """Returns the schemas with which the server validates messages. A choice by `op` becomes if/then, so an error names
+    the invalid member instead of all choices. Titles and descriptions are left out."""
     drop = lambda key: key.startswith("x-") or key in (
         "format",
         "title",

@@ -48,8 +48,8 @@ void draw(cairo_t* context, const Words& words) {
   }
   set_color(context, {0, 0, 0, 255});
   cairo_move_to(context, x, y);
-  // On a raster surface cairo rounds each letter to whole pixels, which is visible in small text;
-  // paths have exact positions.
+  // On a raster surface, cairo rounds the position of each letter to whole pixels, which is visible
+  // in small text. Paths have exact positions.
   if (cairo_surface_get_type(cairo_get_target(context)) == CAIRO_SURFACE_TYPE_IMAGE) {
     pango_cairo_layout_path(context, layout.get());
     cairo_fill(context);

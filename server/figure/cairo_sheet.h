@@ -6,8 +6,8 @@
 
 namespace strata::figure {
 
-// Draws everything except the drawing. A unit of the context is a millimeter, its origin the
-// sheet's top left.
+// Draws the whole sheet except the drawing. The unit of the context must be a millimeter, and its
+// origin the top left of the sheet.
 void draw_groups(cairo_t* context, const Sheet& sheet);
 
 }  // namespace strata::figure

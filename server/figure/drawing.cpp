@@ -12,23 +12,24 @@
 namespace strata::figure {
 namespace {
 
-constexpr int kSymbolReach_px =
-    8;  // of the camera's window: at least the reach of lines and points from their positions
+// The largest distance of a symbol's pixels from its position, in pixels of the camera's window.
+constexpr int kSymbolReach_px = 8;
 
-// Returns the axes of the front view, as in the web client.
+// Returns the axes of the front view, which are the same in the web client.
 Plane front_of(std::string_view up) {
   const UpFrame frame = up_frame(up);
   return {frame.right, frame.up, frame.into};
 }
 
-// Returns a camera of this many pixels over a window in millimeters from the drawing's top left.
+// Returns a camera of width × height pixels over a part of the drawing. `corner_mm` and `size_mm`
+// are in millimeters, from the drawing's top left.
 Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm,
                    int width, int height) {
   const Plane& plane = drawing.plane;
   const double unit = drawing.units_per_mm();
   const glm::dvec2 drawing_mm =
       glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi);
-  // relative to the drawing's center
+  // Relative to the drawing's center.
   const double left = (corner_mm.x - drawing_mm.x / 2) * unit,
                top = (drawing_mm.y / 2 - corner_mm.y) * unit;
   const glm::dvec3 eye = plane.in_world({drawing.center, drawing.near});
@@ -64,7 +65,8 @@ Plane plane_square_to(const glm::dvec3& normal, std::string_view up) {
   const Plane front = front_of(up);
   const glm::dvec3 into = -glm::normalize(normal);
   const double along = glm::dot(into, front.up);
-  // A horizontal surface has no up direction.
+  // A horizontal surface has no direction for up, so the drawing is a plan or its counterpart from
+  // below.
   constexpr double kLying = 0.999;
   const glm::dvec3 preferred_up = std::abs(along) < kLying ? front.up
                                   : along < 0              ? front.into
@@ -108,7 +110,8 @@ double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double 
 
 std::vector<Part> parts_of(const Drawing& drawing, int side) {
   const int inches = std::max(1, side / drawing.dpi), step = inches * drawing.dpi;
-  // Whole pixels of both the drawing and the camera, so that all parts have the same ones.
+  // The margin has whole pixels of both the drawing and the camera, so the pixels of all parts
+  // match.
   const int common = std::gcd(drawing.dpi, kCameraDpi);
   const int unit_px = drawing.dpi / common * 2, unit_camera = kCameraDpi / common * 2;
   const int units = (kSymbolReach_px + unit_camera - 1) / unit_camera;

@@ -7,8 +7,8 @@
 namespace strata::figure {
 namespace {
 
-// Removes characters that XML does not allow and cairo refuses: control characters, and the last
-// two code points of the first plane.
+// Removes characters that XML and cairo do not allow: control characters, and the last two code
+// points of the first plane.
 std::string printable(std::string text) {
   std::erase_if(
       text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; });

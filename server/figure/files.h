@@ -14,12 +14,12 @@ enum class Format { png, tiff, svg, pdf };
 std::string_view media_type(Format format);
 std::string_view extension(Format format);  // ".pdf"
 
-// Writes a sheet with its drawing, whose pixels are `dpi` per inch, as a new file. In SVG and PDF
-// the drawing is a JPEG of high quality, and everything else is shapes and text; in PNG and TIFF
-// (deflate) everything is pixels, with their number per inch in the file. cancelled: cancelled;
-// storage_full: the file cannot be written. The file's metadata contain `title` and `author`.
-// Characters that files cannot hold (control characters, U+FFFE, U+FFFF) are removed from all
-// texts.
+// Writes a sheet and its drawing, which has `dpi` pixels per inch, to a new file. SVG and PDF
+// contain the drawing as a JPEG of high quality, and all other items as shapes and text. PNG and
+// TIFF (deflate) contain only pixels, and the number of pixels per inch. The metadata of the file
+// contains `title` and `author`. Characters that files cannot contain (control characters, U+FFFE,
+// U+FFFF) are removed from all texts. Errors: `cancelled`, and `storage_full` if the file cannot be
+// written.
 struct Document {
   std::string title, author;
 };

@@ -11,9 +11,10 @@ namespace strata::figure {
 namespace {
 
 constexpr double kMargin = 10, kGap = 4;
-constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // heights of letters
-constexpr double kLine = 1.45;                             // relative to the letters
-constexpr double kFrame = 0.2, kThin = 0.12;               // widths of strokes
+constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // letter heights
+// Line height, relative to the letter height.
+constexpr double kLine = 1.45;
+constexpr double kFrame = 0.2, kThin = 0.12;  // line widths
 constexpr int kMaxTitleLines = 2, kMaxCaptionLines = 8, kMaxCreditLines = 3;
 constexpr double kScaleWidth = 80, kScaleHeight = 16;
 constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2,
@@ -28,7 +29,7 @@ Path rectangle(const glm::dvec2& corner, const glm::dvec2& size) {
   return {{corner, corner + glm::dvec2(size.x, 0), corner + size, corner + glm::dvec2(0, size.y)}};
 }
 
-// Returns the part of a line within a box; nothing if the line misses it.
+// Returns the part of a line within a box, or nothing if the line misses the box.
 std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& through,
                                                          const glm::dvec2& along, const Box& box) {
   double from = -1e9, to = 1e9;
@@ -45,7 +46,7 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& throu
   return std::pair(through + from * along, through + to * along);
 }
 
-// Patterns as in shaders/shared/shade.h; their pixels are hundredths of an inch here.
+// The patterns of shaders/shared/shade.h. A pixel is a hundredth of an inch here.
 constexpr double kPatternPixel = kInch_mm / 100;
 constexpr double kSpacing = 7 * kPatternPixel, kHatchStroke = 0.4 * kSpacing,
                  kDotRadius = 0.32 * kSpacing;
@@ -66,7 +67,7 @@ void add_filled(std::vector<Item>& items, const glm::dvec2& corner, const glm::d
   items.push_back(std::move(path));
 }
 
-// Opaque, as in the page's legend and the drawing, so that the paper does not show through.
+// Draws opaque colors, as in the page's legend and in the drawing.
 void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& entry) {
   const Rgba ink{entry.color[0], entry.color[1], entry.color[2], 255};
   Path frame = rectangle(box.corner, box.size);
@@ -76,7 +77,7 @@ void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& ent
   if (has_lines && !entry.bare) add_filled(items, box.corner, box.size, on_paper(ink, kGround));
   const glm::dvec2 middle = box.corner + box.size / 2.0;
   const glm::dvec2 along = direction(entry.angle), across(-along.y, along.x);
-  // so that the corners of the lines are in the box
+  // Keeps the corners of the lines inside the box.
   const Box within{box.corner + kHatchStroke / 2, box.size - kHatchStroke};
   if (entry.pattern == Pattern::hatch)
     for (int i = -8; i <= 8; ++i)
@@ -123,7 +124,7 @@ std::string first_line(const std::string& text, bool bold, double width) {
   return lines.empty() ? std::string() : lines[0];
 }
 
-using List = std::vector<Row>;  // of one layer, its title first
+using List = std::vector<Row>;  // the rows of one layer, title first
 
 std::vector<List> lists_of(const std::vector<Legend>& legends, double width) {
   std::vector<List> lists;
@@ -144,8 +145,9 @@ struct PlacedRow {
   double y;
 };
 
-// Places lists column by column. A list that does not fit below others begins a new column; each
-// part of a broken list (`may_break`) has its title. Nothing: the lists do not fit.
+// Places lists column by column. A list that does not fit below the previous ones begins a new
+// column. If `may_break` is true, lists may be split, and each part repeats the title. Returns
+// nothing if the lists do not fit.
 std::optional<std::vector<PlacedRow>> place_lists(const std::vector<List>& lists, int columns,
                                                   double height, bool may_break,
                                                   const std::string& continued) {
@@ -183,7 +185,7 @@ std::optional<std::vector<PlacedRow>> place_lists(const std::vector<List>& lists
   return placed;
 }
 
-// Places as many rows as fit, and a count of the others.
+// Places all rows that fit, and a row with the number of omitted rows.
 std::vector<PlacedRow> place_most(const std::vector<List>& lists, int columns, double height,
                                   const std::string& continued) {
   std::size_t all = 0;
@@ -217,8 +219,8 @@ struct PlacedLegend {
   std::vector<PlacedRow> rows;
 };
 
-// Places the legend in the least height that keeps its lists whole; if that exceeds `whole`, breaks
-// them so that the columns have similar heights.
+// Places the legend with the smallest height at which no list is split. If that height exceeds
+// `whole`, splits lists, which makes the columns similarly high.
 PlacedLegend place_legend(const std::vector<List>& lists, int columns, double whole, double most,
                           const std::string& continued) {
   for (const bool may_break : {false, true})
@@ -245,7 +247,7 @@ void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, dou
                    step = length / static_cast<double>(row.legend->ramp.size());
       for (std::size_t i = 0; i < row.legend->ramp.size(); ++i) {
         const Rgba& color = row.legend->ramp[i];
-        // slightly wider, so that no gap is visible between them
+        // Slightly wider bars leave no visible gaps.
         const double wide = i + 1 < row.legend->ramp.size() ? step * 1.2 : step;
         Path bar =
             rectangle({at.x + static_cast<double>(i) * step, at.y + 0.5}, {wide, kSwatchHeight});
@@ -323,7 +325,7 @@ glm::dvec2 paper_mm(Paper paper, bool landscape) {
 }
 
 std::string scale_text(double scale) {
-  // Groups the digits of whole numbers by three: short_number has only six digits.
+  // Groups the digits of large whole numbers by three. short_number has only six digits.
   const auto number = [](double value) {
     if (value < 10'000 || value != std::floor(value)) return short_number(value);
     std::string digits = std::to_string(static_cast<std::int64_t>(value));
@@ -335,7 +337,8 @@ std::string scale_text(double scale) {
 }
 
 ScaleBar scale_bar(double scale, double widest_mm) {
-  // Millimeters in the world; the longest of 1, 2 and 5 times a power of ten that fits.
+  // The bar is the longest of 1, 2 and 5 times a power of ten that fits, in millimeters in the
+  // world.
   const double most = widest_mm * scale;
   const double decade = std::pow(10, std::floor(std::log10(most)));
   const int digit = most >= 5 * decade ? 5 : most >= 2 * decade ? 2 : 1;
@@ -363,7 +366,7 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
   const double strip_top = paper.y - kMargin - strip;
 
   Box area{{kMargin, kMargin}, {width, strip_top - kGap - kMargin}};
-  const bool aside = paper.x > paper.y;  // the place of the legend
+  const bool aside = paper.x > paper.y;  // the legend is at the right of the drawing
   const int columns = aside ? 1 : std::max(1, static_cast<int>(width / kLegendColumn));
   const auto lists = lists_of(legends, aside ? kLegendColumn - 2 : width / columns - 4);
   Group legend{"legend", {}};
@@ -381,7 +384,7 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
         placed, {{kMargin, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
   }
 
-  // On whole pixels, so that a drawing has its scale in every kind of file.
+  // The drawing starts and ends at whole pixels, so it has the exact scale in all file formats.
   const auto in_pixels = [&](double mm) { return mm / kInch_mm * dpi; };
   const auto in_mm = [&](double pixels) { return pixels * kInch_mm / dpi; };
   width_ = std::max(1, static_cast<int>(in_pixels(area.size.x)));
@@ -411,7 +414,7 @@ Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,
                                 label.text, kLabel_mm, false, Anchor::middle, true});
   sheet.groups.insert(sheet.groups.begin(), std::move(names));
   const glm::dvec2 end = scale_box_.corner + scale_box_.size;
-  constexpr double kArrowRoom = 18, kBarOverhang = 6;  // of the last number
+  constexpr double kArrowRoom = 18, kBarOverhang = 6;  // overhang of the last number
   const double widest = kScaleWidth - kArrowRoom - 2 * kBarOverhang;
   sheet.groups.push_back(
       bar_group(scale_bar(scale, widest), scale, {end.x - kBarOverhang, end.y - 1}));

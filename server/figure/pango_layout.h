@@ -12,7 +12,7 @@ struct Unref {
 };
 using Layout = std::unique_ptr<PangoLayout, Unref>;
 
-// Lays out one text in the sheet's typeface; a unit of the context is a millimeter.
+// Lays out one text in the typeface of the sheet. The unit of the context must be a millimeter.
 Layout make_layout(cairo_t* context, const std::string& text, double size_mm, bool bold);
 
 }  // namespace strata::figure

@@ -10,30 +10,30 @@
 
 namespace strata::figure {
 
-// Everything on a sheet of paper except the drawing, as shapes and text; each kind of file draws
-// the same. Millimeters from the sheet's top left, y down.
+// The content of a sheet except the drawing, as shapes and text. It is the same in all file
+// formats. Coordinates are millimeters from the sheet's top left, y down.
 
 struct Path {
   std::vector<glm::dvec2> points;
   bool closed = true;
   std::optional<Rgba> fill{};
-  double stroke_mm = 0;  // 0: no stroke; black
+  double stroke_mm = 0;  // width of the black outline; 0: no outline
 };
 
 enum class Anchor { start, middle, end };
 
 struct Words {
-  glm::dvec2 at{0};  // on the baseline
-  std::string text;  // one line
+  glm::dvec2 at{0};  // a point on the baseline
+  std::string text;  // a single line
   double size_mm = 3;
   bool bold = false;
   Anchor anchor = Anchor::start;
-  bool halo = false;  // white border, over a drawing
+  bool halo = false;  // white border for text over a drawing
 };
 
 using Item = std::variant<Path, Words>;
 struct Group {
-  std::string id;  // "legend", for people who edit the file
+  std::string id;  // "legend", for users who edit the file
   std::vector<Item> items;
 };
 
@@ -44,7 +44,7 @@ struct Box {
 struct Sheet {
   glm::dvec2 size{0};
   Box drawing;
-  std::vector<Group> groups;  // over the drawing, in this order
+  std::vector<Group> groups;  // drawn over the drawing, in this order
 };
 
 }  // namespace strata::figure

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kBandRows = 256;
 
-// cairo's pixels are 32 bits in the machine's order: 0x00rrggbb.
+// Copies rows of the drawing to a band. A cairo pixel is a 32-bit word of the machine: 0x00rrggbb.
 void put_drawing(std::uint8_t* band, int stride, int first_row, int rows, const Picture& drawing,
                  int left, int top, int width) {
   for (int row = 0; row < rows; ++row) {

@@ -15,8 +15,8 @@ struct SheetPixels {
 };
 SheetPixels pixels_of(const Sheet& sheet, int dpi);
 
-// Renders the whole sheet as pixels, some rows at a time: `take` receives each row in turn as RGB8,
-// and returns false to stop. False: stopped or canceled.
+// Renders the whole sheet as pixels, in bands of rows. Calls `take` with each row as RGB8, from top
+// to bottom. `take` returns false to stop. Returns false if `take` stopped or the job was canceled.
 bool sheet_rows(const Sheet& sheet, const Picture& drawing, int dpi, Progress& progress,
                 const std::function<bool(std::span<const std::uint8_t> rgb)>& take);
 

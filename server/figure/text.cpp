@@ -6,10 +6,11 @@
 namespace strata::figure {
 namespace {
 
-// Pango rounds to its units, 1024 per point: large letters reduce the error.
+// The factor of letter heights for measuring. Pango rounds to its units, 1024 per point, so large
+// letters reduce the error.
 constexpr double kMeasured = 100;
 
-// Only for measuring.
+// Makes a context that is used for measuring only.
 CairoContext measuring_context() {
   const CairoSurface surface(cairo_recording_surface_create(CAIRO_CONTENT_COLOR, nullptr));
   return CairoContext(cairo_create(surface.get()));
@@ -25,13 +26,13 @@ Layout make_layout(cairo_t* context, const std::string& text, double size_mm, bo
   pango_font_description_set_weight(font.get(), bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
   pango_font_description_set_absolute_size(font.get(), size_mm * PANGO_SCALE);
   pango_layout_set_font_description(layout.get(), font.get());
-  // Without hinting, which is for pixels.
+  // Disables hinting, which is for pixels.
   std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> options(
       cairo_font_options_create(), cairo_font_options_destroy);
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
   pango_cairo_context_set_font_options(pango_layout_get_context(layout.get()), options.get());
-  // Does not round a letter's position to a whole unit, which is a millimeter here.
+  // Disables the rounding of letter positions to whole units, which are millimeters here.
   pango_context_set_round_glyph_positions(pango_layout_get_context(layout.get()), FALSE);
   pango_layout_context_changed(layout.get());
   pango_layout_set_text(layout.get(), text.data(), static_cast<int>(text.size()));

@@ -5,14 +5,14 @@
 
 namespace strata::figure {
 
-// Text in the sheet's typeface, by pango: any script, with the system's fonts for missing letters.
-// Thread-safe.
+// Text in the typeface of the sheet, laid out by Pango. Supports any script, with fonts of the
+// system for missing letters. Thread-safe.
 
 inline constexpr const char* kTypeface = "DejaVu Sans";
 
 double width_mm(const std::string& text, double size_mm, bool bold);
-// Breaks a text into lines of at most this width; cuts it after `most_lines`, and ends the last one
-// with "…".
+// Splits a text into lines of at most `width_mm`. Cuts it after `most_lines` lines and then ends
+// the last line with "…".
 std::vector<std::string> wrapped(const std::string& text, double size_mm, bool bold,
                                  double width_mm, int most_lines);
 

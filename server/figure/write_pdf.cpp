@@ -1,4 +1,4 @@
-// Writes sheets as PDF with cairo: text stays text, shapes stay shapes, and the drawing is a JPEG.
+// Writes sheets as PDF with cairo. Text and shapes are vectors, and the drawing is a JPEG.
 #include <cairo-pdf.h>
 
 #include "figure/cairo_owners.h"
@@ -27,7 +27,8 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
   {
     const CairoContext context(cairo_create(page.get()));
     cairo_scale(context.get(), kPoints_per_mm, kPoints_per_mm);
-    // cairo writes the JPEG instead of these pixels, and uses only their size. It modifies neither.
+    // cairo writes the JPEG instead of these pixels and uses only their size. It modifies neither
+    // of them.
     const CairoSurface image(cairo_image_surface_create_for_data(
         const_cast<std::uint8_t*>(drawing.rgba.data()), CAIRO_FORMAT_RGB24, drawing.width,
         drawing.height, 4 * drawing.width));
@@ -42,7 +43,7 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
     cairo_restore(context.get());
     draw_groups(context.get(), sheet);
     cairo_show_page(context.get());
-    cairo_surface_finish(page.get());  // while the JPEG exists
+    cairo_surface_finish(page.get());  // must run while the JPEG exists
     if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return unwritable();
   }
   if (cairo_surface_status(page.get()) != CAIRO_STATUS_SUCCESS) return unwritable();

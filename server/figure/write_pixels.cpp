@@ -46,7 +46,7 @@ Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi,
   const auto per_metre = static_cast<png_uint_32>(std::lround(dpi / 0.0254));
   bool good = guarded(writer.png, [&] {
     png_init_io(writer.png, file.get());
-    // the strongest level takes four times as long to save 10 %
+    // The strongest level saves 10 % but takes four times as long.
     png_set_compression_level(writer.png, 4);
     png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width),
                  static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
@@ -92,7 +92,7 @@ Result<void> write_tiff(const Sheet& sheet, const Picture& drawing, int dpi,
   std::uint32_t row = 0;
   std::vector<std::uint8_t> line;
   bool good = sheet_rows(sheet, drawing, dpi, progress, [&](std::span<const std::uint8_t> rgb) {
-    line.assign(rgb.begin(), rgb.end());  // the predictor works in place
+    line.assign(rgb.begin(), rgb.end());  // a copy, because the predictor changes the line
     return TIFFWriteScanline(tiff.get(), line.data(), row++) == 1;
   });
   good = good && TIFFFlush(tiff.get()) == 1;

@@ -4,8 +4,8 @@
 
 namespace strata::figure {
 
-// One function per kind of file, called by write_figure, which removes characters that files cannot
-// hold from all texts.
+// The writers of the file formats. write_figure calls them after it has removed characters that
+// files cannot contain from all texts.
 Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi,
                        const Document& document, const std::filesystem::path& path,
                        Progress& progress);
@@ -17,8 +17,8 @@ Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Documen
 Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Document& document,
                        const std::filesystem::path& path, Progress& progress);
 
-// Returns the JPEG of the drawing for SVG and PDF.
+// Returns the drawing as a JPEG, for SVG and PDF.
 std::vector<std::uint8_t> drawing_jpeg(const Picture& drawing);
-tl::unexpected<Error> unwritable();  // storage_full
+tl::unexpected<Error> unwritable();  // the Error `storage_full`
 
 }  // namespace strata::figure

@@ -1,5 +1,5 @@
 """Fixtures of all end-to-end tests. The cases of a file are one sequence on one server, in their
-order; the first failure ends it."""
+order. The first failure ends the sequence."""
 import types
 
 import pytest
@@ -8,14 +8,14 @@ from support.strata_server import StrataServer
 
 @pytest.fixture(scope="module")
 def server():
-    """A server for all cases of a file, which override this to add their initial data."""
+    """A server for all cases of a file. Files override this fixture to add initial data."""
     with StrataServer() as started:
         yield started
 
 
 @pytest.fixture(scope="module")
 def story():
-    """Values that a case passes to later cases of its file."""
+    """Values that a case stores for later cases of its file."""
     return types.SimpleNamespace()
 
 

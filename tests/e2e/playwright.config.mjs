@@ -1,5 +1,5 @@
 // Configuration of @playwright/test for the cases in browser/ that use support/js/cases.mjs. CTest
-// names one file, and in STRATA_TEST_REPORT the folder of its report, with traces and pictures of
+// selects one file. STRATA_TEST_REPORT is the folder of its report, with traces and screenshots of
 // failures.
 import { kLong_ms } from "./support/js/strata-server.mjs";
 
@@ -9,7 +9,7 @@ export default {
   testDir: "browser",
   testMatch: "*_test.mjs",
   workers: 1,
-  maxFailures: 1, // cases depend on each other: after a failure the rest has no meaning
+  maxFailures: 1, // cases depend on each other, so after a failure the rest has no meaning
   timeout: 5 * kLong_ms,
   reporter: report ? [["list"], ["junit", { outputFile: `${report}.xml` }]] : "list",
   outputDir: report ? `${report}_failures` : undefined,

@@ -1,11 +1,11 @@
-// An Api whose calls are answered by functions: a test's fake server, without HTTP.
+// An Api for tests whose calls are functions: a fake server without HTTP.
 
 import type { Api } from "../src/net/api";
 import type { Call, Options } from "../src/net/calls";
 
 type Answers = { [C in Call]?: (options: Options<C>, progress?: unknown) => unknown };
 
-/** A call without a function fails the test. */
+/** A call without a function makes the test fail. */
 export function fakeApi(answers: Answers): Api {
   const ask = async (call: Call, options: never = {} as never): Promise<unknown> => {
     const answer = answers[call];

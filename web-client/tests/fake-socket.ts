@@ -1,4 +1,4 @@
-// A socket without a network: tests read sent messages and inject received ones.
+// A socket without a network. Tests read its sent messages and inject received ones.
 
 import type { SocketLike } from "../src/net/socket";
 import type { ClientMessage, ServerMessage, Welcome } from "../src/core/protocol.gen";
@@ -25,7 +25,7 @@ export class FakeSocket implements SocketLike {
     this.closed = true;
   }
 
-  /** Completes the handshake. */
+  /** Simulates the completed handshake. */
   open(): void {
     this.onopen?.(undefined as never);
   }
@@ -35,7 +35,7 @@ export class FakeSocket implements SocketLike {
   receiveRaw(data: unknown): void {
     this.onmessage?.({ data });
   }
-  /** Loses the network. */
+  /** Simulates the loss of the network. */
   lose(): void {
     this.onclose?.({ code: 1006, reason: "" });
   }

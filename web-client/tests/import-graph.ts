@@ -1,4 +1,4 @@
-// The imports between files of the page, including types, and checks of them.
+// Finds the imports between the page's files, including types, and checks them.
 
 import { readdirSync, readFileSync } from "node:fs";
 import { join, posix } from "node:path";
@@ -6,13 +6,15 @@ import ts from "typescript";
 
 export interface Import {
   to: string;
-  /** Absent at run time. */
+  /** Whether the import exists only for types, and not at run time. */
   typeOnly: boolean;
 }
-/** Files by their path within `src`, with `/` between its parts. */
+/** The imports of each file. The key is the file's path in `src`, separated by `/`. */
 export type ImportGraph = ReadonlyMap<string, readonly Import[]>;
 
-/** Lower folders first: a file imports from its own folder and from those before it. */
+/**
+ * Lower folders are first. A file imports only from its own folder and from the folders before it.
+ */
 const kFolders = [
   "core",
   "texts",
@@ -25,9 +27,9 @@ const kFolders = [
   "features",
   "shell",
 ];
-/** The folders of the kiosk's page, which does not load the workbench's texts. */
+/** The folders of the kiosk page, which does not load the texts of the workbench page. */
 const kOfKiosk = ["core", "math", "net", "domain", "ui", "tools", "session", "kiosk"];
-/** Decides whether the workbench or the kiosk is loaded. */
+/** The file that loads either the workbench or the kiosk. */
 const kEntry = "shell/main.ts";
 /** The interface that names the parts of all features. */
 const kSession = "session/model-session.ts";
@@ -45,7 +47,7 @@ export function readImports(root: string): ImportGraph {
   );
 }
 
-/** Import targets, relative to the file's folder. */
+/** Returns the targets of imports. In the code they are relative to the file's folder. */
 export function importsOf(file: string, code: string): Import[] {
   const found: Import[] = [];
   const add = (specifier: ts.Node | undefined, typeOnly: boolean): void => {
@@ -87,7 +89,8 @@ const featureOf = (file: string): string => file.split("/")[1]!;
 
 function mayImport(from: string, { to, typeOnly }: Import): boolean {
   const [own, other] = [folderOf(from), folderOf(to)];
-  if (own === "docs" || other === "docs") return own === other; // the page of the contract
+  // this folder contains the page of the contract
+  if (own === "docs" || other === "docs") return own === other;
   if (own === "kiosk") return kOfKiosk.includes(other);
   if (other === "kiosk") return from === kEntry;
   if (own === "features" && other === "features") return featureOf(from) === featureOf(to);
@@ -95,13 +98,13 @@ function mayImport(from: string, { to, typeOnly }: Import): boolean {
   return kFolders.includes(own) && kFolders.indexOf(other) <= kFolders.indexOf(own);
 }
 
-/** Imports from a lower folder to a higher one, or between features. */
+/** Returns imports from a lower folder to a higher one, and between features. */
 export const wrongImports = (graph: ImportGraph): string[] =>
   [...graph].flatMap(([from, imports]) =>
     imports.filter((each) => !mayImport(from, each)).map(({ to }) => `${from} imports ${to}`),
   );
 
-/** Circular imports: one circle for each file that is reached again. */
+/** Returns circular imports, with one circle for each file that is reached twice. */
 export function circles(graph: ImportGraph): string[] {
   const found: string[] = [];
   const done = new Set<string>();

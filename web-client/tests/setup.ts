@@ -1,4 +1,4 @@
-// Node 18 has the Web Crypto API, but not as a global.
+// Node 18 has the Web Crypto API, but not as a global variable.
 import { webcrypto } from "node:crypto";
 import { loadLaterTexts, loadTexts } from "../src/texts";
 

@@ -29,7 +29,7 @@ def server(server):
 
 
 def test_each_start_prints_a_link_until_the_owner_has_a_password(fresh_server):
-    """Only the newest link is valid, until the owner has a password."""
+    """Until the owner has a password, only the newest link is valid."""
     server = fresh_server
     earlier = server.link
     assert server.stop() == 0
@@ -68,7 +68,7 @@ def test_each_start_prints_a_link_until_the_owner_has_a_password(fresh_server):
 
 
 def test_invitations(server, story):
-    """A link is valid once, for a week, for one person, and is not a token."""
+    """A link works once, for one person, within a week. It is not a token."""
     made = server.ok("POST", "/users", {"user": "Ada", "full_name": "Ada L.", "role": "annotator"})
     invitation, secret = made.json(), secret_of(made.json())
     assert (
@@ -123,7 +123,7 @@ def test_invitations(server, story):
     for path in ("show", "accept"):
         body = {"invitation": secret, **({"password": PASSWORD} if path == "accept" else {})}
         assert Browser(server).request("POST", "/invitations/" + path, body).status == 401, "used"
-    # A new link revokes the earlier one; the password stays valid until another is chosen.
+    # A new link revokes the earlier one. The password stays valid until the user sets another one.
     first = server.ok("POST", "/users/ada/invite").json()
     second = server.ok("POST", "/users/Ada/invite").json()
     assert (
@@ -143,7 +143,7 @@ def test_invitations(server, story):
 
 
 def test_roles(server, story):
-    """The rights of each role; a change takes effect immediately, also for open connections."""
+    """Each role has its rights. A change takes effect immediately, also for open connections."""
     ada = story.ada
     vera = join(server, server.ok("POST", "/users", {"user": "vera"}).json())
     assert vera.ok("GET", "/me").json()["role"] == "viewer"
@@ -175,7 +175,8 @@ def test_roles(server, story):
             assert status == (good if what in may[role] else 403), (role, what, status)
     history = server.ok("GET", L + "/edits").json()["edits"]
     assert {edit["user"] for edit in history} == {"Ada", "carl", "anne"}, history
-    # Administrators cannot change themselves or the owner, nor give a higher role than their own.
+    # Administrators can change neither themselves nor the owner, and cannot give a higher role than
+    # their own.
     for path in ("/users/anne", "/users/owner"):
         for method, body in (
             ("PATCH", {"role": "viewer"}),
@@ -196,7 +197,7 @@ def test_roles(server, story):
     server.ok("DELETE", "/users/amos")
     assert anne.request("PATCH", "/users/nobody", {"role": "viewer"}).status == 404
     assert anne.request("PATCH", "/users/ada", {}).status == 422
-    # A cookie is valid only for this server's own page.
+    # A cookie is valid only for requests from this server's own page.
     for origin in ("https://elsewhere.example", "null"):
         assert anne.request("PATCH", "/users/ada", {"role": "viewer"}, Origin=origin).status == 403
     live = LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url)
@@ -222,7 +223,7 @@ def test_roles(server, story):
 
 
 def test_who_is_shut_out_meanwhile_does_nothing(server):
-    """A person who loses access during a request cannot complete it."""
+    """A user who loses access during a request cannot complete it."""
     boss = join(
         server, server.ok("POST", "/users", {"user": "boss", "role": "administrator"}).json()
     )
@@ -280,7 +281,8 @@ def test_sessions(server, story):
 
 
 def test_tokens(server, story):
-    """A script's token has the rights that both it and its person have, and opens no session."""
+    """A script's token has only the rights that both the token and its user have. It opens no
+    session."""
     ada = story.ada
     anne = story.anne
     made = ada.ok("POST", "/me/tokens", {"name": "nightly", "role": "viewer", "days": 3}).json()
@@ -320,7 +322,7 @@ def test_tokens(server, story):
         "last_used" in each for each in listed["tokens"]
     ), listed
     assert secret not in str(listed)
-    # A token for one project, with curator as the highest role of any maker.
+    # A token for one project can have the role curator at most, for every user.
     server.ok("POST", "/projects", {"name": "Tower"})
     refused = ada.request("POST", "/me/tokens", {"name": "t", "project": "nowhere"})
     assert refused.status == 404 and refused.json()["field"] == "project", refused
@@ -362,7 +364,7 @@ def test_tokens(server, story):
     assert [each["name"] for each in anne.ok("GET", "/me/tokens").json()["tokens"]] == [
         "of the first"
     ]
-    # the server caches it for some seconds
+    # the server caches the token for some seconds
     wait_for(
         lambda: server.get("/me", token=only).status == 401, "the token to be gone with its project"
     )
@@ -381,7 +383,8 @@ def test_tokens(server, story):
 
 
 def test_deletion(server, story):
-    """The history no longer names a deleted person, and nobody can take the name."""
+    """The history no longer contains the name of a deleted user. Other users cannot take that
+    name."""
     anne = story.anne
     before = server.ok("GET", L + "/edits").json()["edits"]
     mine = [edit["sequence"] for edit in before if edit["user"] == "Ada"]
@@ -401,7 +404,7 @@ def test_deletion(server, story):
 
 
 def test_commands(server):
-    """The same commands on the server's own machine, while the server runs."""
+    """The commands do the same on the server's own machine, while the server runs."""
 
     def strata(*words, entered=None, code=0):
         done = subprocess.run(
@@ -507,14 +510,15 @@ def test_commands(server):
 
 
 def test_guessing_is_slow(server, story):
-    """The server limits guesses for a name from all addresses together; open sessions stay open."""
+    """The server limits the guesses for a name from all addresses together. Open sessions stay
+    open."""
     vera = story.vera
     statuses = [Browser(server).sign_in("vera", f"guess number {i}").status for i in range(14)]
     assert set(statuses) == {401, 429} and statuses[0] == 401 and statuses[-1] == 429, statuses
     refused = Browser(server).sign_in("vera", PASSWORD)
     assert refused.status == 429 and refused.headers["Retry-After"], refused
     assert vera.request("GET", "/me").status == 200
-    # Other people can sign in during this time from another address.
+    # Other users can sign in from another address during this time.
     anne = Browser(server)
     assert (
         anne.request(
@@ -540,7 +544,7 @@ def test_the_log_is_clean(server):
 
 
 def test_reach(server):
-    """A server that other machines can reach needs a person who can give others access."""
+    """A server that other machines can reach needs a user who can give others access."""
     assert server.stop() == 0
 
     def serve():

@@ -1,5 +1,5 @@
 """The activity of a project over HTTP: every kind of line, its author, pages, visibility, and the
-lines of a deleted person."""
+lines of a deleted user."""
 import urllib.parse
 
 import pytest
@@ -40,7 +40,7 @@ def site(server):
 
 
 def test_whatever_people_do_has_its_line(site):
-    """Every action of people has its line, the newest first."""
+    """Every action of a user has a line. The newest is first."""
     site.server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
     site.ok(
         "carl",
@@ -81,7 +81,7 @@ def test_whatever_people_do_has_its_line(site):
     thread = site.ok(
         "ada", "POST", M + "/comments", {"text": "Is this a crack?", "position": [50, 50, 0]}
     ).json()
-    site.ok("vera", "GET", M + "/comments")  # reading makes no line
+    site.ok("vera", "GET", M + "/comments")  # reading adds no line
     site.ok("carl", "POST", f"/comments/{thread['id']}/replies", {"text": "Yes"})
     site.ok(
         "carl",
@@ -155,7 +155,7 @@ def test_whatever_people_do_has_its_line(site):
 
 
 def test_pages(site):
-    """Pages of any size add up to the whole list; invalid parameters are refused."""
+    """Pages of every size together form the whole list. Invalid parameters are refused."""
     whole = site.feed(limit=1000)
     assert "next" not in whole
     for limit in (1, 4):
@@ -193,7 +193,7 @@ def test_pages(site):
 
 
 def test_members(site):
-    """Only curators see roles; guests see only the activity of their projects."""
+    """Only curators see roles. Guests see only the activity of their projects."""
     gus = join(
         site.server, site.server.ok("POST", "/users", {"user": "gus", "role": "guest"}).json()
     )
@@ -213,7 +213,7 @@ def test_members(site):
 
 
 def test_deleted_people(site):
-    """The lines of a deleted person stay, under an anonymous name."""
+    """The lines of a deleted user remain, with an anonymous name."""
     before = site.feed("carl", limit=1000)["activity"]
     for name in ("ada", "gus"):
         site.server.ok("DELETE", f"/users/{name}")

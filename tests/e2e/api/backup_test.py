@@ -1,5 +1,6 @@
-"""Backup of a site during painting, and its restore on another server: the state of one moment is
-complete, and work continues. Damaged backups are refused."""
+"""Backup of a site during painting, and its restore on another server. The restored state is
+complete and belongs to one moment, and users can continue their work. Damaged backups are
+refused."""
 import json
 import os
 import shutil
@@ -56,7 +57,7 @@ def make_site(server):
 
 
 class Painters:
-    """Three people who paint until `stop` is set."""
+    """Three users who paint until `stop` is set."""
 
     def __init__(self, server, camera):
         self.acknowledged, self.changed, self.stopping, self.faults = (
@@ -98,7 +99,7 @@ class Painters:
                 with self.changed:
                     self.acknowledged.append(done["sequence"])
                     self.changed.notify_all()
-        except Exception as fault:  # `end` shows it
+        except Exception as fault:  # `end` reports it
             with self.changed:
                 self.faults.append(repr(fault))
                 self.changed.notify_all()
@@ -118,7 +119,7 @@ class Painters:
 
 
 def contents(server, sequence):
-    """Returns all readable content as of the sequence."""
+    """Returns all readable content at a sequence."""
     layers = {}
     for layer in ("moisture", "cracks"):
         history = server.ok("GET", f"{M}/layers/{layer}/edits?limit=1000").json()["edits"]
@@ -139,8 +140,8 @@ def contents(server, sequence):
 
 
 def check_goes_on(server, camera, newest):
-    """People sign in with their passwords and undo earlier edits; keys and numbers are not given
-    again."""
+    """Checks that users can sign in with their passwords and undo earlier edits, and that keys and
+    numbers are not reused."""
     signed = server.request(
         "POST",
         "/login",
@@ -222,7 +223,8 @@ def check_bad_backups(whole, data, folder):
 
 
 def check_killed_restore(whole, data):
-    """An interrupted restore leaves no data for the start of a server, and can be repeated."""
+    """An interrupted restore leaves no data that a server could start with. The restore can be
+    repeated."""
     child = subprocess.Popen(
         [os.environ["STRATA_BINARY"], "restore", whole, "--data", data],
         stdout=subprocess.DEVNULL,
@@ -254,7 +256,7 @@ def whole(folder):
 
 @pytest.fixture(scope="module")
 def second():
-    """A server with an empty folder that is not started yet."""
+    """A server with an empty folder that has not started yet."""
     second = StrataServer()
     yield second
     second.remove()
@@ -265,10 +267,11 @@ def test_a_backup_is_made_while_people_paint(server, whole, story):
     painters = Painters(server, story.camera)
     story.before = painters.wait_for(30)
     done = strata("backup", whole, "--data", server.data)
-    painters.wait_for(len(painters.acknowledged) + 10)  # painting was not blocked permanently
+    # the backup did not block painting permanently
+    painters.wait_for(len(painters.acknowledged) + 10)
     painters.end()
     assert done.returncode == 0 and "backed up 1 model, 2 layers" in done.stdout, done
-    assert os.stat(whole).st_mode & 0o077 == 0  # it contains password hashes
+    assert os.stat(whole).st_mode & 0o077 == 0  # the folder contains password hashes
     assert "whole: 1 model" in strata("restore", whole, "--check").stdout
 
 
@@ -278,7 +281,8 @@ def test_what_is_there_is_not_written_over(server, whole):
 
 
 def test_a_full_disk_is_no_backup(server, folder):
-    """Without room for the dump: refused, and no folder remains that looks like a backup."""
+    """If the disk has no space for the dump, the backup is refused, and no folder remains that
+    looks like a backup."""
     small = os.path.join(folder, "small")
     os.mkdir(small)
     if (
@@ -299,7 +303,7 @@ def test_a_full_disk_is_no_backup(server, folder):
 
 
 def test_another_database(server, whole):
-    """--database: into an empty database, with a password that no process list shows."""
+    """`--database` restores into an empty database, with a password that no process list shows."""
     socket_folder = os.path.join(server.data, "postgres")
     server.sql("CREATE DATABASE copy")
     copy = f"host='{socket_folder}' user=strata dbname=copy password='it\\'s a : secret'"

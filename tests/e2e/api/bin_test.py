@@ -1,5 +1,5 @@
-"""The trash: no operation returns deleted content; it is kept over kill -9, is restored with
-texels, history and values, and is erased after its time."""
+"""The trash: no operation returns deleted content. Deleted content survives kill -9, is restored
+with texels, history and values, and is erased after its time."""
 import pytest
 from support.cameras import camera_from
 from support.kiosk_site import make_kiosk
@@ -91,7 +91,7 @@ class Site:
         return self.ok(who, "GET", BIN).json()["entries"]
 
     def state(self):
-        """Returns the state of the layer: its members, history, texels, values and picture, and all
+        """Returns the state of the layer: its members, history, texels, values and a frame, and all
         references to it."""
         layer = self.ok("carl", "GET", M + "/layers/cracks").json()
         return {
@@ -110,7 +110,7 @@ class Site:
 
 
 def doors_of_layer(site):
-    """No operation returns a layer in the trash, not even for the owner."""
+    """No operation returns a layer in the trash, even for the owner."""
     server, layer = site.server, site.layer
     for ref in ("cracks", layer["id"]):
         at = f"{M}/layers/{ref}"
@@ -156,7 +156,8 @@ def site():
 
 
 def test_layers(site):
-    """A layer is deleted and restored unchanged, over kill -9; its name is free until then."""
+    """A layer is deleted and restored unchanged, also after kill -9. Its name is free until
+    then."""
     server = site.server
     before = site.state()
     with LiveClient(server, "sheet") as live:
@@ -194,7 +195,7 @@ def test_layers(site):
     for what, value in before.items():
         assert after[what] == value, (what, value, after[what])
     assert not site.listed()
-    # Its history continues, and another restart changes nothing.
+    # the history continues, and another restart changes nothing
     site.ok("carl", "PATCH", M + "/layers/cracks", {"locked": False})
     site.ok("ada", "POST", M + "/layers/cracks/undo")
     assert site.ok("carl", "GET", M + "/layers/cracks/texels.npy").body != before["texels"]
@@ -202,7 +203,7 @@ def test_layers(site):
     server.kill()
     server.start()
     assert site.ok("carl", "GET", M + "/layers/cracks/texels.npy").body == before["texels"]
-    # Another layer takes the short name in the meantime.
+    # another layer takes the slug while this layer is in the trash
     site.ok("carl", "DELETE", M + "/layers/cracks")
     assert (
         site.ok("carl", "POST", M + "/layers", {"name": "Cracks", "type": "u8"}).json()["slug"]
@@ -307,8 +308,8 @@ def test_models(site):
 
 
 def test_records(site):
-    """A record is restored with its key and values, by people who may delete it, once its values
-    are valid."""
+    """Users who may delete a record can restore it with its key and values, once its values are
+    valid."""
     table = site.ok("ada", "GET", "/tables/units").json()["id"]
     before = site.ok("ada", "GET", "/tables/units/records/1").json()
     site.ok("ada", "POST", M + "/layers/units/edits", {**FILL, "value": 1})
@@ -337,13 +338,14 @@ def test_records(site):
     after = site.ok("ada", "GET", "/tables/units/records/1").json()
     assert after["values"] == before["values"], after
     assert not site.listed("ada")
-    # a layer has texels of its key again
+    # the layer may contain texels with the record's key again
     site.ok("ada", "POST", M + "/layers/units/edits", {**FILL, "value": 1})
     assert site.ask("ada", "POST", f"{BIN}/{entry['id']}/restore").status == 404
 
 
 def test_roles(site):
-    """People who may not delete can neither see nor restore; invalid requests are refused."""
+    """Users who may not delete can neither see nor restore deleted content. Invalid requests are
+    refused."""
     site.ok("carl", "DELETE", M + "/layers/graves")
     entry = site.listed()[0]["id"]
     assert site.listed("ada") == [], "layers are for curators"
@@ -381,7 +383,8 @@ def test_roles(site):
 
 
 def test_expiry(site):
-    """The next start erases all expired content and nothing else; people can erase immediately."""
+    """The next start erases all expired content and nothing else. Users can erase content
+    immediately."""
     server = site.server
     for name in ("Old", "Young", "Gone"):
         site.ok("carl", "POST", M + "/layers", {"name": name, "type": "u8", "resolution": 2048})
@@ -412,7 +415,7 @@ def test_expiry(site):
     ] == 7, listed
     site.ok("carl", "POST", f"{BIN}/{by_name['Young']}/restore")
     assert site.ok("carl", "GET", M + "/layers/young/statistics").json()
-    # With 0 days nothing is kept.
+    # with 0 days, the trash keeps nothing
     assert server.stop() == 0
     server.options[-1] = "0"
     server.start()

@@ -1,5 +1,5 @@
-"""The commands: exit codes, the checks of `doctor`, which change nothing, and answers of other
-programs."""
+"""The commands: their exit codes, the checks of `doctor`, which change nothing, and responses of
+other programs."""
 import http.server
 import os
 import subprocess
@@ -54,13 +54,14 @@ def test_wrong_usage_ends_with_a_reason(folder):
     )
     assert done.returncode == 1 and done.stderr, done
     assert not os.path.exists(data)
-    os.chmod(folder, 0o755)  # PostgreSQL does not run as root, so its user must reach the folder
+    # PostgreSQL does not run as root, so its user needs access to the folder
+    os.chmod(folder, 0o755)
     done = strata("serve", "--listen", "0.0.0.0:0", STRATA_DATA=os.path.join(folder, "in-reach"))
     assert done.returncode == 1 and "strata user add" in done.stderr and not done.stdout, done
 
 
 def test_what_answers_an_import_is_no_strata_server(folder):
-    """Another program answers the import: the command prints a reason and exits with 1."""
+    """If another program responds to the import, the command prints a reason and exits with 1."""
     scan = os.path.join(folder, "grid.ply")
     with open(scan, "wb") as file:
         file.write(folded_grid())

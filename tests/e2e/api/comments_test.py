@@ -1,5 +1,5 @@
-"""Comments on a model over HTTP: rights to write, change and delete, places, repeats and races, and
-the comments of a deleted person."""
+"""Comments on a model over HTTP: the rights to write, change and delete, positions, repeats and
+races, and the comments of a deleted user."""
 import json
 import urllib.parse
 
@@ -8,7 +8,7 @@ from support.browsers import uncoloured
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 ALL = M + "/comments"
 
 
@@ -69,7 +69,7 @@ def site(server):
 
 
 def test_writing(site):
-    """A thread has a place on the surface and its subject; everybody can read it."""
+    """A thread has a position on the surface and a subject. Every user can read it."""
     made = site.ok(
         "Ada.L", "POST", ALL, {"text": "Is this\nthe crack? δ <b>&amp;", "position": [50, 40, 3]}
     )
@@ -124,7 +124,8 @@ def test_writing(site):
 
 
 def test_malformed(site):
-    """An invalid comment or place is refused with its field, and nothing is written."""
+    """A comment with invalid content or an invalid position is refused with its field, and nothing
+    is written."""
     before = site.ok("bob", "GET", ALL).json()["total"]
     here = [50, 50, 0]
     for body, field in (
@@ -200,14 +201,14 @@ def test_malformed(site):
         status=422,
         field="state",
     )
-    # The limit is ten thousand characters, independent of their bytes.
+    # The limit is ten thousand characters, regardless of their bytes.
     assert site.begin("bob", "😀" * 10000)["text"] == "😀" * 10000
     assert site.ok("bob", "GET", ALL).json()["total"] == before + 4
 
 
 def test_roles(site):
-    """Viewers read, annotators write and change their own comments, curators delete those of
-    others; everybody who may write can resolve."""
+    """Viewers read comments. Annotators write comments and change their own. Curators delete the
+    comments of others. Every user who may write can resolve a thread."""
     thread = site.begin("Ada.L")
     path = f"/comments/{thread['id']}"
     for method, where, body in (
@@ -245,7 +246,8 @@ def test_roles(site):
 
 
 def test_deleting(site):
-    """A deleted first comment with replies keeps its place; it is removed with the last reply."""
+    """A deleted first comment with replies remains as an empty comment. It is removed with the last
+    reply."""
     thread = site.begin("bob", "A slip of the pen")
     path = f"/comments/{thread['id']}"
     replies = [site.reply(who, thread) for who in ("Ada.L", "bob")]
@@ -268,7 +270,8 @@ def test_deleting(site):
 
 
 def test_repeats_and_races(site):
-    """A repeat writes nothing twice; a change based on an old version is refused."""
+    """A repeated request writes nothing twice. A change that is based on an old version is
+    refused."""
     key = {"Idempotency-Key": "9b2d0e7a-7c1a-4c3e-9a57-0e7d3c1d2f10"}
     before = site.ok("bob", "GET", ALL).json()["total"]
     body = {"text": "Once", "position": [10, 10, 0]}
@@ -305,7 +308,7 @@ def test_repeats_and_races(site):
 
 
 def test_lists(site):
-    """Lists by state and time, in pages."""
+    """Lists of comments by state and time, in pages."""
     for comment in site.ok("carl", "GET", ALL + "?limit=1000").json()["comments"]:
         site.request("carl", "DELETE", f"/comments/{comment['id']}")
     threads = [site.begin("bob", f"Number {n}", position=(10 * n + 5, 50, 0)) for n in range(5)]
@@ -332,7 +335,7 @@ def test_lists(site):
 
 
 def test_live(site):
-    """People on the model receive every change; people on another model do not."""
+    """Participants at the model receive every change. Participants at another model do not."""
     site.server.import_model(folded_grid(fold=0.001), "other.ply", name="Other", unit="mm")
     with LiveClient(site.server, "sheet", token=site.tokens["vera"]) as here, LiveClient(
         site.server, "other", token=site.tokens["vera"]
@@ -379,7 +382,7 @@ def test_live(site):
 
 
 def test_names(site):
-    """People who can be mentioned: those who may sign in and see the project."""
+    """A comment can mention the users who may sign in and see the project."""
     people = "/projects/default/people"
     told(site.request("vera", "GET", people), status=403)
     assert site.server.request("GET", people, token=False).status == 401
@@ -408,7 +411,7 @@ def test_names(site):
 
 
 def test_people_and_models(site):
-    """The name of a deleted person is removed, also from the texts of others; comments are deleted
+    """The name of a deleted user is removed, also from the texts of others. Comments are deleted
     with their model."""
     person = next(
         user for user in site.server.ok("GET", "/users").json()["users"] if user["user"] == "Ada.L"

@@ -7,7 +7,7 @@ import pytest
 from support.meshes import folded_grid
 from support.strata_server import wait_for
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 
 
 def dab(server, layer, value, x, y, radius):
@@ -173,7 +173,7 @@ def test_computing(server):
     assert value(server, "risk", 90, 10)["valid"] is False
     assert server.get(M + "/layers/risk/edits").json()["edits"][0]["op"] == "compute"
 
-    # After a change of a record or of texels the layer is stale until it is computed again.
+    # after a change to a record or to texels, the layer is stale until it is computed again
     server.ok("PATCH", "/tables/pieces/records/1", {"values": {"state": "firm"}})
     assert server.get(M + "/layers/risk").json()["stale"] is True
     assert value(server, "risk", 30, 30)["value"] == 7.5
@@ -189,7 +189,7 @@ def test_computing(server):
         and server.get(M + "/layers/risk").json()["stale"] is False
     )
 
-    # Conditions, types, the surface.
+    # conditions, types, and the surface
     mask = compute(server, "Mask", "risk > 0.5", type="u8")
     assert mask["inputs"] == ["risk"] and value(server, "mask", 30, 38) == {
         "valid": True,
@@ -210,7 +210,7 @@ def test_computing(server):
     assert done["state"] == "done" and len(done["layers"]) == 1, done
     near(server.get(M + "/layers/steep/statistics").json()["area_m2"], total, 0.001)
 
-    # Only the expression can write a computed layer.
+    # only the expression can change a computed layer
     for method, path, body in (
         ("POST", "edits", {"op": "fill", "value": 1, "mode": "where", "where": "true"}),
         ("POST", "undo", None),
@@ -218,7 +218,7 @@ def test_computing(server):
         answer = server.request(method, f"{M}/layers/risk/{path}", body)
         assert answer.status == 403 and answer.json()["title"] == "Layer is locked", answer
 
-    # Cycles, and expressions with unknown names.
+    # cycles, and expressions with unknown names
     for name, body in (
         ("risk", {"expression": "mask + 1"}),
         ("risk", {"expression": "risk + 1"}),
@@ -249,7 +249,7 @@ def test_computing(server):
 
 
 def test_they_are_computed_anew_by_themselves(server):
-    """An automatic layer, computed from another automatic layer."""
+    """An automatic layer can depend on another automatic layer."""
     for name in ("risk", "mask"):
         assert (
             server.ok("PATCH", f"{M}/layers/{name}", {"recompute": "automatic"}).json()["recompute"]
@@ -263,13 +263,13 @@ def test_they_are_computed_anew_by_themselves(server):
     server.ok("PATCH", "/tables/pieces/records/1", {"values": {"state": "loose"}})
     wait_for(lambda: value(server, "risk", 30, 30)["value"] == 7.5, "a record to reach the surface")
 
-    # Without its expression it is an ordinary layer.
+    # without its expression the layer is an ordinary layer
     plain = server.ok("PATCH", M + "/layers/mask", {"expression": ""}).json()
     assert "expression" not in plain and value(server, "mask", 30, 30)["value"] == 1
     dab(server, "mask", 7, 30, 30, 3)
     assert value(server, "mask", 30, 30)["value"] == 7
 
-    # The error names a deleted input.
+    # the error contains the name of the deleted input
     compute(server, "Twice", "mask * 2")
     server.ok("DELETE", M + "/layers/mask")
     answer = server.post(M + "/layers/twice/compute")
@@ -278,7 +278,7 @@ def test_they_are_computed_anew_by_themselves(server):
 
 
 def test_transfer(server):
-    """The values are transferred to another scan, also without their inputs."""
+    """The values are transferred to another scan, even without the inputs."""
     server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
     job = server.wait_for_job(
         server.ok(

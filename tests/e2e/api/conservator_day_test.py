@@ -1,9 +1,10 @@
-"""A conservator's day over HTTP, with only Python's own library, as an example for readers: two
-walls of a chapel, a list of terms, places with photos on both, strokes, queries, a computed risk,
-and quantities for the report. The test compares every figure with the painted areas.
+"""A conservator's working day over HTTP, with only Python's standard library, as an example for
+readers. The day has two walls of a chapel, a list of terms, and places with photos on both walls.
+The conservator paints strokes, sends queries, computes a risk, and lists quantities for the report.
+The test compares every number with the painted areas.
 
-`server.ok(method, path, body)` sends a request to /api/v1 with the token; it sends a dict as JSON;
-`story` has the results of earlier steps."""
+`server.ok(method, path, body)` sends a request to /api/v1 with the token. It sends a dict as JSON.
+`story` contains the results of earlier steps."""
 import csv
 import io
 import math
@@ -14,7 +15,8 @@ from support.meshes import folded_grid
 from support.pictures import png
 from support.workbook import Workbook
 
-NORTH, SOUTH = "/models/north-wall", "/models/south-wall"  # nearly flat, x and y from 0 to 100 mm
+# nearly flat sheets, x and y from 0 to 100 mm
+NORTH, SOUTH = "/models/north-wall", "/models/south-wall"
 TERMS = """@prefix skos: <http://www.w3.org/2004/02/skos/core#> .
 <urn:damage:loss> a skos:Concept ; skos:notation "loss" ; skos:prefLabel "Loss"@en, "Pérdida"@es .
 <urn:damage:flaking> a skos:Concept ; skos:notation "flaking" ; skos:prefLabel "Flaking"@en ; skos:broader <urn:damage:loss> .
@@ -36,7 +38,7 @@ def near(value, expected, share=0.02):
 
 
 def paint(server, model, layer, value, x, y, radius):
-    """Paints a disc around a place of the wall."""
+    """Paints a disc around a point on the wall."""
     path = f"{model}/layers/{layer}/readings?" + urllib.parse.urlencode({"radius_mm": radius})
     return server.ok(
         "POST", path, f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}
@@ -48,7 +50,7 @@ def rows_of(text):
 
 
 def test_the_site_is_set_up(server, story):
-    """Nine o'clock: the scans, the terms, the tables."""
+    """At nine o'clock: sets up the scans, the terms and the tables."""
     server.ok("POST", "/projects", {"name": "Chapel"})
     for name in ("North wall", "South wall"):
         server.import_model(
@@ -122,17 +124,17 @@ def test_the_site_is_set_up(server, story):
 
 
 def test_look_and_paint(server, story):
-    """Until noon, at the walls."""
+    """Until noon: paints the observations at the walls."""
     keys = story.keys
     paint(server, NORTH, "damage", keys["flaking"], 30, 30, 12)
     paint(server, NORTH, "damage", keys["salts"], 70, 70, 10)
     paint(server, SOUTH, "damage", keys["flaking"], 50, 50, 20)
-    # A crack along the foot of the wall, with the brush: pixels of a camera perpendicular to the
-    # wall.
+    # paints a crack along the foot of the wall with the brush, in pixels of a camera perpendicular
+    # to the wall
     camera = camera_from(server.get(SOUTH).json(), (0, 0, 1), up=(0, 1, 0))
     distance = -camera["view"][14]
     mm_of_pixel = 2 * distance / camera["projection"][5] / camera["height"]
-    y = camera["height"] / 2 + 40 / mm_of_pixel  # 40 mm below the middle
+    y = camera["height"] / 2 + 40 / mm_of_pixel  # 40 mm below the middle of the image
     crack = {
         "op": "stroke",
         "value": keys["loss"],
@@ -141,7 +143,7 @@ def test_look_and_paint(server, story):
         "path": [[320 - 30 / mm_of_pixel, y], [320 + 30 / mm_of_pixel, y]],
     }
     near(server.ok("POST", SOUTH + "/layers/damage/edits", crack).json()["area_m2"], swept(2, 60))
-    # One stroke too many, which is undone.
+    # paints one stroke too many and undoes it
     before = server.get(SOUTH + "/layers/damage/statistics").json()
     server.ok("POST", SOUTH + "/layers/damage/edits", {**crack, "radius_mm": 9})
     assert server.get(SOUTH + "/layers/damage/statistics").json()["keys"] != before["keys"]
@@ -170,13 +172,13 @@ def test_look_and_paint(server, story):
     paint(server, NORTH, "places", 1, 30, 30, 15)
     paint(server, NORTH, "places", 2, 70, 70, 8)
     paint(server, SOUTH, "places", 3, 50, 50, 20)
-    paint(server, SOUTH, "places", 1, 15, 85, 5)  # the apse is on both walls
+    paint(server, SOUTH, "places", 1, 15, 85, 5)  # the apse extends over both walls
     for percent, x, y, radius in ((10, 50, 50, 45), (40, 30, 30, 15), (80, 30, 30, 6)):
         paint(server, NORTH, "moisture", percent, x, y, radius)
 
 
 def test_add_photos(server):
-    """A folder of photos is matched to places by the file names."""
+    """Matches a folder of photos to places by the file names."""
     names = ["apse_before_1.png", "door_before_1.png", "crypt_before_1.png"]
     match = server.ok(
         "POST",
@@ -206,7 +208,7 @@ def test_add_photos(server):
 
 
 def test_ask(server, story):
-    """In the afternoon: queries of places, counts and areas."""
+    """In the afternoon: queries places, counts and areas."""
     keys = story.keys
 
     def found(text, path="/tables/places"):
@@ -229,12 +231,12 @@ def test_ask(server, story):
     )
     extent = server.ok("POST", SOUTH + "/layers/places/extent", {"filter": "depth > 2"}).json()
     near(extent["area_m2"], disc(20) + disc(5))
-    # Both walls together: the apse is one place.
+    # the apse is one place on both walls
     table = server.ok("GET", "/tables/places/quantities").json()
     areas = {each["key"]: each["area_m2"] for each in table["quantities"]}
     near(areas[1], disc(15) + disc(5))
     near(areas[3], disc(20))
-    # The area of each place, in m².
+    # the area of each place, in m²
     cross = server.ok(
         "POST", NORTH + "/cross-table", {"rows": "damage", "columns": "places"}
     ).json()
@@ -246,7 +248,7 @@ def test_ask(server, story):
 
 
 def test_weigh(server):
-    """A computed risk follows the observations."""
+    """A computed risk depends on the observations."""
     expression = "if(places.urgency = 'now', 2, 1) * reclass(moisture, 0, 30, 1, 60, 2)"
     risk = server.ok(
         "POST",
@@ -276,7 +278,7 @@ def test_weigh(server):
         0.03,
     )
     server.ok("POST", "/tables/places/undo")
-    # The picture for the report: by urgency, hatched, only the urgent places.
+    # the image for the report shows only the urgent places, hatched and colored by urgency
     server.ok(
         "PATCH",
         NORTH + "/layers/places",
@@ -311,7 +313,7 @@ def test_weigh(server):
 
 
 def test_report(server, story):
-    """Before six: the figures for the report."""
+    """Before six o'clock: reads the numbers for the report."""
     keys = story.keys
     answer = server.ok("GET", NORTH + "/layers/damage/quantities").json()
     by_class = {each["key"]: each for each in answer["quantities"]}

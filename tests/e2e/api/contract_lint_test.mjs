@@ -1,5 +1,5 @@
-// Checks the contract with Redocly's recommended rules for OpenAPI, so that other generators and
-// validators see the rules that the server enforces.
+// Checks the contract with Redocly's recommended rules for OpenAPI. The rules that the server
+// enforces are then also visible to other generators and validators.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { kRoot, load_module } from "../support/js/modules.mjs";
@@ -7,7 +7,7 @@ import { kRoot, load_module } from "../support/js/modules.mjs";
 const { createConfig, lint } = load_module("@redocly/openapi-core");
 
 /**
- * Operations with another success status: the owner's link redirects to the page (303), a live
+ * Operations with another success status. The owner's link redirects to the page (303), and a live
  * connection becomes a WebSocket (101).
  */
 const kWithoutSuccess = [
@@ -15,7 +15,9 @@ const kWithoutSuccess = [
   "#/paths/~1api~1v1~1models~1{model}~1live/get/responses",
 ];
 
-/** Answers that the generator adds to calls of the JSON file (`generator/openapi.py`). */
+/**
+ * Responses that the generator adds to the operations of the JSON file (`generator/openapi.py`).
+ */
 const kByGenerator = [
   "#/components/responses/UnknownHost",
   "#/components/responses/HeaderTooLarge",

@@ -1,5 +1,5 @@
-"""Runs the tour with curl of docs/how-to/write-scripts.md unchanged, and compares its figures with
-one another."""
+"""Runs the tour with curl from docs/how-to/write-scripts.md unchanged, and compares its numbers
+with one another."""
 import json
 import os
 import re
@@ -17,7 +17,7 @@ def tour_of_the_guide():
         block = re.search(r"```\n(.*?)```", file.read(), re.S).group(1)
     kept = []
     for line in block.splitlines():
-        # The server of this test already runs; the rest is unchanged.
+        # The server of this test already runs, so the lines that start it are omitted.
         if line.startswith(("export STRATA_OWNER_TOKEN=", "STRATA_NO_BROWSER=1 ./run")):
             continue
         kept.append(re.sub(r"^S=http://127.0.0.1:8080", "S=$STRATA_URL", line))
@@ -26,7 +26,7 @@ def tour_of_the_guide():
 
 
 def json_values(text):
-    """Returns the consecutive JSON values of a text."""
+    """Returns the JSON values that follow one another in a text."""
     decoder, found, at = json.JSONDecoder(), [], 0
     while at < len(text):
         if text[at] in " \n":
@@ -70,8 +70,8 @@ def test_its_figures_agree_with_one_another(server, folder):
     )
     assert statistics["texels"] == edit["texels_changed"], (statistics["texels"], edit)
     assert [key["key"] for key in statistics["keys"]] == [7] and statistics["mean"] == 7, statistics
-    # 80 pixels of path with a radius of 20 are 4457 pixels of 0.21 mm, on a surface that faces the
-    # camera.
+    # A path of 80 pixels with a radius of 20 covers 4457 pixels of 0.21 mm on a surface that faces
+    # the camera.
     assert 1.8e-4 < edit["area_m2"] < 2.2e-4, edit
 
 

@@ -1,5 +1,5 @@
-"""The reset of the demo over HTTP: who may ask for it, that the pot is as at first again, and that
-nothing else of the project is lost."""
+"""The reset of the demo over HTTP: the right to request it, the original state of the pot, and the
+unchanged rest of the project."""
 import pytest
 from support.kiosk_site import told
 from support.meshes import folded_grid
@@ -26,7 +26,7 @@ def test_the_pot_is_as_at_first_and_the_rest_stays(server):
     fill = {"op": "fill", "mode": "where", "where": "true", "value": 1}
     server.ok("POST", POT + "/layers/mine/edits", fill)
     before = server.get(POT).json()["id"]
-    for _ in range(2):  # the second time with a story to erase
+    for _ in range(2):  # in the second round there is a history to erase
         job = server.ok("POST", "/demo/reset").json()["id"]
         ended = server.wait_for_job(job)
         assert ended["state"] == "done", ended

@@ -1,5 +1,5 @@
-"""Events of a model for scripts: the server sends them once an edit is durable, each reader gets
-only visible content, and a reader loses nothing after a disconnection."""
+"""Events of a model for scripts: the server sends an event once an edit is durable, and each reader
+receives only visible content. A disconnected reader loses no event."""
 import json
 
 from support.event_reader import EventReader
@@ -89,7 +89,8 @@ def test_a_line_that_goes_on_is_told_again_with_what_it_is_now(server, story):
 
 
 def test_who_was_cut_off_misses_nothing(server, story):
-    """Also over a restart of the server: a reader with the last id gets no line twice."""
+    """A reader that reconnects with the last id gets no event twice, even after a restart of the
+    server."""
     after = story.reader.last
     story.reader.close()
     paint(server, "units", "y > 80")

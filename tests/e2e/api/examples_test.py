@@ -34,7 +34,7 @@ def test_a_conservators_day_ends_with_the_areas_that_the_server_tells(server, tm
         assert float(area) > 0
         assert abs(float(area) - held[key]) < 0.006, (key, area, held)
     wet = float(re.search(r"Wetter than 15 %: ([\d.]+)", told.stdout).group(1))
-    # Two of the three readings exceed the limit; each disc is as large as one of a damage.
+    # two of the three readings exceed the limit; each disc has the area of a damage
     assert abs(wet - (held[2] + held[3])) < 0.05 * wet, (wet, held)
 
 

@@ -15,7 +15,7 @@ from support.strata_server import wait_for
 from support.workbook import Workbook
 
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 
 
 def near(a, b, share):
@@ -23,7 +23,7 @@ def near(a, b, share):
 
 
 def dab(server, path, value, x, y, radius):
-    """Paints a disc of `radius` mm around a place, as a reading."""
+    """Paints a disc of `radius` mm around a point, as a reading."""
     query = urllib.parse.urlencode({"radius_mm": radius})
     return server.ok(
         "POST",
@@ -81,7 +81,7 @@ def test_quantities_of_records(server, story):
     near(now["sum"]["area_m2"], 150 * math.pi * 1e-6, 0.02)
     assert now["sum"]["pieces"] == 3 and now["total"] == 2, now
 
-    # As of an earlier time, with the names of that time.
+    # the quantities of an earlier time have the names of that time
     server.ok("PATCH", "/tables/pieces/records/1", {"values": {"code": "Skull"}})
     assert server.get(pieces + "/quantities").json()["quantities"][0]["class"] == "Skull"
     past = server.get(f"{pieces}/quantities?at={first}")
@@ -164,7 +164,7 @@ def test_quantities_of_numbers(server):
     etag = server.get(moisture).headers["ETag"]
     server.ok("PATCH", moisture, {"palette": linear}, headers={"If-Match": etag})
     rows = rows_of(server.get(moisture + "/quantities?f=csv"))
-    # 0.7 as a 32-bit float is less than 0.7 as a double.
+    # 0.7 as a 32-bit float is less than 0.7 as a double
     assert [(row["class"], row["from"], row["to"]) for row in rows] == [
         ("from 0 to 0.25", "0", "0.25"),
         ("from 0.25 to 0.7", "0.25", "0.7"),
@@ -186,7 +186,7 @@ def test_workbooks(server, story):
     ]
     server.ok("POST", "/projects/default/tables", {"name": "Finds", "columns": columns})
     hostile = "=cmd|'/C calc'!A0"
-    long = "\N{AMPHORA}" * 20000  # two units of UTF-16 each
+    long = "\N{AMPHORA}" * 20000  # each character has two units in UTF-16
     escapes = "two\nlines\r\n \u0001 <&> \uffff 'quoted' _x0041__x005F_x0041_ _x00e_ __x000D_x000d_ _X0041_ _x000D\r _x0041\uffff _x00G0_ _x12"
     made = [
         {
@@ -280,7 +280,7 @@ def test_workbooks(server, story):
     ), book.filtered
     for row, written in zip(book.records, expected):
         for head in ("pieces", "texels", "area_m2", "percent_of_surface", "area (cm²)"):
-            near(row[head], float(written[head]), 1e-15)  # a workbook has 16 digits
+            near(row[head], float(written[head]), 1e-15)  # a workbook stores 16 digits
         near(row["area (cm²)"], 1e4 * float(written["area_m2"]), 1e-15)
     assert [row["class"] for row in book.records] == ["Skull", hostile, "total"]
     assert [
@@ -303,7 +303,7 @@ def test_workbooks(server, story):
         text.startswith('"Pieces / Pieces, cm²",') and book.rows[0][0] == "Pieces / Pieces, cm²"
     ), (text, book.rows)
     near(book.rows[-1][-1], 1e4 * (areas[1] + areas[2]), 1e-12)
-    # removed after the answer
+    # the server removes the file after the response
     wait_for(lambda: os.listdir(os.path.join(server.data, "uploads")) == [], "that nothing stays")
 
 
@@ -317,7 +317,7 @@ def lines_of(server, path, **query):
 
 
 def aggregated(rows, edge, keys):
-    """The oracle of `cell`: returns {cell: (centroid, area, value)} of lines of texels."""
+    """The reference for `cell`: returns {cell: (centroid, area, value)} for lines of texels."""
     cells = {}
     for row in rows:
         place, area = [float(row[axis]) for axis in "xyz"], float(row["area_m2"])
@@ -370,7 +370,8 @@ def test_texel_lines(server, story):
     )
     assert {row["value"] for row in wet} <= {"0.05", "0.3", "0.7"}, {row["value"] for row in wet}
 
-    # Without texels so close to the side of a cell that rounded places may be in the next one.
+    # Omits texels that are close to the side of a cell, because rounded positions may be in the
+    # next cell.
     inside = (
         "abs(z) > 0.0002 and x % 5 between 0.0002 and 4.9998 and y % 5 between 0.0002 and 4.9998"
     )
@@ -391,7 +392,7 @@ def test_texel_lines(server, story):
                 centre,
             )
 
-    # Keys are never mixed; the lines have the values of their records.
+    # keys are never mixed, and the lines have the values of their records
     rows = lines_of(server, pieces, columns="code", where="abs(z) > 0.0002")
     assert {(row["value"], row["code"]) for row in rows} == {
         ("1", "Skull"),
@@ -425,8 +426,8 @@ def test_texel_lines(server, story):
     assert server.get(pieces + "/texels.csv?columns=depth").json()["field"] == "columns"
     assert server.request("PUT", moisture + "/texels.csv", b"x,y,z\n").status == 404
 
-    # Another call on the same connection; HTTP/1.0 has no chunks, so the end of the connection ends
-    # the answer.
+    # Sends another request on the same connection. HTTP/1.0 has no chunks, so the end of the
+    # connection ends the response.
     link = server.connect()
     first = server.get(pieces + "/texels.csv", connection=link).body
     assert server.get(pieces + "/texels.csv", connection=link).body == first
@@ -471,7 +472,7 @@ def test_vertices(server):
         assert point["distance"] < 1e-4, point
         for layer in ("moisture", "salt", "pieces"):
             value = point["values"][layer]
-            # on a seam the position's texel is on the other side
+            # at a seam the texel at this position is on the other side
             if vertex[layer + "_valid"] and not value["valid"]:
                 on_seams += 1
                 continue
@@ -479,7 +480,7 @@ def test_vertices(server):
             assert vertex[layer] == (value["value"] if value["valid"] else 0), (vertex, value)
             painted += value["valid"]
     assert painted > 10 and on_seams < painted / 5, (painted, on_seams)
-    # The server imports its own file, and finds the layers' values as numbers of the vertices.
+    # the server imports its own file, and reads the layers' values as numbers of the vertices
     again = server.import_model(answer.body, "again.ply", name="Again", unit="mm")
     assert (again["vertices"], again["triangles"]) == (model["vertices"], model["triangles"])
     near(again["area_m2"], model["area_m2"], 1e-6)
@@ -503,7 +504,7 @@ def test_vertices(server):
 
 
 def test_quantities_of_a_table(server, story):
-    """The areas of a record on two models are added."""
+    """The areas of a record on two models are added together."""
     pieces = story.pieces
     other = server.import_model(
         folded_grid(fold=0.001, size=50.0), "small.ply", name="Small", unit="mm"

@@ -1,5 +1,5 @@
 """Outlines of classes, and lines and points of records, as GeoJSON and GeoPackage, read as other
-programs do."""
+programs read them."""
 import contextlib
 import os
 import sqlite3
@@ -10,8 +10,8 @@ import urllib.parse
 import pytest
 from support.meshes import folded_grid
 
-M, T = "/models/sheet", "/tables/damage"  # nearly flat, x and y from 0 to 100 mm
-TEXEL = 100 / 2048  # mm, the smallest
+M, T = "/models/sheet", "/tables/damage"  # a nearly flat sheet, x and y from 0 to 100 mm
+TEXEL = 100 / 2048  # in mm, at the lowest resolution
 GPKG = "application/geopackage+sqlite3"
 
 
@@ -51,7 +51,7 @@ def make(server):
         },
     )
     dab(server, "units", 1, 40, 40, 30)
-    dab(server, "units", 2, 40, 40, 10)  # a hole in the first
+    dab(server, "units", 2, 40, 40, 10)  # a hole in the first disc
     dab(server, "units", 2, 85, 85, 8)
     dab(server, "wet", 3, 20, 20, 5)
     dab(server, "wet", 7, 60, 60, 5)
@@ -118,8 +118,8 @@ def ring_area(ring):
 
 
 def check_polygons(geometry, area_m2, metres=0.001):
-    """Checks that rings are closed, outer ones counter-clockwise, holes clockwise, and that the
-    area agrees with the statistics."""
+    """Checks that rings are closed, that outer rings are counter-clockwise and holes clockwise, and
+    that the area agrees with the statistics."""
     total = 0
     for polygon in geometry["coordinates"]:
         for i, ring in enumerate(polygon):
@@ -186,7 +186,7 @@ def test_classes(server):
         )
     ranges = [feature["properties"] for feature in features(server, "wet")["features"]]
     assert [(own["from"], own["to"]) for own in ranges] == [(0, 5), (5, None)], ranges
-    # From the side only its edge is visible; coordinates are x, z, y.
+    # from the side only the edge of the sheet is visible, and the coordinates are x, z, y
     side = features(server, "units", "along=-y")
     assert side["axes"] == "xzy" and [
         feature["properties"]["area_m2"] for feature in side["features"]
@@ -252,7 +252,7 @@ def test_a_reference_system_counts_in_its_unit(server):
 
 
 def read_blob(blob, srs):
-    """Parses a GeoPackage geometry: its type, and its numbers as in GeoJSON."""
+    """Parses a GeoPackage geometry. Returns its type, and its numbers as in GeoJSON."""
     magic, version, flags, its_srs = struct.unpack_from("<2sBBi", blob)
     assert (magic, version, flags, its_srs) == (b"GP", 0, 0b101, srs), (
         magic,

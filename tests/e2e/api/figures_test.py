@@ -1,5 +1,6 @@
-"""Measured figures: lengths are to scale on paper, in every direction, file format and resolution;
-parts join without seams; one state of the layers; jobs; visibility; and refusals."""
+"""Measured figures: lengths are to scale on paper, in every direction, file format and resolution.
+Parts join without seams. A figure shows one state of the layers. The file also tests jobs,
+visibility and refusals."""
 import math
 import os
 import re
@@ -16,7 +17,7 @@ from support.meshes import bumpy_ball, folded_grid
 from support.pictures import pixels
 from support.strata_server import wait_for
 
-M = "/models/sheet"  # x and y from 0 to 100 mm, in folds of 24 mm at most
+M = "/models/sheet"  # a sheet with x and y from 0 to 100 mm, in folds up to 24 mm high
 F = M + "/figures"
 PAPER = {"a5": (148, 210), "a4": (210, 297), "a3": (297, 420)}
 UNLIT = {"mode": "unlit"}
@@ -35,14 +36,14 @@ def figure(server, expect=200, token=True, model="sheet", lang="", **wish):
 
 
 def drawn(server, token=True, **wish):
-    """Returns the sheet's pixels: rows × columns × 3."""
+    """Returns the sheet's pixels as rows × columns × 3."""
     rows, tags = tiff.read(figure(server, format="tiff", token=token, **wish).body)
     assert tags[296] == (2,) and tags[282] == tags[283] == (wish.get("dpi", 300), 1), tags
     return rows
 
 
 def spots(rows, color=RED, by=60):
-    """Returns the pixels with about this color, as x and y of their centers."""
+    """Returns the pixels with approximately this color, as x and y of their centers."""
     y, x = numpy.nonzero((abs(rows.astype(int) - color) <= by).all(axis=2))
     return numpy.stack([x, y], axis=1) + 0.5
 
@@ -60,7 +61,7 @@ def fill(server, where, value=1, layer="marks", model="sheet"):
 
 
 def dab(server, x, y, value=1, layer="marks", radius=2, model="sheet"):
-    """Paints a disc as seen from above, on every surface below it."""
+    """Paints a disc, seen from above, on every surface below it."""
     fill(
         server,
         f"(x - {x}) * (x - {x}) + (y - {y}) * (y - {y}) < {radius * radius}",
@@ -96,9 +97,8 @@ def folder():
 
 
 def test_lengths_are_those_of_the_world(server):
-    """Each side of a ball has a small disc 15 mm before its middle and a larger one 15 mm behind,
-    as seen from there: their distance on paper gives the scale, and the one on the right the
-    direction."""
+    """Each side of a ball has a small disc at −15 mm and a larger one at 15 mm from its middle.
+    Their distance on paper gives the scale, and the disc on the right gives the direction."""
     server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
     server.ok("POST", "/models/ball/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
     sides = {
@@ -150,7 +150,7 @@ def test_lengths_are_those_of_the_world(server):
             )
     dab(server, 20, 50)
     plan = spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE))
-    dab(server, 50, 90)  # y runs up the paper
+    dab(server, 50, 90)  # y points up on the paper
     assert (
         middle(spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE)))[1]
         < middle(plan)[1] - 20
@@ -158,8 +158,8 @@ def test_lengths_are_those_of_the_world(server):
 
 
 def group_of(svg, name):
-    """Returns the SVG's content under this name: paths as rows of x and y in millimeters on paper,
-    and words."""
+    """Returns the content of the SVG group with this id: paths as rows of x and y in millimeters on
+    paper, and words."""
     group = next(each for each in xml.fromstring(svg).iter(SVG + "g") if each.get("id") == name)
     paths = [
         numpy.array(re.findall(r"-?[\d.]+(?:e-?\d+)?", each.get("d")), float).reshape(-1, 2)
@@ -169,8 +169,8 @@ def group_of(svg, name):
 
 
 def test_bars(server):
-    """The length of the scale bar on paper, in vectors and in pixels, agrees with its label at that
-    scale; from a find of a few centimeters at 5 : 1 to a site at 1 : 500."""
+    """The length of the scale bar on paper, in vectors and in pixels, agrees with its label. The
+    test uses scales from 5 : 1 for a find of a few centimeters to 1 : 500 for a site."""
     site = {
         "model": "site",
         "direction": "top",
@@ -215,7 +215,7 @@ def test_bars(server):
         assert [float(each) for each in words[: len(steps)]] == [
             float(number) * i / len(steps) for i in range(len(steps))
         ], words
-        # The same in pixels, including the outline.
+        # the pixels give the same length, including the outline
         per_mm = dpi / 25.4
         row = (
             drawn(server, dpi=dpi, scale=scale, **asked)[
@@ -255,7 +255,7 @@ def test_north(server):
         server.ok("PATCH", "/models/ball", {"up": up, "north": str(degrees)})
         fill(server, "true", 0, model="ball")
         turn = math.radians(degrees)
-        sign = -1 if up == "y" else 1  # y up: for a view along -z, north points into the picture
+        sign = -1 if up == "y" else 1  # with y up and a view along -z, north points into the image
         for value, away in ((11, 0), (12, 25)):
             fill(
                 server,
@@ -276,8 +276,8 @@ def test_north(server):
 
 
 def test_parts_join_without_seams(server):
-    """A3 at 600 dpi, the largest: the drawing has parts of three inches, and equals the picture of
-    fewer parts."""
+    """A3 at 600 dpi is the largest drawing. It is made of parts of three inches, and equals the
+    drawing with fewer parts."""
     asked = {
         "direction": "top",
         "scale": 0.35,
@@ -302,9 +302,9 @@ def test_parts_join_without_seams(server):
     differs = ((means < around.min(axis=0) - 12) | (means > around.max(axis=0) + 12)).any(axis=2)
     in_frame = differs[45:700, 45:1115]
     assert in_frame.mean() < 0.0005, in_frame.mean()
-    # At the borders of parts the surface is as smooth as elsewhere.
+    # at the borders of parts, the surface is as smooth as elsewhere
     corner, part = round(10 / 25.4 * 600), 3 * 600
-    for axis, low, high in ((0, 300, 4100), (1, 1500, 5500)):  # surface only
+    for axis, low, high in ((0, 300, 4100), (1, 1500, 5500)):  # ranges that contain only surface
         steps = abs(numpy.diff(fine[300:4100, 1500:5500].sum(axis=2), axis=axis)).mean(
             axis=1 - axis
         )
@@ -342,7 +342,7 @@ def test_kinds(server, folder):
     assert re.search(
         r"Page size:\s+(595\.\d+ x 841\.\d+|841\.\d+ x 595\.\d+) pts \(A4\)", facts
     ) and re.search(r"Pages:\s+1\n", facts), facts
-    # The PDF draws at the same places as the TIFF.
+    # the PDF draws at the same positions as the TIFF
     bare = {"direction": "top", "dpi": 72, **BARE}
     with open(path, "wb") as out:
         out.write(figure(server, format="pdf", **bare).body)
@@ -373,7 +373,7 @@ def test_kinds(server, folder):
     tags = tiff.read(figure(server, format="tiff", **wish).body)[1]
     assert tags[269] == "Sheet 7" and tags[315] == "Museum", tags
 
-    # The legend lists only painted layers and classes.
+    # the legend lists only layers and classes that are painted
     server.ok("POST", M + "/layers", {"name": "Bare", "type": "u8", "resolution": 2048})
     points = [
         {"at": at, "color": color, "label": label}
@@ -388,8 +388,8 @@ def test_kinds(server, folder):
     assert b">One mark<" in shown and b">Nowhere<" not in shown and b">Bare<" not in shown
     server.ok("DELETE", M + "/layers/bare")
 
-    # A model with a north direction gets an arrow in the plan, and none in an elevation that faces
-    # north.
+    # a model with a north direction gets an arrow in the plan, and no arrow in an elevation that
+    # faces north
     server.ok("PATCH", M, {"north": "30"})
     for direction, shown in (("top", True), ("front", False)):
         groups = {
@@ -402,7 +402,8 @@ def test_kinds(server, folder):
 
 
 def test_names(server, story):
-    """Names of records, also of terms, at their places; without private ones."""
+    """The figure shows the names of records, including terms, at their positions. It omits private
+    names."""
     server.ok(
         "POST",
         M + "/layers",
@@ -457,7 +458,7 @@ def test_names(server, story):
 
 
 def test_views(server):
-    """A figure of a saved view shows the view's content from its camera."""
+    """A figure of a saved view shows the view's content with the view's camera."""
     camera = {**camera_from(server.get(M).json(), (0, -1, 0.0)), "section": [[0, 1, 0, -50]]}
     server.ok(
         "POST",
@@ -485,7 +486,7 @@ def test_views(server):
 
 
 def test_reviews(server):
-    """Pending edits are hatched, and the legend lists them, until they are accepted."""
+    """Pending edits are hatched and listed in the legend until they are accepted."""
     rita, vito = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
     server.ok(
         "POST",
@@ -524,7 +525,7 @@ def test_reviews(server):
         spots(plain).min(axis=0).astype(int) + 4,
         spots(plain).max(axis=0).astype(int) - 4,
     )
-    up = round(50 / 25.4 * 100)  # from the accepted to the pending ones
+    up = round(50 / 25.4 * 100)  # from the accepted to the pending area
 
     def inks(rows, above):
         part = rows[top - above : bottom - above, left:right].astype(int)
@@ -533,7 +534,7 @@ def test_reviews(server):
     rows = drawn(server, token=vito, **wish)
     assert inks(rows, 0) == [1, 0], inks(rows, 0)
     red, dark = inks(rows, up)
-    # lines without a tint: the color below does not change
+    # the lines have no tint, so the color below does not change
     assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
     words = lambda **more: group_of(
         figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend"
@@ -542,7 +543,8 @@ def test_reviews(server):
         words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1
     ), words()
     assert "Provisional" not in words(layers=[{"layer": "finds", "visible": False}])
-    sequence = painted.json()["sequence"]  # as of an earlier sequence, only edits in force
+    # at an earlier sequence, the figure shows only accepted edits
+    sequence = painted.json()["sequence"]
     assert "Provisional" not in words(at=sequence) and inks(
         drawn(server, at=sequence, **wish), up
     ) == [1, 0]
@@ -556,7 +558,7 @@ def test_reviews(server):
         "Provisional" not in words()
         and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
     )
-    # Where a whole layer was erased, no class remains except the pending one.
+    # after a whole layer was erased, only the pending class remains
     server.ok("PATCH", M + "/layers/finds", {"visibility": "public"})
     erased = server.request(
         "POST", edits, {"op": "fill", "mode": "where", "where": "true", "erase": True}, token=rita
@@ -568,8 +570,9 @@ def test_reviews(server):
 
 
 def test_legends(server):
-    """The legend lists the content of the drawing: not layers that an opaque layer covers
-    completely, nor content outside it, but also classes that are only lines and points."""
+    """The legend lists only the content of the drawing. It omits layers that an opaque layer covers
+    completely, and content outside the drawing. It includes classes that consist only of lines and
+    points."""
     for name in ("Low", "High"):
         points = [
             {"at": at, "color": color, "label": f"{name} {at}"}
@@ -628,7 +631,7 @@ def test_legends(server):
         "Low",
         "Low 2",
     ], "on 15 mm around its right side"
-    # Records that have only lines are also classes of the drawing.
+    # records that have only lines are also classes of the drawing
     table = server.ok(
         "POST",
         "/projects/default/tables",
@@ -665,7 +668,7 @@ def test_legends(server):
         "Low 2",
     ], "what hangs before the surface is drawn"
     assert "Above" not in told(direction="bottom"), "what lies behind it is not"
-    # A long list continues below its title.
+    # a long list continues below its title
     points = [{"at": at, "color": "#2040ff", "label": f"Class {at}"} for at in range(1, 61)]
     server.ok(
         "POST",
@@ -688,8 +691,8 @@ def test_legends(server):
 
 
 def test_states_and_jobs(server, story):
-    """A figure of an earlier time; a figure whose layers others cannot change while it is drawn;
-    jobs and their files, with the rights to get and cancel them."""
+    """A figure can show an earlier time. Edits cannot change a figure while it is drawn. Only some
+    users can get and cancel jobs and their files."""
     labels = story.labels
     viewer, other = server.add_person("vera", "viewer"), server.add_person("ada", "annotator")
     before = server.get(M).json()["sequence"]
@@ -724,12 +727,12 @@ def test_states_and_jobs(server, story):
     ), done
     file = server.request("GET", job + "/file", token=viewer)
     assert file.status == 200 and file.body == then and len(then) == done["file"]["bytes"]
-    for who in (other, True):  # the viewer's own figure
+    for who in (other, True):  # the figure belongs to the viewer
         assert "file" not in server.request("GET", job, token=who).json()
         assert server.request("GET", job + "/file", token=who).status == 404
     assert server.request("DELETE", job, token=viewer).status == 409
 
-    # Only the person who started a long figure can cancel it; it leaves no file.
+    # only the user who started a long figure can cancel it, and it leaves no file
     long = {**wish, "dpi": 600, "paper": "a3", "format": "tiff", "scale": 0.3}
     for who, ends in ((viewer, viewer), (other, True)):
         started = server.request("POST", F, long, headers={"Prefer": "respond-async"}, token=who)
@@ -745,7 +748,7 @@ def test_states_and_jobs(server, story):
     kept = os.listdir(os.path.join(server.data, "uploads"))
     assert sum(each.endswith(".figure") for each in kept) == 1, kept
 
-    # Edits are possible while a figure is drawn; the figure shows none of them.
+    # edits are possible while a figure is drawn, and the figure shows none of them
     answers = []
     thread = threading.Thread(
         target=lambda: answers.append(
@@ -771,8 +774,7 @@ def test_states_and_jobs(server, story):
         == answers[0].body
     )
 
-    # Private content appears in no figure of people who cannot see it: no color, no legend, no
-    # label.
+    # figures for users who cannot see private content contain no color, legend or label of it
     server.ok("PATCH", M + "/layers/units", {"visibility": "private"})
     svg = figure(server, token=viewer, format="svg", dpi=60).body
     assert b">Units<" not in svg and b">Marks<" in svg

@@ -1,5 +1,5 @@
-"""Groups of people: each role that a project gives a group, the highest role, the immediate effect
-of its end, and refusals."""
+"""Groups of users: each role that a project gives a group, the highest role, the immediate end of a
+role, and refusals."""
 import pytest
 from support.browsers import Browser, join, uncoloured
 from support.event_reader import EventReader
@@ -11,7 +11,7 @@ FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
 
 def give(server, project, group, role):
-    """The role, or no role."""
+    """Sets the role of the group, or removes it if `role` is empty."""
     if role:
         server.ok("PUT", f"/projects/{project}/groups/{group}", {"role": role})
     else:
@@ -38,7 +38,7 @@ def gus(server, villa):
 
 
 def test_making(server, story):
-    """Groups are created, read, renamed, filled and emptied; invalid requests are refused without
+    """Groups are created, read, renamed, filled and emptied. Invalid requests are refused without
     effect."""
     made = server.ok("POST", "/groups", {"name": "Students", "members": ["gus", "Vera", "GUS"]})
     students = made.json()
@@ -148,7 +148,7 @@ def test_making(server, story):
 
 
 def test_foreign(server, story):
-    """Only administrators can read and change groups; scripts cannot change them."""
+    """Only administrators can read and change groups. Scripts cannot change them."""
     group = story.group
     calls = [
         ("GET", "/groups", None),
@@ -185,8 +185,8 @@ def test_foreign(server, story):
 
 
 def test_ladder(server, gus, villa, story):
-    """Through a group a guest has the rights of the role in the villa, from none to curator and
-    back, and none in the forum."""
+    """Through a group, a guest has the rights of the role in the villa, from no role to curator and
+    back. The guest has no rights in the forum."""
     group = story.group
     model = "/models/" + villa["model"]["slug"]
     tries = (
@@ -236,7 +236,8 @@ def test_nothing_is_seen_without_a_role(server, gus, villa):
 
 
 def test_the_highest_role_counts(server, gus, story):
-    """The highest of a person's own role and the roles of groups, with its origin."""
+    """The highest role counts: the user's own role, or one from a group. The response contains its
+    origin."""
     group = story.group
     diggers = server.ok("POST", "/groups", {"name": "Diggers", "members": ["Gus"]}).json()["id"]
     give(server, "villa", group, "annotator")
@@ -270,7 +271,7 @@ def test_the_highest_role_counts(server, gus, story):
         server.ok("GET", f"/groups/{diggers}").json()["losing"] == 1
         and server.ok("GET", f"/groups/{group}").json()["losing"] == 0
     )
-    # For a person with a role everywhere, a group is listed only if it gives a higher one.
+    # for a user with a role for all projects, a group is listed only if it gives a higher role
     vera = Someone(server, "Vesta", "viewer")
     server.ok("PATCH", f"/groups/{diggers}", {"add": ["Vesta"]})
     assert projects_of(vera) == {
@@ -278,7 +279,7 @@ def test_the_highest_role_counts(server, gus, story):
         "forum": ("viewer", None),
         "villa": ("curator", ["Diggers"]),
     }
-    # Each way to end it takes effect immediately.
+    # each way to end the role takes effect immediately
     server.ok("PATCH", f"/groups/{diggers}", {"remove": ["gus"]})
     assert projects_of(gus) == {"villa": ("annotator", ["Students"])}
     server.ok("DELETE", f"/groups/{diggers}")
@@ -288,7 +289,7 @@ def test_the_highest_role_counts(server, gus, story):
 
 
 def test_ends_at_once(server, gus, villa, story):
-    """Open connections and event streams end with the group's role, in each way it can end; people
+    """Open connections and event streams end with the group's role, for each way to end it. Users
     who still have a role can reconnect with it."""
     group = story.group
     model = villa["model"]["slug"]
@@ -331,8 +332,8 @@ def test_ends_at_once(server, gus, villa, story):
 
 
 def test_coming_and_going(server):
-    """Invitations can contain groups; deleted people leave them; the activity of each project lists
-    this."""
+    """Invitations can contain groups. Deleted users leave their groups. The activity of each
+    project lists such changes."""
     group = server.ok("POST", "/groups", {"name": "Season"}).json()["id"]
     give(server, "forum", group, "annotator")
     for groups, status in (

@@ -1,5 +1,5 @@
-"""The answers of the HTTP interface to invalid requests: one table, then the cases with several
-steps."""
+"""The responses of the HTTP interface to invalid requests: first a table, then the cases with
+several steps."""
 import concurrent.futures
 import json
 import os
@@ -17,7 +17,7 @@ FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
 
 def table(camera):
-    """(what, method, path, body, headers, status, field)"""
+    """Returns rows of (description, method, path, body, headers, status, field)."""
     stroke = {"op": "stroke", "value": 1, "camera": camera, "radius_px": 5, "path": [[320, 240]]}
     pick = {"camera": camera, "x": 10, "y": 10}
 
@@ -645,7 +645,7 @@ def test_sign_in(server):
     missing = server.get("/models/nowhere").json()
     page = server.get("//problems", token=False).body.decode()
     assert missing["type"] == "/problems#not_found" and 'id="not_found"' in page, missing
-    # The cookie is valid only for this server's own page.
+    # The cookie is valid only for requests from this server's own page.
     login = server.post(
         "/login", {"token": server.token}, token=False, headers={"Origin": server.url}
     )
@@ -682,7 +682,7 @@ def test_sign_in(server):
 
 
 def test_paths(server):
-    """No address leads outside the page's folder, however it is encoded."""
+    """No address gives access to files outside the page's folder, in any encoding."""
     secret = os.path.join(server.data, "secret.txt")
     with open(secret, "w", encoding="ascii") as file:
         file.write("the secret of this test")
@@ -725,7 +725,8 @@ def test_paths(server):
 
 
 def test_sizes(server):
-    """A raster may be as large as its layer; a larger one is refused before it is sent."""
+    """A raster may be as large as its layer. The server refuses a larger one before the client
+    sends it."""
     for size, is_refused in (
         (2 * 2048 * 2048 + 128, False),
         (10 << 20, False),
@@ -750,7 +751,7 @@ def test_sizes(server):
 
 
 def test_repeats(server, camera):
-    """An edit with a key is applied once; the key belongs to its address."""
+    """An edit with a key is applied once. The key is valid for one address."""
     stroke = {"op": "stroke", "value": 9, "camera": camera, "radius_px": 30, "path": [[320, 240]]}
     key = {"Idempotency-Key": str(uuid.uuid4())}
     first = server.ok("POST", L + "/edits", stroke, headers=key).json()
@@ -774,10 +775,10 @@ def test_repeats(server, camera):
         == statistics["texels"]
         == first["texels_changed"]
     ), statistics
-    # without a key: a new edit, which changes nothing
+    # without a key this is a new edit, which changes nothing
     again = server.ok("POST", L + "/edits", stroke).json()
     assert again["sequence"] == other["sequence"] + 1 and again["texels_changed"] == 0, again
-    # The same for requests that are not edits.
+    # the same rule applies to requests that are not edits
     key = {"Idempotency-Key": "layer once"}
     made = server.ok("POST", M + "/layers", {"name": "Once"}, headers=key)
     assert (
@@ -799,7 +800,7 @@ def test_repeats(server, camera):
 
 
 def test_import_repeats(server):
-    """An import with a key runs once, also if the repeat comes after a restart of the server."""
+    """An import with a key runs once, even if the repeat comes after a restart of the server."""
     scan = folded_grid()
 
     def ask(content=scan):
@@ -850,7 +851,7 @@ def test_versions(server):
     assert server.request("PATCH", M, {"unit": "m"}, headers=tag).status == 412
     assert server.get(M).json()["unit"] == "cm"
     server.ok("PATCH", M, {"unit": "mm"}, headers={"If-Match": changed.headers["ETag"]})
-    # Without a version in the request, concurrent changes are not reported.
+    # concurrent changes without a version in the request are not reported
     with concurrent.futures.ThreadPoolExecutor(8) as people:
         answers = list(
             people.map(
@@ -870,7 +871,7 @@ def things(server):
 
 
 def test_bad_files(server):
-    """A file that cannot be used leaves no trace."""
+    """An unusable file leaves no data behind."""
     before = things(server)
     good = folded_grid()
     head, _, body = good.partition(b"end_header\n")
@@ -906,14 +907,14 @@ def test_bad_files(server):
 
 
 def test_cancel(server):
-    """Imports are cancelled while they wait and while they run; nothing of them remains."""
+    """Imports are canceled while they wait and while they run. No data remains."""
     before = things(server)
     large = bumpy_ball(300, 600)
     first, second = [
         server.ok("POST", f"/models?filename={name}.ply", large).json()["id"]
         for name in ("first", "second")
     ]
-    for job in (second, first):  # the second waits for the first
+    for job in (second, first):  # the second job waits for the first
         server.ok("DELETE", f"/jobs/{job}")
     for job in (second, first):
         state = server.wait_for_job(job)

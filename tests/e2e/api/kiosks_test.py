@@ -1,6 +1,7 @@
-"""Tours over HTTP, and the links of kiosks that show them: the rights to make them, the content
-that a kiosk sees (the public part of its model, read only, in every operation of the contract), the
-use of its cookie next to a person's, and its end."""
+"""Tours over HTTP, and the links of kiosks that show them. The file tests the rights to make tours
+and links. It tests the content that a kiosk sees: the public part of its model, read only, in every
+operation of the contract. It also tests a kiosk's cookie in addition to a user's cookie, and its
+end."""
 import subprocess
 import uuid
 
@@ -13,7 +14,7 @@ from support.strata_server import LONG_S, wait_for
 
 @pytest.fixture(scope="module", autouse=True)
 def site(server):
-    """The camera, files and thread of its model."""
+    """Returns the camera, files and thread of the site's model."""
     return make_site(server)
 
 
@@ -64,7 +65,7 @@ def test_tours(server, tokens, story):
     assert (
         ask("carl", "GET", path).json() == ask("carl", "GET", f"{ALL}/{tour['id']}").json() == tour
     )
-    # Content that a person cannot see is left out.
+    # content that a user cannot see is omitted
     seen = ask("vera", "GET", path).json()
     assert seen["stops"][0]["layers"] == ["cracks"] and [
         column["column"] for column in seen["stops"][0]["records"][0]["columns"]
@@ -81,7 +82,7 @@ def test_tours(server, tokens, story):
         ).status
         == 304
     )
-    # The answer can be sent back; versions protect it.
+    # the client can send the response back, and versions protect the tour
     again = ask(
         "carl", "PATCH", path, {"stops": tour["stops"]}, headers={"If-Match": '"v1"'}
     ).json()
@@ -95,7 +96,7 @@ def test_tours(server, tokens, story):
         "version": 3,
     }
 
-    # The refusal names the invalid field.
+    # The refusal contains the name of the invalid field.
     def stop(**more):
         return {"stops": [{**TOUR["stops"][1], **more}]}
 
@@ -138,7 +139,7 @@ def test_tours(server, tokens, story):
         if "stops" in body:
             told(ask("carl", "POST", ALL, {**TOUR, **body}), 422, field)
     told(ask("carl", "POST", ALL, {**TOUR, "nothing": 1}), 422)
-    # Deleting a view or a layer does not change the tour.
+    # deleting a view or a layer does not change the tour
     spare = ask(
         "carl", "POST", ALL, {**TOUR, "name": "Spare", "stops": [{**STOP, "view": "east"}]}
     ).json()
@@ -165,12 +166,12 @@ def test_tours(server, tokens, story):
 
 
 def test_links(server, tokens, story):
-    """The rights to make, list and revoke them."""
+    """Each role has its rights to make, list and revoke links."""
     tour = story.tour
     for who in ("vera", "ada"):
         told(server.post(tour + "/kiosks", {"name": "Hall"}, token=tokens[who]), 403)
         assert server.get("/kiosks", token=tokens[who]).json() == {"kiosks": [], "total": 0}
-    # a script's link would outlive its token
+    # a link that a script makes would outlive the script's token
     told(server.post(tour + "/kiosks", {"name": "Hall"}, token=tokens["carl"]), 403)
     for body, field in (
         ({}, "name"),
@@ -194,7 +195,7 @@ def test_links(server, tokens, story):
         listed.json() == {"kiosks": [kiosk], "total": 1} and secret not in listed.body.decode()
     ), listed
     assert server.get("/kiosks", token=tokens["carl"]).json()["total"] == 1, "a curator everywhere"
-    # A curator of one project sees the kiosks of that project.
+    # a curator of one project sees the kiosks of that project
     gus = join(server, server.ok("POST", "/users", {"user": "gus", "role": "guest"}).json())
     server.ok("PUT", "/projects/villa/members/gus", {"role": "curator"})
     assert gus.request("GET", "/kiosks").json()["total"] == 0
@@ -223,7 +224,7 @@ def test_a_kiosk_opens_the_doors_of_its_tour_alone(server, site, story):
 
 
 class Screen(Browser):
-    """A kiosk's page: marks all its requests as those of a kiosk."""
+    """The page of a kiosk. It marks all its requests as requests of a kiosk."""
 
     def request(self, method, path, body=None, **headers):
         return super().request(
@@ -232,7 +233,7 @@ class Screen(Browser):
 
 
 def test_cookies(server, story):
-    """The kiosk's cookie is used for marked requests, the person's for all others."""
+    """Marked requests use the kiosk's cookie, and all other requests use the user's cookie."""
     tour = story.tour
     kiosk, secret = make_kiosk(server, tour, "Cookie")
     page = server.get(f"//kiosk/{secret}", token=False)
@@ -270,7 +271,8 @@ def test_cookies(server, story):
         ),
         403,
     )
-    # Without the mark the kiosk's cookie is not used; with it a person's session is not used.
+    # an unmarked request does not use the kiosk's cookie, and a marked one does not use a user's
+    # session
     told(server.get("/kiosk", token=False, headers={"Cookie": screen.cookie}), 401)
     told(server.get(M, token=False, headers={"Cookie": screen.cookie}), 401)
     dora = join(server, server.ok("POST", "/users", {"user": "dora", "role": "curator"}).json())
@@ -285,9 +287,9 @@ def test_cookies(server, story):
         401,
     )
     told(server.get(M, token=False, headers={"Cookie": "strata_session=" + secret}), 401)
-    told(server.get(M + "?as=kiosk"), 401)  # the owner's token is not a kiosk's
+    told(server.get(M + "?as=kiosk"), 401)  # the owner's token is not valid for marked requests
     told(server.get(M + "?as=person"), 400, "as")
-    # With both cookies, each is used for its own requests.
+    # with both cookies, each is used for its own requests
     dora.cookie = session + "; " + screen.cookie
     assert (
         len(dora.ok("GET", M + "/layers").json()["layers"]) == 3
@@ -303,7 +305,7 @@ def test_cookies(server, story):
         200,
         401,
     )
-    # Nobody can sign in with the secret, and guesses are counted.
+    # the secret cannot be used to sign in, and guesses are counted
     for path, body in (
         ("/login", {"token": secret}),
         ("/invitations/accept", {"invitation": secret, "password": "seven blue herons at noon"}),
@@ -340,7 +342,7 @@ def test_cookies(server, story):
 
 
 def test_heartbeat(server, story):
-    """The list shows the last contact, and a reload on request."""
+    """The list shows the last contact, and the request for a reload."""
     kiosk = story.kiosk
     secret = story.cookie_secret
     screen = story.screen
@@ -363,7 +365,7 @@ def test_heartbeat(server, story):
 
 
 def test_live(server, story, camera):
-    """The live connection of a kiosk: it can look, and gets no names of people."""
+    """The live connection of a kiosk can only view, and receives no names of users."""
     tour = story.tour
     kiosk, secret = make_kiosk(server, tour, "Live")
     cookie = "strata_kiosk=" + secret
@@ -437,7 +439,7 @@ def test_live(server, story, camera):
             )
         screen.send({"op": "pick", "id": one, "camera": camera, "x": 320, "y": 240})
         heard = [screen.receive_until("picked", "presence", "record.editors")]
-        # Changes of others come without their names; changes outside the model do not come.
+        # changes by others arrive without their names, and changes outside the model do not arrive
         server.ok("PATCH", "/tables/finds/records/1", {"values": {"name": "Find one"}})
         server.ok("POST", M + "/comments", {"text": "Here.", "position": [10, 10, 0]})
         owner.send({"op": "presence", "pointer": [320, 240]})
@@ -462,7 +464,7 @@ def test_live(server, story, camera):
             heard.append(screen.receive_until(*ops))
         assert {message["op"] for message in heard} == {"picked", "layer", "view"}, heard
         assert all("user" not in message for message in heard), heard
-        # People do not see the kiosk.
+        # other users do not see the kiosk
         owner.send({"op": "presence", "pointer": [321, 240]})
         assert {user["name"] for user in owner.receive_until("presence")["users"]} == {"owner"}
         server.ok("DELETE", f"/kiosks/{kiosk['id']}")
@@ -472,7 +474,7 @@ def test_live(server, story, camera):
 
 
 def test_commands(server):
-    """The same commands on the server's own machine."""
+    """The commands do the same on the server's own machine."""
 
     def strata(*words, code=0):
         done = subprocess.run(
@@ -534,7 +536,7 @@ def test_a_link_is_good_over_a_restart(server, story):
 
 
 def test_ends(server, story):
-    """Revocation takes effect everywhere immediately; the link is deleted with its tour."""
+    """Revocation takes effect everywhere immediately. A link is deleted with its tour."""
     kiosk = story.kiosk
     secret = story.cookie_secret
     screen = story.screen
@@ -544,7 +546,7 @@ def test_ends(server, story):
     told(screen.request("GET", "/kiosk"), 401)
     told(server.get(M, token=secret), 401)
     told(server.post("/auth/kiosk", {"link": secret}, token=False), 401, "link")
-    server.ok("DELETE", f"/kiosks/{kiosk['id']}")  # a repeat has no effect
+    server.ok("DELETE", f"/kiosks/{kiosk['id']}")  # a repeat of the revocation has no effect
     _, other = make_kiosk(server, tour, "Last")
     with LiveClient(server, "sheet", token=other) as connection:
         connection.hello(dpr=1, accept=["jpeg"])

@@ -1,5 +1,5 @@
-"""Groups of layers: created, changed, removed, told to open pages, and set by templates. Their
-blending mode."""
+"""Groups of layers: created, changed, removed, sent to open pages, and set by templates. Also the
+blending mode of layers."""
 import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
@@ -54,7 +54,7 @@ def test_a_bad_group_is_refused(server, group):
 
 def test_a_group_with_a_zero_character_is_refused(server):
     answer = server.request("PATCH", L + "/cracks", {"group": "a\0b"})
-    assert answer.status in (400, 422), answer  # as a text of the whole request
+    assert answer.status in (400, 422), answer  # 400 refuses the text of the whole request
     assert groups(server)["cracks"] == "Damage"
 
 

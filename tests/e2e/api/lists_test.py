@@ -1,5 +1,5 @@
-"""Lists in pages: while others add and delete, a walk along `next` returns each permanent entry
-exactly once."""
+"""Lists in pages: while others add and delete entries, a walk along `next` returns each permanent
+entry exactly once."""
 import base64
 import itertools
 import json
@@ -13,7 +13,7 @@ from support.meshes import folded_grid
 from support.pictures import png
 
 M, T = "/models/sheet", "/tables/units"
-KEPT = 7  # permanent entries of each list
+KEPT = 7  # the number of permanent entries in each list
 
 
 def next_of(answer):
@@ -22,7 +22,8 @@ def next_of(answer):
 
 
 def walk(server, asked, member, limit=2):
-    """Returns all entries of a list, page by page, each after the last returned one."""
+    """Returns all entries of a list, page by page. Each page starts after the last returned
+    entry."""
     told, pages = [], 0
     target = f"{asked}{'&' if '?' in asked else '?'}limit={limit}"
     while target:
@@ -40,7 +41,8 @@ def walk(server, asked, member, limit=2):
 
 
 class Writer:
-    """Adds to a list and deletes from it as fast as the server answers, until the test ends."""
+    """Adds entries to a list and deletes them, as fast as the server responds, until the test
+    ends."""
 
     def __init__(self, churn):
         self.churn, self.stopped, self.rounds, self.failure = churn, threading.Event(), 0, None
@@ -51,7 +53,7 @@ class Writer:
             while not self.stopped.is_set():
                 self.churn(self.rounds)
                 self.rounds += 1
-        except BaseException as failure:  # the test's own thread reports it
+        except BaseException as failure:  # the test's main thread reports it
             self.failure = failure
 
     def __enter__(self):
@@ -66,7 +68,7 @@ class Writer:
 
 
 def check_walks(server, asked, member, name_of, kept, churn, in_order=True):
-    """`kept`: the names (`name_of`) of the permanent entries, in their order."""
+    """`kept` are the names (`name_of`) of the permanent entries, in their order."""
     with Writer(churn) as writer:
         walks = 0
         while walks < 3 or (writer.rounds < 4 and not writer.failure):
@@ -105,7 +107,8 @@ def camera(server):
 
 
 def test_records(server):
-    """Sorted by a column of each kind, in both directions, with equal and missing values."""
+    """Records sorted by a column of each kind, in both directions, with equal and missing
+    values."""
     values = []
     for n in range(KEPT * 2):
         values.append(
@@ -168,7 +171,7 @@ def test_records(server):
     ):
         whole = [each["key"] for each in server.ok("GET", asked).json()["records"]]
         assert [each["key"] for each in walk(server, asked, "records", limit=2)] == whole, asked
-    # By measurements of the layer.
+    # records sorted by measurements of the layer
     server.ok(
         "POST",
         M + "/layers/units/edits",
@@ -187,7 +190,7 @@ def test_lists_that_others_write(server, camera):
 
 
 def lists_that_others_write(server, camera):
-    """Returns each list with functions to make, delete and identify its entries."""
+    """Returns each list with functions that make, delete and identify its entries."""
 
     def views(kind, body):
         def make(n):
@@ -318,13 +321,13 @@ def check_list(server, asked, member, make, remove, name_of):
     assert len(stays) >= KEPT
 
     def churn(_):
-        # These entries also end a page that they begin, and are deleted before the next page.
+        # such an entry can start or end a page, and is deleted before the next page
         added = [make(next(numbers)) for _ in range(2)]
         for one in added:
             remove(one)
 
     check_walks(server, asked, member, name_of, stays, churn)
-    # The last entry of a page is deleted before the next page is read.
+    # the last entry of a page is deleted before the next page is read
     lost = make(next(numbers))
     whole = [name_of(entry) for entry in server.ok("GET", asked + "?limit=1000").json()[member]]
     place = whole.index(lost) + 1
@@ -345,7 +348,7 @@ def check_list(server, asked, member, make, remove, name_of):
 
 
 def test_edits(server):
-    """Newest first, while others paint: the journal grows at the start of the list."""
+    """The list has the newest edit first. While others paint, it grows at its start."""
     layer = M + "/layers/marks"
     server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8"})
     fill = lambda n: server.ok(
@@ -383,7 +386,7 @@ def test_edits(server):
 
 
 def test_jobs(server):
-    """Newest first."""
+    """The list has the newest job first."""
     for _ in range(4):
         server.wait_for_job(
             server.ok(
@@ -414,7 +417,7 @@ def encoded(value):
 
 
 def test_nonsense(server):
-    """Any value that is no place in the list is refused."""
+    """A value that is not a position in the list is refused."""
     cursor = next_of(server.ok("GET", T + "/records?limit=1")).partition("after=")[2]
     values = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
     mark = values[0]
@@ -473,7 +476,8 @@ def test_nonsense(server):
         assert answer.status == 422 and answer.json()["field"] == "after", (path, after, answer)
     both = server.get(f"{T}/records?offset=1&after={cursor}")
     assert both.status == 422 and both.json()["field"] == "after", both
-    # In the form of each list, but without a matching entry: the list begins or ends there.
+    # a position in the right format may have no matching entry; the list then starts or ends at
+    # that position
     for path, own in (("/users", ["zzzzz", 99]), (M + "/layers", [-5, 0])):
         link = next_of(server.ok("GET", path + "?limit=1")).partition("after=")[2]
         own_mark = json.loads(base64.urlsafe_b64decode(link + "=" * (-len(link) % 4)))[0]

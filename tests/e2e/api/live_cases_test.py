@@ -1,5 +1,5 @@
-"""The live connection: participants, invalid clients, slow clients, and the server's orderly end.
-"""
+"""The live connection: participants, invalid clients, slow clients, and the server's orderly
+end."""
 import glob
 import json
 import os
@@ -40,7 +40,7 @@ def wait_for_picture(live, seq):
 
 
 def test_leaving(server):
-    """After many viewers leave, the system has their memory again."""
+    """The system has its memory again after many viewers have left."""
     model = server.get(M).json()
     with ExitStack() as people:
 
@@ -92,8 +92,8 @@ def test_upgrade(server):
 
 
 def test_sign_out(server):
-    """Signing out ends the session everywhere: its connections end, those of other sessions stay
-    open."""
+    """Signing out ends the session everywhere. Its connections end, and those of other sessions
+    stay open."""
 
     def sign_in():
         login = server.post(
@@ -133,8 +133,8 @@ def test_sign_out(server):
 
 
 def test_bad_messages(server):
-    """Every invalid fixture of the protocol gets a problem that names the field, and the connection
-    stays open."""
+    """Every invalid message of the protocol fixtures gets a problem with the name of the field, and
+    the connection stays open."""
     fixtures = sorted(glob.glob(os.path.join(ROOT, "protocol", "fixtures", "invalid", "*.json")))
     with LiveClient(server, "grid") as live:
         live.send({"op": "camera", "seq": 1})
@@ -208,7 +208,7 @@ def test_bad_messages(server):
                 what,
                 problem,
             )
-        # It still works.
+        # the connection still works
         live.send({"op": "pick", "id": "p", "camera": camera, "x": 320, "y": 240})
         assert live.receive_until("picked")["hit"]
     with LiveClient(server, "grid") as live:
@@ -223,8 +223,8 @@ def test_bad_messages(server):
 
 
 def test_presence(server):
-    """Participants: names, colors, pointers with the brush in use, the followed person, and the
-    camera of that person only."""
+    """Presence contains names, colors, pointers with the current brush, the followed participant,
+    and only that participant's camera."""
     with LiveClient(server, "grid") as one, LiveClient(server, "grid") as two, LiveClient(
         server, "grid"
     ) as three:
@@ -235,8 +235,8 @@ def test_presence(server):
         gone = {}
 
         def heard(live, condition):
-            """Returns the first presence message that fulfills the condition; earlier ones may lack
-            participants."""
+            """Returns the first presence message that fulfills the condition. Earlier messages may
+            lack participants."""
             while True:
                 users = {user["session"]: user for user in live.receive_until("presence")["users"]}
                 if set(sessions) - {gone.get("session")} <= set(users) and condition(users):
@@ -295,8 +295,8 @@ def test_presence(server):
 
 
 def test_colors(server):
-    """People on one model have different colors while there are enough; one person in two browsers
-    has one."""
+    """Users at one model have different colors while there are enough colors. A user in two
+    browsers has one color."""
     tokens = [server.add_person(f"guest{i}", "viewer") for i in range(5)]
     lives = [LiveClient(server, "grid", token=token) for token in [*tokens, tokens[0]]]
     try:
@@ -313,7 +313,8 @@ def test_colors(server):
 
 
 def test_slow_client(server):
-    """Two clients that never read do not delay a third: pictures and saved edits continue."""
+    """Two clients that never read do not delay a third client, which still receives frames and
+    saved edits."""
     model = server.get(M).json()
     cameras = [
         camera_from(model, [0.05 * turn, 0.2, 1], width=1280, height=720, up=(0, 1, 0))
@@ -355,8 +356,8 @@ def test_slow_client(server):
 
 
 def test_what_was_answered_before_the_end_is_kept(server, story):
-    """SIGTERM under load: answered edits are kept, refused ones do not exist, and the exit status
-    is 0."""
+    """After SIGTERM under load, acknowledged edits are kept and refused edits do not exist. The
+    exit status is 0."""
     answered, refused = [], []
     go_on = threading.Event()
 
@@ -396,7 +397,8 @@ def test_what_was_answered_before_the_end_is_kept(server, story):
             while True:
                 live.receive()
         except Closed as closed:
-            assert closed.code in (1001, None), closed.code  # "going away", if it was received
+            # 1001 means "going away"; None if no code arrived
+            assert closed.code in (1001, None), closed.code
         except OSError:
             pass
     assert server.process.wait(120) == 0

@@ -1,4 +1,5 @@
-"""Locked layers, over HTTP and live: annotators cannot change texels in any way, curators can."""
+"""Locked layers, over HTTP and live: annotators cannot change texels in any way, and curators
+can."""
 import hashlib
 import urllib.parse
 import uuid
@@ -10,9 +11,9 @@ from support.maps import square, tiff
 from support.meshes import folded_grid
 from support.strata_server import wait_for
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 L = M + "/layers/cracks"
-CELLS = 21  # vertices a side
+CELLS = 21  # number of vertices per side
 KEPT = "kept-for-repeats"
 
 
@@ -33,7 +34,8 @@ def texels(server, layer):
 
 
 def state(server):
-    """Returns the content that must not change: texels and history of all layers, and records."""
+    """Returns the content that must not change: the texels and history of all layers, and the
+    records."""
     layers = [each["slug"] for each in server.get(M + "/layers").json()["layers"]]
     return (
         {
@@ -283,8 +285,8 @@ def test_live(server, annotator, curator, camera):
             )
             return live.receive_until("saved", "problem")
 
-        # The layer is locked while she paints: saved parts stay, the rest is refused, and she gets
-        # the reason.
+        # The layer is locked while Ada paints. The saved parts remain, the rest is refused, and she
+        # gets the reason.
         stroke = begin(ada, 41)
         saved = extend(ada, stroke, 0, [200, 200])
         assert saved["op"] == "saved", saved
@@ -337,7 +339,7 @@ def test_live(server, annotator, curator, camera):
         again = begin(ada, 45)
         assert extend(ada, again, 0, [210, 300])["status"] == 403
         assert state(server) == before
-        # A curator can edit as if the layer were not locked.
+        # curators can edit as if the layer were not locked
         assert extend(carl, begin(carl, 46), 0, [320, 320])["op"] == "saved"
         for change in [{"op": "undo"}, {"op": "redo"}] + changes[2:]:
             carl.send({**change, "id": new(), "layer": "cracks"})
@@ -348,7 +350,7 @@ def test_live(server, annotator, curator, camera):
 
 
 def test_records(server, annotator, curator):
-    """A record that is painted on a locked layer keeps its texels, on every layer."""
+    """A record that is painted on a locked layer keeps its texels on every layer."""
     for layer in ("units", "open-units"):
         server.ok(
             "POST",
@@ -362,7 +364,7 @@ def test_records(server, annotator, curator):
         for path in ("/tables/units/records/1?", M + "/layers/open-units/records/1?"):
             is_refused(server.request("DELETE", path + texels_go, token=annotator), "Units")
             assert state(server) == before, texels_go
-    # The record was not deleted: it can be painted and changed as before.
+    # the record still exists, and can be painted and changed as before
     server.ok(
         "POST",
         M + "/layers/open-units/edits",
@@ -370,7 +372,7 @@ def test_records(server, annotator, curator):
         token=annotator,
     )
     server.ok("PATCH", "/tables/units/records/1", {"values": {"name": "One"}}, token=annotator)
-    # A map also makes no records for a layer that it may not paint.
+    # a map also adds no records for a layer that the user may not paint
     body, headers = geojson(5, 60, 60, 20), {"Content-Type": "application/geo+json"}
     before = state(server)
     is_refused(
@@ -418,12 +420,12 @@ def test_computed(server, annotator, curator):
     )
     server.ok("POST", M + "/layers/twice/compute", token=curator)
     then = texels(server, "twice")
-    # The server itself may update the computed layer: the lock is for people.
+    # the server itself may update the computed layer, because the lock applies only to users
     server.ok("PATCH", M + "/layers/twice", {"recompute": "automatic"})
     change(31)
     wait_for(lambda: texels(server, "twice") != then, "a locked automatic layer to follow")
     assert server.get(M + "/layers/twice").json()["locked"] is True
-    # A person who copies layers to another scan can paint the copies.
+    # a user who copies layers to another scan can paint the copies
     server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
     job = server.wait_for_job(
         server.ok(
@@ -440,7 +442,7 @@ def test_computed(server, annotator, curator):
 
 
 def test_repeats(server, annotator):
-    """A repeat of an edit that was saved before the lock gets its first answer, also after a
+    """A repeat of an edit that was saved before the lock gets the first response, even after a
     restart."""
     edit = {"op": "fill", "mode": "where", "where": "cracks > 0", "value": 50}
     send = lambda: server.post(

@@ -196,7 +196,7 @@ def test_looks(server, camera):
         answer = server.request(method, path, body, headers=headers)
         assert answer.status == status, f"{what}: {answer}"
 
-    # Other formats are stored as a PNG of their pixels, and shown in a frame.
+    # other formats are stored as a PNG of their pixels, and a frame shows them
     blue = lambda x, y: (0, 0, 255)
     for name, kind, other in (
         ("tga", "image/x-tga", tga(8, 4, blue)),
@@ -268,7 +268,7 @@ def test_area_of_a_section(server):
         cut.get("area_m2")
         for cut in server.ok("POST", M + "/section", {"section": planes}).json()["cuts"]
     ]
-    circle = math.pi * 0.05**2  # a ball with waves of 4 %
+    circle = math.pi * 0.05**2  # a ball with waves of 4 % of its radius
     (whole,) = area([0, 0, 1, 0])
     assert abs(whole - circle) < 0.02 * circle, whole
     half, other = area([0, 0, 2, 0], [1, 0, 0, 0])
@@ -277,10 +277,10 @@ def test_area_of_a_section(server):
 
 
 def test_section(server, camera):
-    """A stroke's record contains its section: the removed part gets no paint, and a repeat gets the
-    same answer."""
+    """The record of a stroke contains its section. The removed part gets no paint, and a repeat
+    gets the same response."""
     server.ok("POST", M + "/layers", {"name": "Inside", "type": "u8", "resolution": 2048})
-    # keeps y above 0: the half on the far side
+    # keeps the half with y above 0, which is on the far side
     cut = {**camera, "section": [[0, 1, 0, 0]]}
     stroke = {
         "op": "stroke",
@@ -333,7 +333,7 @@ def test_several_files(server, folder):
         assert server.ok("GET", f"/models/form/source/{name}").body == content
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)
-    # The command finds the files next to the mesh, and accepts named ones.
+    # the command finds the files next to the mesh, and accepts files by name
     for more in ([], ["scan.mtl", "color.png"]):
         words = [
             server.binary,

@@ -1,5 +1,5 @@
-"""Flat maps painted over a layer: shapefiles, GeoTIFF, scanned maps by their colors. With refusals,
-undo and restart."""
+"""Flat maps that are painted into a layer: shapefiles, GeoTIFF, and scanned maps by their colors.
+Also refusals, undo and a restart."""
 import json
 import os
 import urllib.parse
@@ -10,7 +10,7 @@ from support.meshes import folded_grid
 from support.pictures import pixels, png
 from support.strata_server import wait_for
 
-M = "/models/sheet"  # x and y from 0 to 100, all visible from above
+M = "/models/sheet"  # a sheet with x and y from 0 to 100, all visible from above
 POLYGONS = [[square(10, 10, 20)], [square(50, 10, 20), square(55, 15, 5)], [square(10, 60, 30)]]
 TABLE = [
     ("UNIT", "N", 6, ["11", "12", "13"]),
@@ -83,7 +83,7 @@ def test_shapefile(server, story):
         13,
         None,
     ], values(server, units, *places)
-    # A repeat with another boundary is the same map.
+    # a repeat with another boundary counts as the same map
     again = server.ok(
         "POST",
         query(units + "/polygons", attribute="UNIT"),
@@ -100,7 +100,7 @@ def test_shapefile(server, story):
     server.ok("POST", units + "/redo")
     assert values(server, units, *places) == [11, 12, None, 13, None]
 
-    # One value for all polygons, from a zip with folders, without the attribute table.
+    # one value for all polygons, from a zip with folders and without the attribute table
     zipped = packed(
         **{
             "survey/units_shp": files["units_shp"],
@@ -116,7 +116,7 @@ def test_shapefile(server, story):
     )
     assert values(server, units, *places) == [7, 7, None, 7, None]
 
-    # File names in an unknown encoding are written to the journal like others.
+    # the journal stores file names in an unknown encoding like other names
     body, headers = form(**files)
     server.ok(
         "POST",
@@ -141,7 +141,7 @@ def test_shapefile(server, story):
         (1, "salt"),
         (4, "crack"),
     ] and points[1]["color"] == "#112233ff", points
-    # Numbers with names, from GeoJSON.
+    # numbers with names, from GeoJSON
     feature = {
         "type": "Feature",
         "properties": {"id": 9, "what": "moss"},
@@ -157,8 +157,8 @@ def test_shapefile(server, story):
 
 
 def check_crs_question(server, path, good):
-    """The model has no coordinate system: a map with one is painted only if the request confirms
-    that it is the model's."""
+    """The model has no coordinate system. A map with a coordinate system is painted only if the
+    request confirms that it is the model's."""
     polygons, of_polygons = form(a_shp=good, a_prj=UTM.encode())
     raster = tiff(10, 10, lambda x, y: x, kind="B", scale=10.0, origin=(0, 100), epsg=25830), {
         "Content-Type": "image/tiff"
@@ -199,7 +199,7 @@ def check_crs_question(server, path, good):
             > 0
         )
         server.ok("POST", path + "/undo")
-    assert server.get(M).json()["crs"] == ""  # the confirmation is only for this map
+    assert server.get(M).json()["crs"] == ""  # the confirmation applies only to this map
 
 
 def test_shapefile_refusals(server):
@@ -290,7 +290,7 @@ def test_shapefile_refusals(server):
 
 def test_raster(server):
     kind = {"Content-Type": "image/tiff"}
-    # 10 × 10 pixels of 10 units over the sheet; the first row is the highest y.
+    # 10 × 10 pixels of 10 units over the sheet; the first row has the highest y
     height = lambda x, y: -9999 if (x, y) == (0, 0) else 0.5 * x + y
     raster = tiff(10, 10, height, nodata="-9999", scale=10.0, origin=(0, 100), epsg=25830)
     told = contents(server, raster, kind)
@@ -313,14 +313,15 @@ def test_raster(server):
     assert values(server, depth, *places) == [1.0, None, 13.5], values(server, depth, *places)
     server.ok("POST", depth + "/undo")
     assert values(server, depth, *places) == [None, None, None]
-    # A given place overrides the file's own; so does a world file next to it.
+    # a position in the request overrides the file's own position, and so does a world file next to
+    # it
     server.ok("POST", query(depth + "/picture", world="5,0,0,-5,2.5,97.5"), raster, headers=kind)
     assert values(server, depth, (12, 98)) == [1.0] and values(server, depth, (95, 5)) == [None]
     server.ok("POST", depth + "/undo")
     body, headers = form(a_tif=raster, a_tfw=b"10\n0\n0\n-10\n15\n95\n")
     server.ok("POST", depth + "/picture", body, headers=headers)
     assert values(server, depth, (15, 95), (25, 95)) == [None, 0.5]
-    # Bands.
+    # a picture with two bands
     two = tiff(2, 1, lambda x, y: (x, 7 + x), kind="h", samples=2, scale=50.0, origin=(0, 100))
     counts = layer(server, "Counts", "i16")
     server.ok("POST", query(counts + "/picture", band=2), two, headers=kind)
@@ -378,7 +379,7 @@ def test_colors(server):
             color = (44, 64, 180)
         return tuple(each + shake for each in color)
 
-    picture = png(100, 100, scanned)  # one pixel a unit; its first row is y = 100
+    picture = png(100, 100, scanned)  # one pixel per unit; the first row is at y = 100
     place = "1,0,0,-1,0.5,99.5"
     told = contents(server, picture, {"Content-Type": "image/png"})
     colors = told["colors"]
@@ -417,7 +418,7 @@ def test_colors(server):
 
 
 def look_colors(server, look, *places):
-    """Returns the colors that a camera from above sees at these places of the sheet, unlit."""
+    """Returns the colors that a camera from above sees at these points of the sheet, unlit."""
     answer = server.ok(
         "POST",
         M + "/frame",
@@ -433,7 +434,7 @@ def look_colors(server, look, *places):
     return [rows[round(400 - 4 * y - 0.5)][round(4 * x - 0.5)] for x, y in places]
 
 
-# 400 × 400 pixels over the sheet, without perspective.
+# 400 × 400 pixels over the sheet, without perspective
 ABOVE = {
     "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -100, 1],
     "projection": [0.02, 0, 0, 0, 0, 0.02, 0, 0, 0, 0, -0.01, 0, 0, 0, -1, 1],
@@ -446,7 +447,7 @@ def test_orthophoto(server, story):
     def colored(x, y):
         return (220, 30, 30) if x < 25 else (30, 30, 220) if y < 15 else (30, 200, 30)
 
-    picture = png(40, 40, colored)  # over x from 0 to 80, y from 20 to 100
+    picture = png(40, 40, colored)  # covers x from 0 to 80 and y from 20 to 100
     plain = look_colors(
         server,
         server.ok("POST", M + "/looks?name=White", png(8, 8, lambda x, y: (255, 255, 255))).json()[
@@ -482,13 +483,13 @@ def test_orthophoto(server, story):
         ).json()["id"]
         == job["id"]
     )
-    # in the middle of charts
+    # points in the middle of charts
     seen = look_colors(server, look["id"], (30, 90), (70, 90), (70, 50), (48, 90), (52, 90))
     near = lambda a, b: all(abs(x - y) <= 3 for x, y in zip(a, b))
     wanted = [(220, 30, 30), (30, 30, 220), (30, 200, 30), (220, 30, 30), (30, 30, 220)]
     assert all(near(a, b) for a, b in zip(seen, wanted)), seen
-    # The picture ends at x = 80 and y = 20: beyond it is nothing of the picture, and before it no
-    # dark seam.
+    # The picture ends at x = 80 and y = 20. Outside there is no color of the picture, and inside
+    # there is no dark seam.
     bare = look_colors(server, look["id"], (90, 10), (77, 50))
     assert (
         not near(bare[0], plain[0])
@@ -577,8 +578,8 @@ def test_orthophoto(server, story):
 
 
 def test_cancelled_orthophoto(server):
-    """Cancelled while it runs: neither a surface image nor a file remains, and the name can be used
-    again."""
+    """A job that is canceled while it runs leaves neither a surface image nor a file, and the name
+    can be used again."""
     things = lambda: (
         [look["slug"] for look in server.get(M + "/looks").json()["looks"]],
         os.listdir(os.path.join(server.data, "uploads")),

@@ -1,6 +1,6 @@
-// fast-check makes thousands of valid and invalid calls of the contract to a real server. No answer
-// may be an internal error, the contract must describe each answer for its call, and the server
-// must not execute calls that the contract forbids. STRATA_SEED repeats a run's calls,
+// fast-check sends thousands of valid and invalid requests of the contract to a real server. No
+// response may be an internal error. The contract must describe each response. The server must not
+// execute requests that the contract forbids. STRATA_SEED repeats the requests of an earlier run.
 // STRATA_OPERATION (an operationId) selects one operation.
 import http from "node:http";
 import { fc } from "../support/js/arbitraries.mjs";
@@ -10,17 +10,17 @@ import { Site } from "../support/js/site.mjs";
 import { kLong_ms, StrataServer } from "../support/js/strata-server.mjs";
 import { kSpare } from "../support/js/vocabulary.mjs";
 
-// each operation is called early and late, and after different ones; many more rounds fill lists
-// that have a limit (looks of a model)
+// each operation runs early and late, and after different operations; many more rounds would fill
+// lists that have a limit (looks of a model)
 const kRounds = 5;
-const kCallsInRound = 10; // for each operation
-const kAtOnce = 4; // the limit of concurrent downloads: the server would refuse a fifth (503)
-// the largest body that the server reads of a refused call; larger ones wait for its permission,
-// since it may end the connection
+const kCallsInRound = 10; // per operation
+const kAtOnce = 4; // the limit of concurrent downloads; the server would refuse a fifth (503)
+// The server reads the body of a refused request up to this size. Requests with a larger body wait
+// for permission, because the server may end the connection.
 const kSmallBody = 60_000;
 const kFewest = 2000;
 
-/** Operations that cannot succeed here, or not reliably. */
+/** Operations that cannot succeed here, or that succeed only sometimes. */
 const kExceptions = {
   live: "it becomes a WebSocket, which live_cases_test.py opens",
   change_password:
@@ -39,7 +39,7 @@ const site = new Site(server);
 const agent = new http.Agent({ keepAlive: true, maxSockets: kAtOnce });
 const counts = new Map(contract.operations.map(({ id }) => [id, new Map()]));
 const slowest = [];
-let tokens_of_test = new Set(); // ids
+let tokens_of_test = new Set(); // ids of the test's tokens
 
 // a lone surrogate becomes a replacement character
 const as_segment = (text) => encodeURIComponent(Buffer.from(text).toString());
@@ -80,7 +80,7 @@ function bytes_of(body) {
   return null;
 }
 
-/** The call as it is sent. */
+/** Returns the request in its final form. */
 async function request_of(operation, { path, query, headers, body, token }) {
   const known = secrets();
   let target = operation.path;
@@ -132,7 +132,7 @@ function send({ method, target, headers, body }) {
         answer.on("data", (chunk) => {
           chunks.push(chunk);
           if (answer.headers["content-type"] !== "text/event-stream") return;
-          done(); // the stream has no end
+          done(); // an event stream has no end
           request.destroy();
         });
         answer.on("end", () => {
@@ -172,7 +172,7 @@ async function check(operation, call) {
     );
 }
 
-/** Runs the tasks, several at once. */
+/** Runs the tasks, several at the same time. */
 async function run_all(tasks) {
   const waiting = [...tasks];
   const work = async () => {

@@ -1,4 +1,4 @@
-"""pandas reads every CSV and XLSX of the API as a table without corrections: rows, columns and
+"""pandas reads every CSV and XLSX file of the API as a table without corrections: rows, columns and
 types."""
 import io
 import urllib.parse
@@ -24,7 +24,7 @@ TERMS = "code,parent,label,label-es,color\nloss,,Loss,Pérdida,#c04020\nflaking,
 
 
 class Reader:
-    """Reads tables as a user's script does, and records which operations were read."""
+    """Reads tables as a user's script does, and records the operations."""
 
     def __init__(self, server):
         self.server, self.read = server, set()
@@ -56,8 +56,8 @@ class Reader:
 
 
 def whole(frame):
-    """Checks for a written index, for unnamed or doubled columns, and for a byte order mark before
-    the first name."""
+    """Checks that the table has no index column, no unnamed or doubled columns, and no byte order
+    mark before the first name."""
     names = [str(name) for name in frame.columns]
     assert not [
         name
@@ -253,8 +253,8 @@ def test_texels(server, reader):
         < 1e-6
     )
     cells = reader.csv("get_texel_lines", WALL + "/layers/moisture/texels.csv", cell="5mm")
-    # The same computed from the texels. The wall crosses z = 0, and so do some cells, but no cell
-    # is left out or counted twice.
+    # Computes the same values from the texels. The wall and some cells cross z = 0, but no cell may
+    # be omitted or counted twice.
     columns = [
         each.groupby([each["x"] // 5, each["y"] // 5])["area_m2"].sum() for each in (frame, cells)
     ]

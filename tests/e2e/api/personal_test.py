@@ -1,5 +1,5 @@
-"""The data of one person, over HTTP and live: the person's own view of a model's layers, the name
-and the color. Also computed layers, which are locked until somebody unlocks them for edits by hand.
+"""The data of one user, over HTTP and live: the user's own view of a model's layers, the name and
+the color. Also computed layers, which are locked until a curator unlocks them for edits by hand.
 """
 import pytest
 from support.cameras import camera_from
@@ -9,7 +9,7 @@ from support.pictures import pixels
 from support.strata_server import wait_for
 from support.workbook import Workbook
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 V = "/me/models/sheet/view"
 CSV = {"Content-Type": "text/csv"}
 
@@ -66,7 +66,7 @@ def test_personal_views(server):
     assert kept["layers"][1]["opacity"] == 0.25 and kept["layers"][1]["palette"]["points"][0][
         "color"
     ].startswith("#112233"), kept
-    # The view is hers in any browser, and nobody else's.
+    # Ada has this view in every browser, and no other user has it.
     with LiveClient(server, model="sheet", token=ada) as live:
         assert live.hello()["personal_view"] == kept
     assert (
@@ -76,8 +76,8 @@ def test_personal_views(server):
     assert server.ok("GET", M + "/layers/cracks").json()["order"] == 0
     with LiveClient(server, model="sheet", token=vera) as live:
         assert live.hello()["personal_view"] == {"layers": []}
-    # Viewers also have their own. Layers that a person cannot see cannot be named, and are left out
-    # once they become invisible.
+    # Viewers also have a personal view. A request cannot name layers that the user cannot see.
+    # Layers that become invisible are omitted.
     server.ok("PUT", V, {"layers": [{"layer": "salts", "visible": False}]}, token=vera)
     refused = server.request(
         "PUT", V, {"layers": [{"layer": "secret", "visible": True}]}, token=vera
@@ -94,7 +94,7 @@ def test_personal_views(server):
     assert shown(server, vera) == [] and [each["layer"] for each in shown(server, ada)] == [
         ids["cracks"]
     ]
-    # Unknown members and values, and a request without content.
+    # unknown members and values, and a request without content
     for body in (
         {"layers": [{"layer": "cracks", "highlight": {"keys": [1]}}]},
         {"layers": [{"layer": "none"}]},
@@ -131,8 +131,8 @@ def test_personal_views(server):
 
 
 def test_order_in_pictures(server):
-    """Pictures use the person's own order: with two layers that cover everything, the other one is
-    visible."""
+    """Frames use the user's own order. If the user's order swaps two opaque layers, the other one
+    is visible."""
     for name, color in (("under", "#ff0000"), ("over", "#0000ff")):
         server.ok(
             "POST",
@@ -201,7 +201,7 @@ def test_computed(server):
         lowest - 2,
     ), height
 
-    # Nobody can edit them by hand, with any role.
+    # users with any role cannot edit the layers by hand
     for layer, name in (("twice", "Twice"), ("height", "Height")):
         for token in (True, carl, ada):
             for answer in (
@@ -213,7 +213,7 @@ def test_computed(server):
                     answer.json()["field"],
                 ) == ("Layer is locked", "layer"), answer
                 assert "its values were computed" in answer.json()["detail"], answer
-    # The computation itself continues to work.
+    # the computation still changes the layer
     assert fill(server, "wet", 0.5, "x < 50").status == 200
     assert server.ok("POST", M + "/layers/twice/compute", token=carl).json()["locked"] is True
     assert server.get(M + "/layers/twice/statistics").json()["max"] == 1
@@ -223,7 +223,7 @@ def test_computed(server):
     assert refused.status == 422 and refused.json()["field"] == "locked", refused
     assert server.request("PATCH", M + "/layers/twice", {"locked": False}, token=ada).status == 403
 
-    # Unlocked, it can be edited by hand; the layer records this and is not computed again.
+    # an unlocked layer can be edited by hand; it records the edit and is not computed again
     server.ok("PATCH", M + "/layers/twice", {"recompute": "automatic"}, token=carl)
     open_ = server.ok("PATCH", M + "/layers/twice", {"locked": False}, token=carl).json()
     assert (open_["locked"], open_["edited_by_hand"], open_["computed"]) == (
@@ -238,7 +238,7 @@ def test_computed(server):
     assert (
         server.request("POST", M + "/layers/twice/compute?overwrite=true", token=ada).status == 403
     )
-    # Another automatic layer that is visibly computed later shows that this one was skipped.
+    # another automatic layer is computed later, which shows that the server skipped this one
     server.ok(
         "POST",
         M + "/layers",
@@ -286,7 +286,7 @@ def test_computed(server):
 
 
 def test_people(server):
-    """One color and one name, wherever a person is named."""
+    """A user has the same color and name in every response."""
     ida, rob = server.add_person("ida", "curator"), server.add_person("rob", "annotator")
     server.ok("PATCH", "/users/ida", {"full_name": "Ida Roe"})
     me = server.ok("GET", "/me", token=ida).json()
@@ -390,7 +390,7 @@ def test_words(server):
         each["values"]["note"]
         for each in server.ok("GET", f"/tables/finds/records?{query}").json()["records"]
     ]
-    # Terms in the order of the tree, texts by the alphabet of a language.
+    # terms are sorted by the tree, and texts by the alphabet of a language
     assert order("sortby=damage") == ["Apfel", "Öl", "äther", "Zebra", "banane"], order(
         "sortby=damage"
     )
@@ -412,8 +412,8 @@ def test_words(server):
     )
     assert server.get("/tables/finds/records?sortby=note&lang=de%22%3B--").status == 200
 
-    # Labels in files; terms with the same label appear with their codes. Importing the file again
-    # changes nothing.
+    # Files contain labels. Terms with the same label appear with their codes. A second import of
+    # the file changes nothing.
     for query in (
         "f=csv",
         "f=csv&lang=de",
@@ -457,7 +457,7 @@ def test_words(server):
         (4, "Record not found"),
     ], report
 
-    # People choose the title column, which may be one of terms.
+    # users choose the title column, which may contain terms
     assert "title_column" not in server.ok("GET", "/tables/finds").json()
     titled = server.ok("PATCH", "/tables/finds", {"title_column": "damage"}).json()
     assert (

@@ -1,5 +1,5 @@
-"""Roles in one project: a guest sees nothing of other projects, in every operation of the contract,
-and has the rights of each role in their own."""
+"""Roles in one project. A guest sees nothing of other projects, in every operation of the contract.
+In the guest's own projects, each role has its rights."""
 import pytest
 from support.browsers import uncoloured
 from support.live_client import LiveClient, Refused
@@ -34,7 +34,7 @@ def test_nothing_is_seen_without_a_role(server, guest, villa):
 
 
 def test_ladder(server, guest, villa, forum):
-    """In the villa, from no role to curator and back."""
+    """A guest in the villa, from no role to curator and back."""
     model, table = "/models/" + villa["model"]["slug"], f"/tables/{villa['table']['id']}"
     tries = (
         ("GET", model, None),
@@ -91,7 +91,7 @@ def test_ladder(server, guest, villa, forum):
         ).json()["id"]
     )
     assert imported["state"] == "done", imported
-    # Nothing can be transferred from a model of another project.
+    # layers cannot be transferred from a model of another project
     refused = [
         guest.request("POST", "/models/second/transfer", {"from": source})
         for source in (forum["model"]["slug"], "ghost")
@@ -132,8 +132,8 @@ def test_scripts(server, guest, villa):
 
 
 def test_both(server, villa, forum):
-    """A person who can view everything has more rights in a project with a role, and no fewer
-    elsewhere."""
+    """A user who can view all projects has more rights in a project with a role, and the same
+    rights elsewhere."""
     vera = Someone(server, "Vera", "viewer")
     vera.now("villa", "curator")
     vera.ok("PATCH", "/models/" + villa["model"]["slug"], {"credit": "Vera"})
@@ -148,7 +148,7 @@ def test_both(server, villa, forum):
     anne = Someone(server, "Anne", "curator")
     anne.now("villa", "viewer")
     anne.ok("PATCH", "/models/" + villa["model"]["slug"], {"credit": "Anne"})
-    # Errors are reported.
+    # invalid requests get an error
     for body, status in (
         ({"role": "administrator"}, 422),
         ({"role": "guest"}, 422),
@@ -165,7 +165,7 @@ def test_both(server, villa, forum):
 
 
 def test_live(server, guest, villa):
-    """An open connection ends with the role; a new one has the new role."""
+    """An open connection ends with the role. A new connection has the new role."""
 
     def look():
         return LiveClient(

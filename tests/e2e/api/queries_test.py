@@ -1,5 +1,5 @@
-"""Queries over HTTP: statistics with their parts, of earlier times, of a condition; selections,
-cross-tables, refusals."""
+"""Queries over HTTP: statistics with their parts, of earlier times and with a condition;
+selections, cross-tables, refusals."""
 import math
 import urllib.parse
 
@@ -7,7 +7,7 @@ import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 
 
 def layer(server, name, kind="u8"):
@@ -20,7 +20,7 @@ def layer(server, name, kind="u8"):
 
 
 def dab(server, path, value, x, y, radius):
-    """Paints a disc of `radius` mm around a place, as a reading."""
+    """Paints a disc of `radius` mm around a point, as a reading."""
     query = urllib.parse.urlencode({"radius_mm": radius})
     return server.ok(
         "POST",

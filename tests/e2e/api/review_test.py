@@ -1,5 +1,5 @@
-"""Edits that wait for review, over HTTP and live: the right to decide, notifications, and refusals.
-"""
+"""Edits that wait for review, over HTTP and live: the right to decide, notifications, and
+refusals."""
 import hashlib
 import uuid
 
@@ -9,7 +9,7 @@ from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 L = M + "/layers/cracks"
 
 
@@ -39,7 +39,7 @@ def entry(server, sequence):
 
 
 class Site:
-    """Anna and Ben annotate, Cleo curates, Vera views."""
+    """Anna and Ben are annotators, Cleo is a curator, and Vera is a viewer."""
 
     def __init__(self, server):
         self.server = server
@@ -197,7 +197,7 @@ def test_refusals(site):
     assert server.request("PATCH", L, {"review": "yes"}).status == 422
     assert (texels(server), waiting(server)["total"]) == (then, count)
 
-    # A repeat gets the first answer, and decides nothing.
+    # a repeat gets the first response and decides nothing
     body, key = {"decision": "accept", "all": True}, {"Idempotency-Key": "once"}
     first = server.request("POST", L + "/review", body, headers=key, token=site.cleo)
     again = server.request("POST", L + "/review", body, headers=key, token=site.cleo)
@@ -209,7 +209,7 @@ def test_refusals(site):
         == 422
     )
 
-    # A person has no review queue of layers that they cannot see.
+    # a user gets no review queue for layers that the user cannot see
     server.ok(
         "POST",
         M + "/layers",

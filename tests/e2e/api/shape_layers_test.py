@@ -27,7 +27,7 @@ def ended(server, job):
 
 
 def compute(server, at, kind, **more):
-    """Creates the layer of a recipe; returns it with its statistics."""
+    """Creates a layer from a recipe. Returns the layer and its statistics."""
     compute_members = {
         key: more.pop(key)
         for key in ("radius_mm", "distance_mm", "rays", "absolute", "model", "property", "source")
@@ -84,7 +84,7 @@ def test_refusals(server):
     for body, status, field in cases:
         answer = server.post(BALL + "/layers", body)
         assert answer.status == status and answer.json().get("field") == field, (body, answer)
-    # Errors that only the job itself finds.
+    # errors that are found only while the job runs
     for body, field in [
         (layer(kind="boundary_distance"), "compute.kind"),
         (layer(kind="model_distance", model="ball"), "compute.model"),
@@ -131,7 +131,8 @@ def test_kinds(server):
     assert abs(statistics["max"] - high) < 0.2 and abs(statistics["mean"]) < 0.5, statistics
     assert absolute["name"] == "absolute height"
 
-    server.ok("PATCH", BALL, {"up": "-z"})  # upside down: the lowest is now the highest
+    # the ball is upside down, so the lowest point is now the highest
+    server.ok("PATCH", BALL, {"up": "-z"})
     _, statistics = compute(server, BALL, "height", absolute=True, name="upside down")
     assert abs(statistics["max"] + low) < 0.2 and abs(statistics["min"] + high) < 0.2, (
         statistics,
@@ -157,14 +158,14 @@ def test_kinds(server):
     ), "only what lies flat faces no way"
 
     mean, statistics = compute(server, BALL, "mean_curvature", radius_mm=12)
-    # radius 50 mm, with waves
+    # the radius is 50 mm, with waves
     assert mean["unit"] == "1/mm" and 0.015 < statistics["mean"] < 0.025, statistics
     assert (
         mean["palette"]["min"] == -mean["palette"]["max"] and "12 mm" in mean["description"]
     ), mean
     _, gaussian = compute(server, BALL, "gaussian_curvature", radius_mm=12)
-    # Gauss and Bonnet: the integral over a closed surface without holes is 4 pi; a fit over a part
-    # of a wave is not exact.
+    # By the Gauss–Bonnet theorem, the integral over a closed surface without holes is 4 pi. A fit
+    # over a part of a wave is not exact.
     total = gaussian["mean"] * gaussian["area_m2"] * 1e6 / (4 * math.pi)
     assert abs(total - 1) < 0.1, total
     _, largest = compute(server, BALL, "max_curvature", radius_mm=12)
@@ -185,7 +186,7 @@ def test_kinds(server):
 
 def test_distance(server):
     apart, statistics = compute(server, BALL, "model_distance", model="larger-ball")
-    # The same waves at 51 mm, measured in centimeters there.
+    # the other model has the same waves at 51 mm, and its unit is the centimeter
     assert (
         apart["unit"] == "mm" and abs(statistics["mean"] + 1) < 0.05 and statistics["max"] < -0.6
     ), (statistics["mean"], statistics["max"])
@@ -252,7 +253,7 @@ def test_repeats(server):
 
 
 def with_quality(scan):
-    """Returns a PLY with float positions and another property: twice the height."""
+    """Returns a PLY with float positions and an additional property, which is twice the height."""
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
     vertices = [struct.unpack_from("<3f", body, 12 * i) for i in range(count)]
@@ -288,7 +289,7 @@ def test_vertex_property(server):
         abs(quality["mean"] - 2 * height["mean"]) < 1e-4
         and abs(quality["area_m2"] - height["area_m2"]) < 1e-12
     )
-    # The same numbers from a file, one per line, in the order of the scan.
+    # the same numbers from a file, one per line, in the order of the scan's vertices
     scan = bumpy_ball()
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
@@ -308,8 +309,8 @@ def test_vertex_property(server):
     )
     server.ok("POST", path + "/undo")
     assert server.get(path + "/statistics").json()["texels"] == 0
-    # Whole numbers are keys: no values between them, and the area around a vertex without a key
-    # goes to its neighbors.
+    # Whole numbers are keys, so there are no values between them. The area around a vertex without
+    # a key gets the keys of its neighbors.
     server.ok("POST", model + "/layers", {"name": "Sides", "type": "u8"})
     sides = "".join("\n" if abs(z) < 10 else ("7\n" if z > 0 else "200\n") for z in heights)
     server.ok("PUT", model + "/layers/sides/vertices.csv?source=ball.ply", sides.encode())
@@ -342,8 +343,8 @@ def test_vertex_property(server):
 
 
 def test_transfer(server):
-    """Classes of height, transferred to a scan with another tessellation, atlas and unit, with the
-    noise of scanning."""
+    """Classes of height are transferred to a scan with another tessellation, atlas and unit, and
+    with the noise of scanning."""
     source = server.import_model(bumpy_ball(60, 120), "then.ply", name="Then", unit="mm")
     palette = {
         "mode": "categorical",
@@ -368,7 +369,7 @@ def test_transfer(server):
     job = run(server, "/models/now/transfer", {"from": "then", "tolerance_mm": 1})
     report = job["report"]
     assert report["from"] == source["id"] and report["matched_m2"] / now["area_m2"] > 0.999, report
-    # In their order: the layer that was computed last is the lowest.
+    # the layers keep their order: the layer that was computed last is the lowest
     assert [layer["name"] for layer in report["layers"]] == ["Slope", "Classes"] and [
         layer["layer"] for layer in report["layers"]
     ] == job["layers"]
@@ -397,11 +398,11 @@ def test_transfer(server):
     )
     print(f"transfer: {len(keys[0])} keys, largest difference of area {100 * worst:.2f} %")
     assert worst < 0.02, worst
-    # Undo works as for any other edit.
+    # undo works as for every other edit
     server.ok("POST", "/models/now/layers/classes/undo")
     assert server.get("/models/now/layers/classes/statistics").json()["texels"] == 0
 
-    # Half of the ball is missing: the report lists its content as lost.
+    # Half of the ball is missing, and the report lists its content as lost.
     half = bumpy_ball(97, 211)
     server.import_model(cut_below(half), "half.ply", name="Half", unit="mm")
     job = run(
@@ -434,7 +435,7 @@ def test_the_server_ends_with_a_clean_log(server):
 
 
 def noisy(scan, amplitude):
-    """Moves every vertex by up to `amplitude` along each axis, the same way in every run."""
+    """Moves every vertex by up to `amplitude` along each axis, identically in every run."""
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
     shake = random.Random(11)
@@ -446,7 +447,7 @@ def noisy(scan, amplitude):
 
 
 def cut_below(scan):
-    """Removes the faces below z = 0."""
+    """Removes the faces below the plane z = 0."""
     head, body = scan.split(b"end_header\n", 1)
     count, faces = (
         int(head.split(b"element %s " % name)[1].split()[0]) for name in (b"vertex", b"face")

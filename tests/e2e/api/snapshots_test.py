@@ -1,4 +1,4 @@
-"""Snapshots over HTTP: names of states of a model, the rights to change them, restores from them,
+"""Snapshots over HTTP: names of states of a model, the rights to change them, restoring from them,
 and refusals."""
 import pytest
 from support.cameras import camera_from

@@ -1,4 +1,4 @@
-"""The history of a model: the timeline, its steps, what differs between two states, restores of a
+"""The history of a model: the timeline, its steps, the difference between two states, restoring a
 part, and live views of the past."""
 import time
 import uuid
@@ -8,7 +8,7 @@ from support.cameras import camera_from
 from support.live_client import LAST_RECTANGLE, LiveClient
 from support.meshes import folded_grid
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 L = M + "/layers/cracks"
 EDITS = 100_000
 
@@ -39,7 +39,8 @@ def camera(server):
 
 @pytest.fixture(scope="module")
 def painted(server, people, camera):
-    """Returns the answers: two strokes by Ada, one by Ben, one on a private layer, one fill."""
+    """Returns the responses to two strokes by Ada, one by Ben, one on a private layer, and one
+    fill."""
 
     def stroke(layer, x, value, token):
         body = {
@@ -88,7 +89,7 @@ def test_the_timeline_counts_what_the_caller_sees(server, people, painted):
     cracks, salts = (server.get(f"{M}/layers/{slug}").json()["id"] for slug in ("cracks", "salts"))
     assert one["layers"] == [cracks, salts]
 
-    # a time that ends with the second stroke, as the page finds the state of a time
+    # The interval ends with the second stroke. The page finds the state of a time in the same way.
     second = steps(server)["steps"][1]
     until = server.ok("GET", f"{M}/timeline?intervals=1&to={second['time']}").json()
     assert until["intervals"][-1]["last"] >= second["last"], until
@@ -110,7 +111,7 @@ def test_the_timeline_counts_what_the_caller_sees(server, people, painted):
 def test_steps_are_listed_around_a_sequence(server, people, painted):
     sequences = [answer["sequence"] for answer in painted]
     assert lasts(steps(server)) == sequences
-    seen = [sequences[i] for i in (0, 1, 2, 4)]  # not the one of the private layer
+    seen = [sequences[i] for i in (0, 1, 2, 4)]  # without the stroke on the private layer
     assert lasts(steps(server, token=people["vera"])) == seen
     assert lasts(steps(server, f"?before={seen[2]}&limit=2", people["vera"])) == seen[1:3]
     after = steps(server, f"?after={seen[0]}&limit=2", people["vera"])
@@ -174,7 +175,7 @@ def test_the_own_steps_are_what_undo_and_redo_change(server, people, painted):
     assert listed(token=people["vera"])["done"] == []
     one = listed("?limit=1")
     assert len(one["done"]) == 1 and one["more"] is True
-    # back over two steps of this layer, in the order of the list
+    # goes back over two steps of this layer, in the order of the list
     cracks = server.get(L).json()["id"]
     of_layer = [step for step in before["done"] if step["layer"] == cracks]
     for _ in of_layer[:2]:
@@ -232,12 +233,12 @@ def test_a_selection_finds_what_changed_between_two_states(server, people, paint
     counted = server.ok("POST", L + "/difference", {"from": then}).json()
     assert 0 < found["texels"] == counted["texels"], (found, counted)
     assert found["area_m2"] == pytest.approx(counted["area_m2"])
-    # the same texels in either direction, and none between equal states
+    # the difference has the same texels in either direction, and no texels between equal states
     newest = server.get(M).json()["sequence"]
     back = {"changed": {"from": newest, "to": then, "layers": ["cracks"]}}
     assert select(back)["texels"] == found["texels"]
     assert select({"changed": {"from": newest}})["texels"] == 0
-    # with a place and a condition: only inside
+    # an area and a condition limit the difference to their inside
     left = {"camera": camera, "path": [[0, 0], [258, 0], [258, 480], [0, 480]]}
     part = server.ok("POST", L + "/difference", {"from": then, "within": left}).json()
     assert select({**one, "within": left})["texels"] == part["texels"] < found["texels"]
@@ -247,7 +248,7 @@ def test_a_selection_finds_what_changed_between_two_states(server, people, paint
     assert select(everything)["texels"] > found["texels"]
     picture = {"camera": camera, "width": 64, "height": 48}
     assert select({**one, "picture": picture})["picture"].startswith("iVBOR")
-    # another resolution finds about the same surface
+    # another resolution gives approximately the same surface area
     server.ok("POST", M + "/layers", {"name": "Fine", "type": "u8", "resolution": 4096})
     fine = select({"changed": {"from": then, "layers": ["cracks", "fine"]}})
     assert fine["resolution"] == 4096 and fine["area_m2"] == pytest.approx(

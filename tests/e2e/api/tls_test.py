@@ -1,5 +1,5 @@
-"""https: by the server itself from files, with renewal, and behind nginx with the project's
-configuration."""
+"""https: by the server itself with certificate files and their renewal, and behind nginx with the
+project's configuration."""
 import os
 import re
 import shutil
@@ -37,8 +37,8 @@ def shown_by(server):
 
 
 def sign_in(server):
-    """Signs in through the page; returns the cookie's whole line. `server.url` is the address that
-    the browser sends."""
+    """Signs in through the page. Returns the whole line of the cookie. `server.url` is the address
+    that the browser sends."""
     invitation = (
         server.ok("POST", "/users", {"user": "hana", "role": "annotator"})
         .json()["path"]
@@ -67,13 +67,13 @@ def sign_in(server):
 
 
 def check_everything(server):
-    """The requests of a browser and of a script, from signing in to a frame."""
+    """Sends the requests of a browser and of a script, from signing in to a frame."""
     server.import_model(folded_grid(21), "sheet.ply", name="Sheet", unit="mm")
     whole = sign_in(server)
     assert "Secure" in whole and "HttpOnly" in whole, whole
     cookie = whole.split(";")[0]
     assert server.ok("GET", "/me", headers={"Cookie": cookie}, token=False).json()["user"] == "hana"
-    # Larger than any buffer on the way, in both directions.
+    # the request and the response are larger than every buffer between client and server
     points = [[x % 100, x // 1000, 0.5] for x in range(100_000)]
     answer = server.ok(
         "POST",
@@ -178,8 +178,8 @@ def test_https_from_files(folder):
         ) as link:
             assert link.version() == "TLSv1.2"
 
-        # Requests to http:// are redirected; connections without HTTP, or with a late start, do no
-        # harm.
+        # requests to http:// are redirected; connections without HTTP, or with a late start, cause
+        # no failure
         with socket.create_connection((server.host, server.port)) as plain:
             plain.sendall(
                 f"GET /pot?x=1 HTTP/1.1\r\nHost: {server.host}:{server.port}\r\n\r\n".encode()
@@ -196,7 +196,8 @@ def test_https_from_files(folder):
         assert server.get("/me").status == 200
         silent.close()
 
-        # The command line reaches a server on its own machine, with any name in the certificate.
+        # the command line can connect to a server on its own machine, regardless of the name in the
+        # certificate
         scan = os.path.join(folder, "cli.ply")
         with open(scan, "wb") as file:
             file.write(folded_grid(5))
@@ -207,13 +208,13 @@ def test_https_from_files(folder):
         )
         assert server.get("/models/cli").status == 200
 
-        # Renewal: the files are written one after the other; new connections get the new
-        # certificate, open ones stay open.
+        # During renewal the files are written one after the other. New connections get the new
+        # certificate, and open connections stay open.
         with LiveClient(server, "sheet") as live:
             live.hello()
             renewed = make_certificate(folder, "second", "rsa")
             shutil.copy(renewed[0], chain)
-            assert shown_by(server) == "first"  # its key is still missing
+            assert shown_by(server) == "first"  # the new key is still missing
             shutil.copy(renewed[1], key)
             wait_for(lambda: shown_by(server) == "second", "the renewed certificate")
             server.tls = trusting(chain)
@@ -287,7 +288,7 @@ def test_https_behind_nginx(folder):
             stderr=subprocess.DEVNULL,
         )
         try:
-            upstream, server.port = server.port, port  # from here on all requests use the proxy
+            upstream, server.port = server.port, port  # all further requests use the proxy
             server.tls = trusting(chain)
 
             def answers():

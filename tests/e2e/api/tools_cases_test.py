@@ -1,5 +1,5 @@
 """Brush shapes of the site: made from pictures, used for painting over HTTP and WebSocket, renamed,
-deleted while they are in use, and all that after a restart."""
+deleted while they are in use, and tested again after a restart."""
 import uuid
 
 import pytest
@@ -46,7 +46,7 @@ def test_making(server, story):
     rows = pixels(server.ok("GET", "/tools/left-half/picture").body, ALPHA)
     assert len(rows) == SIDE and all(row == [(255,)] * 128 + [(0,)] * 128 for row in rows)
 
-    # A wide picture with transparency, and one that is dark on light.
+    # a wide picture with transparency, and a dark picture on a light background
     wide = png(40, 20, lambda x, y: (9, 9, 9, 255 if x >= 20 else 0))
     right = server.ok("POST", "/tools?name=Wide", wide, headers=PNG).json()
     rows = pixels(server.ok("GET", f"/tools/{right['id']}/picture").body, ALPHA)
@@ -126,10 +126,10 @@ def test_strokes(server, camera, story):
     assert values == [1, 2], values
     history = server.get(L + "/edits").json()["edits"]
     assert [edit["shape"] for edit in history[:2]] == [dark["id"], tool["id"]], history[:2]
-    # Swept: the area under the left half at the start and at the end, and all between them.
+    # the sweep covers the area under the left half at the start, at the end, and between them
     swept = paint(shape="left-half", value=3, path=[[200, 240], [440, 240]])
     assert swept > 2 * left, (swept, left)
-    # At a small angle, the rim of the ball gets no paint.
+    # with a small angle, the rim of the ball gets no paint
     everything = paint(shape="square", radius_px=400, value=4)
     facing = paint(shape="square", radius_px=400, value=5, max_angle_deg=45)
     assert 0.2 * everything < facing < 0.8 * everything, (facing, everything)
@@ -144,8 +144,8 @@ def test_strokes(server, camera, story):
 
 
 def test_deletion_in_use(server, camera, story):
-    """One person paints with a brush shape while another deletes it: the stroke continues, all are
-    notified, and the texels stay."""
+    """A user paints with a brush shape while another user deletes the shape. The stroke continues,
+    all participants are notified, and the texels remain."""
     tool = story.tool
     with LiveClient(server, "ball") as painter, LiveClient(server, "ball") as other:
         painter.hello()
@@ -192,7 +192,7 @@ def test_deletion_in_use(server, camera, story):
         )
         saved = painter.receive_until("saved")
         assert saved["n"] == 1 and saved["texels_changed"] > 0, saved
-    # after a lost connection the client begins again and resends messages that may be lost
+    # after a lost connection the client begins again, and repeats messages that may be lost
     with LiveClient(server, "ball") as painter:
         painter.hello()
         painter.send(begin)
@@ -264,7 +264,7 @@ def test_history(server, camera, story):
         and raster(server, sequence) == painted
         and raster(server, sequence - 1) == before
     )
-    # The id still names the same shape.
+    # the id still refers to the same shape
     server.ok("POST", M + "/layers", {"name": "Again", "type": "u8", "resolution": 2048})
     server.ok("POST", M + "/layers", {"name": "First", "type": "u8", "resolution": 2048})
     for layer in ("again", "first"):

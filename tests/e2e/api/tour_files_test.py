@@ -1,5 +1,5 @@
-"""Files and the design of tours over HTTP: which files a tour accepts and how the server sends them,
-which colors it refuses, names of classes, and the link for visitors' phones."""
+"""Files and the design of tours over HTTP: the files that a tour accepts and the way the server
+sends them, refused colors, names of classes, and the link for visitors' phones."""
 import struct
 
 import pytest

@@ -1,4 +1,4 @@
-"""The transport of answers: encodings of the page and of the API, their ETags, and headers about
+"""The transport of responses: encodings of the page and of the API, their ETags, and headers about
 rates and policies."""
 import gzip
 import re
@@ -17,7 +17,7 @@ def server(server):
 
 
 def test_the_page_travels_well(server):
-    """Files of the build are sent as the build has encoded them."""
+    """The server sends the files of the build with the encodings that the build made."""
     page = server.get("//", token=False, headers={"Accept-Encoding": "gzip, br"})
     script = re.search(rb'src="(/assets/[^"]+\.js)"', page.body)[1].decode()
     plain = server.get("/" + script, token=False)
@@ -75,7 +75,7 @@ def test_answers_of_the_api_travel_well(server):
         assert (
             brotli.headers["Content-Encoding"] == "br" and len(brotli.body) < len(plain.body) / 2
         ), path
-    # An ETag of an encoded answer is equivalent to the one without encoding.
+    # the ETag of an encoded response is equivalent to the ETag without encoding
     server.ok("PATCH", T, {"description": "x" * 1500})
     for coding in ("identity", "gzip", "br"):
         read = server.get(T, headers={"Accept-Encoding": coding})

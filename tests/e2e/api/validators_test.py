@@ -1,5 +1,5 @@
-"""ETags of all reads that have one in the contract: 304 while the answer is the same, and never
-after a change."""
+"""ETags of all reads that have one in the contract. The server returns 304 while the response is
+the same, and never after a change."""
 import urllib.parse
 
 import pytest
@@ -29,7 +29,7 @@ OF_QUERY = {
     "/tables/{table}/columns/{column}/classes": "?method=unique",
 }
 LISTS_OF_TERMS = "/tables/{table}/terms"
-# A read with a kiosk's cookie; a sign-in's last use changes with each call.
+# This read needs a kiosk's cookie, and the time of the last use changes with each request.
 LEFT_OUT = {"/api/v1/kiosk"}
 TEXT = "a text that makes the answer as long as those that are compressed. " * 30
 
@@ -132,7 +132,7 @@ def address(path):
 
 
 def reads_with_tags(server):
-    """Returns the addresses of all reads of the contract that list 304, below /api/v1."""
+    """Returns the addresses of all reads in the contract that list 304, below /api/v1."""
     paths = [
         path
         for path, item in server.contract.document["paths"].items()
@@ -150,12 +150,12 @@ def once_more(server, asked, tag, **more):
 
 
 def check_all(server, reads):
-    """A second call returns 304 with the same tag, in each form of the header."""
+    """Checks that a second request returns 304 with the same tag, for each form of the header."""
     known = {}
     for path, asked in reads.items():
         first = server.get(asked)
         assert first.status == 200 and first.headers["ETag"], (path, first)
-        if path.startswith("/me/sessions"):  # contains its own last use
+        if path.startswith("/me/sessions"):  # the response contains the time of its own last use
             continue
         known[asked] = (first.headers["ETag"], first.body)
         tag = first.headers["ETag"]
@@ -175,7 +175,7 @@ def check_all(server, reads):
 
 
 def check_change(server, known, what, must_change):
-    """A 304 must be correct, and a changed answer must be sent completely."""
+    """Checks that a 304 is correct, and that a changed response is sent completely."""
     anew = set()
     for asked, (tag, body) in known.items():
         again = once_more(server, asked, tag)
@@ -198,7 +198,7 @@ def camera(server):
 
 @pytest.fixture(scope="module")
 def known(server, camera):
-    """Returns the tag of each read of the contract; a second read answers each with 304."""
+    """Returns the tag of each read in the contract. A second read returns 304."""
     return check_all(server, reads_with_tags(server))
 
 
@@ -278,7 +278,7 @@ def test_past(server):
 
 
 def test_who_asks(server):
-    """One person's tag is not valid for another; visibility is part of it."""
+    """A tag is valid for one user only. Visibility is part of the tag."""
     ada = server.add_person("eve", "viewer")
     asked = M + "/layers/finds/quantities"
     tag = server.get(asked).headers["ETag"]
@@ -291,8 +291,8 @@ def test_who_asks(server):
 
 
 def test_formats_and_codings(server):
-    """A sheet differs from JSON, and each encoding is a separate representation, which 304 also
-    names."""
+    """A sheet and the JSON have different tags. Each encoding is a separate representation, and 304
+    contains its tag."""
     asked = T + "/records"
     tags = {
         accept: server.get(asked, headers={"Accept": accept}).headers["ETag"]
@@ -320,7 +320,7 @@ def test_formats_and_codings(server):
 
 
 def test_left_alone(server):
-    """Answers with health and secrets may not be cached."""
+    """Responses with the server's health or with secrets must not be cached."""
     for path in ("//livez", "//readyz", "//metrics"):
         answer = server.get(path, token=False)
         assert (
@@ -337,7 +337,7 @@ def test_left_alone(server):
 
 
 def test_a_tag_is_good_until_a_restart(server):
-    """The database may be another one after a restart."""
+    """After a restart the database may be another one."""
     asked = M + "/layers/finds/statistics"
     tag = server.get(asked).headers["ETag"]
     assert server.stop() == 0

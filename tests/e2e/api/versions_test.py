@@ -1,4 +1,4 @@
-"""A project may require that changes name the version that they are based on (If-Match, 428)."""
+"""A project can require that changes contain the version that they are based on (If-Match, 428)."""
 import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
@@ -70,7 +70,7 @@ def versioned_changes(server):
     return found
 
 
-# The address that has the version of things without their own address.
+# Returns the address that provides the version. Some objects have no address of their own.
 def address_of_version(asked):
     return asked.rpartition("/columns/")[0] or asked
 
@@ -131,7 +131,7 @@ def test_demanded(server, changes):
 
 
 def test_elsewhere(server):
-    """Only for things with versions, and only in that project."""
+    """The rule applies only to objects with versions, and only in that project."""
     server.ok("POST", T + "/records", {"values": {"name": "More"}})
     server.ok(
         "POST",
@@ -155,7 +155,8 @@ def test_elsewhere(server):
 
 
 def test_roles(server):
-    """Curators of the project can change this setting, but not the name; others neither."""
+    """Curators of the project can change this setting but not the name. Other users can change
+    neither."""
     server.ok("PATCH", P, {"require_if_match": False}, headers={"If-Match": "*"})
     ann, cleo = server.add_person("ann", "annotator"), server.add_person("cleo", "curator")
     assert server.request("PATCH", P, {"require_if_match": True}, token=ann).status == 403
@@ -171,7 +172,7 @@ def test_roles(server):
     for wrong in ({"require_if_match": "yes"}, {"require_if_match": None}, {"require_if_match": 1}):
         answer = server.request("PATCH", P, wrong, headers={"If-Match": "*"})
         assert answer.status == 422 and answer.json()["field"] == "require_if_match", answer
-    # Without the right to change a thing the answer is 403, not the missing version.
+    # a user without the right to change an object gets 403, even if the version is missing
     assert server.request("PATCH", M, {"name": "x"}, token=ann).status == 403
 
 

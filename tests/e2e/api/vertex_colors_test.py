@@ -1,5 +1,5 @@
-"""The mesh with the colors of its layers: each vertex has the color of an unlit picture at its
-place."""
+"""The mesh with the colors of its layers. Each vertex has the color of an unlit frame at its
+position."""
 import urllib.parse
 
 import pytest
@@ -8,7 +8,7 @@ from support.meshes import folded_grid
 from support.pictures import pixels, png
 from support.ply import read_ply
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 SIDE = 800
 
 
@@ -27,8 +27,8 @@ def times(matrix, vector):
 
 
 def seen_colors(rows, camera, vertices):
-    """Returns the color at each vertex's pixel, without vertices near an edge of colors, where a
-    picture mixes them."""
+    """Returns the color at each vertex's pixel. Omits vertices near an edge between colors, where a
+    frame mixes them."""
     seen = {}
     for i, vertex in enumerate(vertices):
         x, y, _, w = times(
@@ -42,7 +42,7 @@ def seen_colors(rows, camera, vertices):
 
 
 def check_as_seen(server, query, at_least, kinds, **frame):
-    """`kinds`: the least number of different colors, so that the comparison has meaning."""
+    """`kinds` is the least number of different colors that makes the comparison useful."""
     camera = camera_from(server.get(M).json(), (0, 0, 1), SIDE, SIDE, up=(0, 1, 0))
     answer = server.ok(
         "POST",
@@ -132,7 +132,7 @@ def test_colours_are_those_that_are_seen(server):
 
 
 def test_layers_that_are_named_are_drawn_in_their_order(server):
-    # The named layers in their order, visible or not.
+    # The requested layers are drawn in the requested order, visible or not.
     server.ok("PATCH", M + "/layers/wet", {"visible": False})
     check_as_seen(server, "colors=layers", 500, 5)
     check_as_seen(server, "colors=layers&layers=units,wet", 500, 3, layers=["units", "wet"])

@@ -1,5 +1,5 @@
 """Saved views over HTTP: their content, the rights to change them, the rest of a view after its
-layers are deleted, events, and refusals."""
+layers were deleted, events, and refusals."""
 import struct
 import uuid
 
@@ -76,7 +76,7 @@ def palette():
 
 @pytest.fixture(scope="module")
 def shown(camera, palette):
-    """Returns the content of a view."""
+    """Returns the content of a saved view."""
     return {
         "camera": camera,
         "light": {"mode": "raking", "direction": [1, 0.5, 0.25]},
@@ -119,13 +119,13 @@ def test_a_view_keeps_what_is_shown(server, ask, layer_of, shown, story):
         and view["name"] == "Westwand, größer"
         and view["text"] == "Flaking\nof 2019"
     )
-    for number, name in enumerate(("Cracks", "Units")):  # the same, by ids
+    for number, name in enumerate(("Cracks", "Units")):  # the same layers, by their ids
         shown["layers"][number]["layer"] = layer_of[name]
     assert {part: view[part] for part in shown} == shown, view
 
 
 def test_everybody_reads_them(server, ask, tokens, camera, story):
-    """By slug and by id; a second view with the name gets another slug."""
+    """Views are found by slug and by id. A second view with the same name gets another slug."""
     view = story.view
     slug = story.slug
     for who in tokens:
@@ -161,7 +161,7 @@ def test_everybody_reads_them(server, ask, tokens, camera, story):
 
 
 def test_who_made_one_and_curators_change_it(ask, model, story):
-    """The slug does not change."""
+    """The slug of a view does not change."""
     view = story.view
     slug = story.slug
     told(ask("bob", "PATCH", f"{ALL}/{slug}", {"name": "Bob's"}), 403)
@@ -215,7 +215,7 @@ def test_what_cannot_be_shown_is_refused_and_named(server, ask, camera, story):
 
 
 def test_a_picture_is_what_the_view_keeps(server, ask, camera, palette):
-    """Equals the frame of a model with these defaults."""
+    """The picture equals the frame of a model with these defaults."""
     light = {"mode": "raking", "direction": [1, 0.5, 0.25]}
     server.ok(
         "POST",
@@ -248,7 +248,7 @@ def test_a_picture_is_what_the_view_keeps(server, ask, camera, palette):
                 "camera": camera,
                 "light": light,
                 "looks": [],
-                "samples": 16,  # as a view's picture
+                "samples": 16,  # the number for a view's picture
                 "format": "png",
                 **more,
             },
@@ -303,7 +303,7 @@ def test_a_picture_is_what_the_view_keeps(server, ask, camera, palette):
 
 
 def test_what_names_a_column_of_others_is_left_out(server, ask, layer_of, shown, story):
-    """Also a column that does not exist."""
+    """A column that does not exist is also omitted."""
     slug = story.slug
     server.ok("PATCH", "/tables/units/columns/state", {"visibility": "private"})
     back = ask(

@@ -26,7 +26,7 @@ from support.visibility_site import (
 
 
 def still(connection):
-    """Returns the bytes of a whole picture at rest."""
+    """Returns the bytes of a whole frame at rest."""
     parts = []
     while True:
         frame = connection.receive_until("frame")
@@ -121,7 +121,7 @@ def test_the_secrets_are_not_there_through_any_door(server, site, role, request)
 
 
 def test_undo_shows_nothing(server, viewer, annotator):
-    """The journal of a table does not contain a hidden column, and no undo shows it."""
+    """The journal of a table does not contain a hidden column, and undo does not show it."""
     for token in (viewer, annotator):
         answer = server.get("/tables/finds/edits", token=token)
         assert not leaks(answer.body), answer
@@ -152,7 +152,7 @@ def test_live(server, viewer, annotator, camera, thread):
             } == {"cracks", "finds"}, welcome
             connection.send({"op": "camera", "seq": 1, "moving": False, **camera})
         before = still(eyes)
-        # Edits of the secret layer are not announced, nor are the cells of its records.
+        # edits to the secret layer are not announced, and neither are the cells of its records
         server.ok(
             "POST",
             f"{M}/layers/{LAYER}/edits",
@@ -178,7 +178,7 @@ def test_live(server, viewer, annotator, camera, thread):
                 }
             )
             message(connection, "picked")
-        # The layer becomes visible, and is removed again.
+        # the layer becomes visible, and is then removed again
         server.ok("PATCH", f"{M}/layers/{LAYER}", {"visibility": "team"})
         shown = hand.receive_until("layer")
         assert shown["event"] == "created" and shown["layer"]["slug"] == LAYER, shown
@@ -251,7 +251,7 @@ def test_sql(server, reader):
 
 
 def test_source(server, viewer, annotator, curator):
-    """The scan's files, its mesh and its full pictures need a separate right."""
+    """The scan's files, its mesh and its full-size images need a separate right."""
     doors = [M + "/source/sheet.ply", M + "/vertices.ply"]
     look = server.ok("POST", query(M + "/looks", name="UV"), PNG).json()["slug"]
     doors.append(f"{M}/looks/{look}/picture")
@@ -275,7 +275,7 @@ def test_source(server, viewer, annotator, curator):
 
 
 def test_ladder(server, viewer, annotator, curator, public):
-    """The content of each kind that each role sees, as it changes; earlier visible states are
+    """Each role sees the content of its visibility, also after changes. Earlier visible states are
     hidden, too."""
 
     def seen(path):
@@ -324,7 +324,7 @@ def test_ladder(server, viewer, annotator, curator, public):
                 "plan.png"
                 in str(server.get("/tables/finds/records/1/attachments", token=token).json())
             ) == sees, visibility
-    # A person who attaches a file sees it, and chooses its visibility.
+    # a user who attaches a file sees it, and chooses its visibility
     mine = server.ok(
         "POST",
         query("/tables/finds/records/2/attachments", name="mine.png", visibility="private"),
@@ -342,13 +342,13 @@ def test_ladder(server, viewer, annotator, curator, public):
     )
     server.ok("PATCH", path, {"visibility": "team"}, token=annotator)
     assert server.get(path, token=other).status == 200 and seen(path) == (False, True, True)
-    # A cell keeps a hidden file if a person who cannot see it writes the cell.
+    # a cell keeps a hidden file when a user who cannot see the file writes the cell
     cell = server.get("/tables/finds/records/1", token=viewer).json()["values"]["photo"]
     assert len(cell) == 2, "ids of files stay in their cells, and tell nothing"
 
 
 def test_nothing_hidden_shows_through(server):
-    """Content that more people see cannot be made from content that fewer see, in any way."""
+    """A private source never produces content that more users can see, in any way."""
 
     def refused(status, method, path, body, field):
         answer = server.request(method, path, body)

@@ -1,4 +1,5 @@
-"""Headers and bodies that are too large, too many, deeply nested, or cut at the wrong place."""
+"""Headers and bodies that are too large, too many, deeply nested, or cut off at a wrong
+position."""
 import re
 import socket
 import threading
@@ -108,7 +109,7 @@ def heads(server, section):
 
 
 def refused_first(server, method, path, size, token=True):
-    """Returns the status for a body of that length when the client waits before sending it."""
+    """Returns the status for a body of that length if the client waits before sending the body."""
     return status_of(
         raw_request(
             server,
@@ -124,8 +125,8 @@ def refused_first(server, method, path, size, token=True):
 
 
 def endless(server, path, token=True):
-    """Sends an endless body in chunks until the server answers: returns its status, and the bytes
-    sent."""
+    """Sends an endless body in chunks until the server responds. Returns its status, and the number
+    of bytes sent."""
     chunk = b"10000\r\n" + b" " * 65536 + b"\r\n"
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
         link.sendall(
@@ -288,7 +289,7 @@ def nested_texts(server, section):
 
 
 def flood(server, section):
-    """Sends 6000 requests on one connection without waiting for answers."""
+    """Sends 6000 requests on one connection without waiting for responses."""
     ask, start = head(server, "GET /livez", token=False), time.monotonic()
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
         answers = []
@@ -302,7 +303,7 @@ def flood(server, section):
         listener.join()
     heard = [int(status) for status in re.findall(rb"HTTP/1\.1 (\d+) ", b"".join(answers))]
     assert len(heard) == 6000 and set(heard) <= {200, 429}, (len(heard), set(heard))
-    # a busy machine answers fewer
+    # a busy machine accepts fewer requests
     most = 2000 + 1000 * (time.monotonic() - start)
     section.tried(
         "6000 requests on one connection without waiting",

@@ -1,4 +1,5 @@
-"""Access without rights: without a secret, with expired or copied ones, and beyond a token's role.
+"""Access without rights: without a secret, with expired or copied secrets, and beyond a token's
+role.
 """
 from attempts.tools import FILL, L, M, body_for, calls, person, statuses, upgraded
 from support.browsers import PASSWORD, Browser, join, secret_of
@@ -68,7 +69,7 @@ def doors(server, cookie):
 
 
 def replayed_sessions(server, section):
-    """A copied cookie is used after its session has ended."""
+    """Uses a copied cookie after its session has ended."""
 
     def other_browser_ends_it(browser, user):
         other = Browser(server)

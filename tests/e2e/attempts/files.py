@@ -16,7 +16,7 @@ PNG = png(8, 8, lambda x, y: (200, 100, 50))
 
 
 def paths(server, section):
-    """Each spelling of an address of a file on the server's machine."""
+    """Requests a file on the server's machine in every spelling of its address."""
     kept = os.path.join(server.data, "secret.txt")
     with open(kept, "w", encoding="ascii") as file:
         file.write("the secret of this test")
@@ -302,7 +302,7 @@ def sql(server, section):
 
 
 def repeated(server, section):
-    """Idempotency keys of other users."""
+    """Uses the idempotency keys of other users."""
     nia = server.add_person("nia", "annotator")
     key = {"Idempotency-Key": "somebody's"}
     first = server.post(T + "/records", {"values": {"note": "owner's"}}, headers=key)

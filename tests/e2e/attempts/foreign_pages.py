@@ -1,4 +1,4 @@
-"""Pages of other sites that use a visitor's session, and the answers to their browsers."""
+"""Pages of other sites that use a visitor's session, and the responses to the visitor's browser."""
 import json
 import urllib.parse
 
@@ -52,7 +52,7 @@ def changing(server, section, cookie):
         "the server compares the whole Origin",
         f"{len(lookalikes)} of them",
     )
-    # The requests that a form sends without a preflight.
+    # requests that a form can send without a preflight
     body = json.dumps({"name": "Taken over"}).encode()
     answers = [
         server.request(
@@ -97,7 +97,7 @@ def changing(server, section, cookie):
 
 
 def listening(server, section, cookie):
-    """The data that a foreign page can read."""
+    """Reads data as a foreign page."""
     origins = {
         upgraded(server, token="", cookie=cookie, origin=origin)
         for origin in (
@@ -153,7 +153,8 @@ def listening(server, section, cookie):
 
 
 def hosts(server, section, cookie):
-    """A foreign name that resolves to the server's address (DNS rebinding), and other Hosts."""
+    """Uses a foreign name that resolves to the server's address (DNS rebinding), and other Host
+    headers."""
     rebound = {"Host": "evil.example:8080", "Origin": "http://evil.example:8080"}
     answers = [
         server.get(M, token=False, headers=rebound),

@@ -1,5 +1,5 @@
 """Guesses of names, passwords and links. The server listens only on this machine, so it trusts the
-X-Forwarded-For of its proxy: each attempt has a different address."""
+X-Forwarded-For of its proxy. Each attempt uses a different address."""
 import concurrent.futures
 import itertools
 import time
@@ -9,10 +9,11 @@ from support.browsers import PASSWORD
 from support.process_memory import PeakGrowth
 from support.strata_server import wait_for
 
-MOST = 400  # number of guesses without a limit
-HANDS = 2  # concurrent guesses: the server hashes that many passwords at once, and refuses more
+MOST = 400  # number of guesses if there were no limit
+# concurrent guesses; the server hashes this number of passwords at the same time and refuses more
+HANDS = 2
 OF_ADDRESS = "60 at once, then two a second, for each address"
-FASTEST_SHARE = 0.25  # of the time for a known name
+FASTEST_SHARE = 0.25  # share of the time for a known name
 
 
 def sign_in(server, user, password, address):
@@ -38,8 +39,8 @@ def is_slowed(answer):
 
 
 def until_slowed(tries):
-    """Returns the answers up to the first 429; asks several at once, because each password takes
-    the server some time."""
+    """Returns the responses up to the first 429. Makes several guesses at the same time, because
+    the server needs time for each password."""
     answers = []
     with concurrent.futures.ThreadPoolExecutor(HANDS) as hands:
         for batch in zip(*[iter(tries)] * HANDS):
@@ -55,8 +56,8 @@ def let_through(answers):
 
 
 def while_slowed(guess, ask, expected):
-    """Returns the answer to `ask` right after a limited guess; repeats it if the limit has allowed
-    a guess in between."""
+    """Returns the response to `ask` directly after a limited guess. Repeats both if the limit has
+    allowed a guess in between."""
 
     def tried():
         if not is_slowed(guess()):
@@ -96,7 +97,7 @@ def passwords(server, section):
         200,
         "the limit of a name applies first to the address of the guesses",
     )
-    # The server hashes no tokens, so a slow machine also reaches the address's limit.
+    # The server does not hash tokens, so even a slow machine reaches the limit of the address.
     answers = until_slowed(lambda: token_guess(server, "10.1.0.3") for _ in range(MOST))
     section.tried(
         "Guesses of the owner's token from one address",
@@ -130,8 +131,8 @@ def passwords(server, section):
 
 
 def many_addresses(server, section):
-    """Many machines guess one user's password. Some of the guesses need no hash, so that a busy
-    machine also reaches the limit."""
+    """Many machines guess one user's password. Some of the guesses need no hash, so even a busy
+    machine reaches the limit."""
     rosa = person(server, "rosa", "viewer")
     assert sign_in(server, "rosa", PASSWORD, "10.2.0.1").status == 200
     numbers = itertools.count(1)
@@ -176,7 +177,7 @@ def many_addresses(server, section):
 
 
 def links(server, section):
-    """Secrets of 256 bits, whose guesses are limited nevertheless."""
+    """Guesses secrets of 256 bits. The server limits these guesses, too."""
     zoe = person(server, "zoe", "viewer")
     stolen = {"Cookie": zoe.cookie, "Origin": server.url, "X-Forwarded-For": "10.5.0.1"}
     answers = until_slowed(
@@ -239,7 +240,7 @@ def links(server, section):
 
 
 def names(server, section):
-    """Whether an answer shows which names have an account."""
+    """Checks whether a response shows that a name has an account."""
     person(server, "yara", "viewer")
 
     def timed(user, n):

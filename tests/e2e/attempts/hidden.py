@@ -1,5 +1,5 @@
-"""Hidden content, requested in every way: private content of a project, other projects, and the
-copied link of a kiosk."""
+"""Requests hidden content in every way: the private content of a project, other projects, and
+content through the copied link of a kiosk."""
 import concurrent.futures
 
 from attempts.tools import FOREIGN, statuses, upgraded
@@ -11,7 +11,7 @@ from support.strata_server import StrataServer
 
 
 def as_role(server, role, camera, before, words, hidden, thread):
-    """Returns the private content that a user with that role finds, by each kind of request."""
+    """Returns the private content that a user with that role can find, by each kind of request."""
     token = server.add_person(role, role)
     answered, told = visibility_site.sweep(server, token, words, camera)
     assert answered > 150, answered
@@ -68,7 +68,7 @@ def private(table):
             "all code that reads layers, columns and files requires the role, without a default",
             f"{of('answered')} answers",
         )
-        not_there = "as for missing things, word for word"  # the function checks each answer
+        not_there = "as for missing things, word for word"  # the function checks each response
         section.tried(
             "Addresses of the private things, by slug and by id, for reading and changing",
             not_there,

@@ -23,7 +23,7 @@ def welcomed(server, **options):
 
 
 def messages(server, section):
-    """Messages that are refused with a problem; the connection stays open."""
+    """Sends messages that are refused with a problem. The connection stays open."""
 
     def refused(what, send, expected, keeps):
         with welcomed(server) as connection:
@@ -65,14 +65,14 @@ def messages(server, section):
 
 
 def frames(server, section):
-    """Messages that end the connection, with its code (RFC 6455)."""
+    """Sends messages that end the connection, with its code (RFC 6455)."""
 
     def ended(what, send, expected, keeps):
         with welcomed(server) as connection:
             try:
                 send(connection)
             except OSError:
-                pass  # the server has already ended it
+                pass  # the server has already closed the connection
             section.tried(what, close_code(connection), expected, keeps)
 
     def fragments(connection):
@@ -116,7 +116,7 @@ def frames(server, section):
 
 
 def floods(server, section):
-    """Sends as fast as possible."""
+    """Sends messages as fast as possible."""
     camera = {
         "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
         "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0],
@@ -133,7 +133,8 @@ def floods(server, section):
         code = close_code(connection)
         other.send({"op": "pick", "id": str(uuid.uuid4()), "camera": camera, "x": 1, "y": 1})
         other.receive_until("picked")
-    assert code in (1008, "cut off"), code  # the code is lost if messages were still on their way
+    # the code is lost if the server had not read all messages
+    assert code in (1008, "cut off"), code
     section.tried(
         "50 000 messages without a pause",
         "ended, others are served",
@@ -185,7 +186,7 @@ def floods(server, section):
 
 
 def unread_pictures(server, section):
-    """A client acknowledges every picture and reads none: each has noise, and is large."""
+    """Acknowledges every frame without reading it. Each frame contains noise and is large."""
     slug = server.ok("POST", M + "/layers", {"name": "Noise", "type": "u8"}).json()["slug"]
     raster = server.get(f"{M}/layers/{slug}/texels.npy").body
     head = 10 + struct.unpack("<H", raster[8:10])[0]
@@ -222,7 +223,7 @@ def unread_pictures(server, section):
 
 
 def in_others_names(server, section):
-    """Commands in the name of another user."""
+    """Sends commands in the name of another user."""
     mia = server.add_person("mia", "annotator")
     eve = server.add_person("eve", "viewer")
     server.ok("POST", M + "/layers", {"name": "Tomb", "type": "u8", "visibility": "private"})
@@ -301,7 +302,7 @@ def in_others_names(server, section):
 
 
 def outlived(server, section):
-    """Open connections whose right ends."""
+    """Tests open connections whose right ends."""
 
     def demoted(user):
         server.ok("PATCH", f"/users/{user}", {"role": "viewer"})

@@ -1,4 +1,5 @@
-"""The owner's token in the environment, found by an attacker after an administrator has a password.
+"""The owner's token in the environment, in the hands of an attacker, after an administrator has a
+password.
 """
 from attempts.tools import FILL, L, M, person, statuses, upgraded
 from support.browsers import PASSWORD, Browser, secret_of
@@ -39,7 +40,7 @@ def attempts(table, site):
         assert (
             session.request("POST", "/login", {"token": server.token}).status == 200
         ), "so far it is the owner's"
-        # From here on another administrator can give people access.
+        # now another administrator can give users access
         invitation = server.ok("POST", "/users", {"user": "root", "role": "administrator"}).json()
         Browser(server).ok(
             "POST",

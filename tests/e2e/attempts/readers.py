@@ -1,5 +1,5 @@
-"""A viewer makes the largest possible queries: other users are still served, and the server stops
-work for closed connections."""
+"""A viewer sends the largest possible queries. The server still serves other users, and stops work
+for closed connections."""
 import concurrent.futures
 import json
 import re
@@ -14,8 +14,8 @@ from support.strata_server import LONG_S, StrataServer, wait_for
 
 
 def long_condition(layer):
-    """Returns a condition of the maximum length without a table: some seconds of a processor on
-    2048²."""
+    """Returns a condition of the maximum length without a table. It takes a processor some seconds
+    on 2048²."""
     return " or ".join([f"sin({layer})>1"] * 340)
 
 
@@ -29,7 +29,7 @@ def metric(server, name):
 
 
 def sent(server, path, body, token):
-    """Sends a query on a new connection without reading the answer."""
+    """Sends a query on a new connection without reading the response."""
     text = json.dumps(body).encode()
     link = socket.create_connection((server.host, server.port), timeout=LONG_S)
     link.sendall(
@@ -70,8 +70,8 @@ def lists(server, section, viewer):
 
 
 def steps_after(server, links):
-    """Closes connections with running queries: returns the steps that the server took after it had
-    become idle."""
+    """Closes connections with running queries. Returns the number of steps that the server took
+    after it had become idle."""
     left = metric(server, "strata_questions_left_total")
     for link in links:
         link.close()
@@ -101,7 +101,7 @@ def beside(server, section, viewer):
     links = []
 
     def as_many_wait_as_may():
-        # the server may answer some before this
+        # the server may respond to some queries before
         links.extend(sent(server, M + "/select", {"where": LONG}, viewer) for _ in range(15))
         return metric(server, "strata_waiting_questions") >= 32
 
@@ -148,7 +148,7 @@ def budgets(server, section, viewer):
 
 def empty_layer(server, section, viewer):
     server.ok("POST", M + "/layers", {"name": "Vast", "type": "u8", "resolution": 16384})
-    # The query does not include the surface map that the server makes for a new layer.
+    # The query starts after the server has made the surface map of the new layer.
     wait_for(lambda: rests(server), "a server that computes nothing")
     with PeakGrowth(server) as growth:
         answer = server.get(M + "/layers/vast/statistics", token=viewer)
@@ -238,7 +238,7 @@ def attempts(table):
             {"op": "fill", "mode": "where", "where": "true", "value": 7},
         )
         viewer = server.add_person("eve", "viewer")
-        # memory first: the later attempts make surface maps
+        # attempts that measure memory are first, because the later ones make surface maps
         for attempt in (points, empty_layer, lists, leaving, beside, budgets, pictures, stop):
             attempt(server, section, viewer)
         server.assert_clean_log()

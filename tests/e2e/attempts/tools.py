@@ -1,4 +1,4 @@
-"""Functions for several of the attempts."""
+"""Functions that several attempts use."""
 import re
 
 from support.browsers import Browser, join
@@ -26,8 +26,8 @@ def statuses(answers):
 
 
 def calls(server, methods=METHODS):
-    """Yields method and address of every call of the contract that requires sign-in, except for the
-    live connection."""
+    """Yields the method and address of every operation in the contract that requires sign-in,
+    except for the live connection."""
     for path, operations in server.contract.document["paths"].items():
         address = re.sub(r"\{(\w+)\}", lambda match: WORDS.get(match[1], "1"), path)
         for method, operation in operations.items():
@@ -49,7 +49,8 @@ def upgraded(server, model="sheet", **options):
 
 
 def close_code(connection):
-    """Returns the code with which the server ends the connection, or `cut off` without a code."""
+    """Returns the code with which the server closes the connection, or `cut off` if there is no
+    code."""
     try:
         while True:
             connection.receive()

@@ -1,4 +1,4 @@
-"""Slow and silent clients: each waits in a separate thread while the other attempts run."""
+"""Slow and silent clients. Each waits in a separate thread while the other attempts run."""
 import concurrent.futures
 import os
 import re
@@ -16,15 +16,15 @@ from support.meshes import folded_grid
 from support.process_memory import PeakGrowth
 from support.strata_server import LONG_S, StrataServer, wait_for
 
-# The server's options for these attempts, in seconds; the answers in the table are those of the
+# The server's options for these attempts, in seconds. The results in the table are those of the
 # defaults.
 TRIED_WITH = {"head-timeout": 2, "idle-timeout": 4, "stall-timeout": 3, "recheck-every": 1}
-LATE_S = 45  # a busy machine may be late by this; less than most waits with the defaults
+LATE_S = 45  # the tolerance for a busy machine; less than most of the default limits
 CONNECTIONS = 2048
 
 
 def until_closed(link, every_s=None, drop=b"x", limit_s=LONG_S):
-    """Returns the seconds until the server ends the connection; sends `drop` at intervals."""
+    """Returns the seconds until the server closes the connection. Sends `drop` at intervals."""
     start = time.monotonic()
     link.settimeout(every_s or limit_s)
     while time.monotonic() - start < limit_s:
@@ -50,7 +50,7 @@ def connected(server, first=b""):
 
 
 def without_option(name):
-    """Returns the default of an option from the program's help."""
+    """Returns the default of an option, from the program's help."""
     told = subprocess.run(
         [os.environ["STRATA_BINARY"], "serve", "--help"], capture_output=True, text=True, check=True
     ).stdout
@@ -90,8 +90,8 @@ def post(server, path, length, *more):
 
 
 def drops_of_a_body(server):
-    """Sends 200 bodies, one byte a second: returns the seconds until one ends, while others are
-    served."""
+    """Sends 200 bodies, one byte per second. Returns the seconds until one connection ends, while
+    the server serves others."""
     begin = post(server, "/login", 1000) + b"{"
     links = [connected(server, begin) for _ in range(199)]
     with concurrent.futures.ThreadPoolExecutor(1) as hand:
@@ -102,7 +102,7 @@ def drops_of_a_body(server):
                 try:
                     link.sendall(b" ")
                 except OSError:
-                    pass  # the server has ended it
+                    pass  # the server has already closed the connection
             assert server.get("//livez").status == 200 and server.get(M).status == 200
     for link in links:
         link.close()
@@ -110,7 +110,7 @@ def drops_of_a_body(server):
 
 
 def deaf(server):
-    """A live connection that answers no ping: returns the seconds until its end."""
+    """Opens a live connection that responds to no ping. Returns the seconds until its end."""
     with LiveClient(server, "sheet") as connection:
         connection.hello(dpr=1, accept=["jpeg"])
         start = time.monotonic()
@@ -121,7 +121,8 @@ def deaf(server):
 
 
 def expired(server):
-    """A live connection whose token expires: returns its close code and the seconds until then."""
+    """Opens a live connection whose token expires. Returns its close code and the seconds until
+    then."""
     token = server.ok("POST", "/me/tokens", {"name": "old", "days": 1}).json()
     with LiveClient(server, "sheet", token=token["secret"]) as connection:
         connection.hello(dpr=1, accept=["jpeg"])
@@ -137,8 +138,8 @@ def expired(server):
 
 
 def slow_readers(server):
-    """Downloads that the client does not read: returns the statuses of others' downloads, and of
-    other requests, at the same time."""
+    """Starts downloads without reading them. Returns the statuses of others' downloads and of other
+    requests at the same time."""
     links = []
     for _ in range(6):
         link = socket.socket()
@@ -164,8 +165,8 @@ def slow_readers(server):
 
 
 def crowd(server):
-    """More silent connections than the limit: checks that the last one is closed; returns the time
-    until there is room again, and the memory."""
+    """Opens more silent connections than the limit, and checks that the server closes the last one.
+    Returns the time until the server accepts a connection again, and the memory."""
     links = []
     with PeakGrowth(server) as growth:
         try:
@@ -194,7 +195,8 @@ def crowd(server):
 
 
 def half_open_tls(server):
-    """Nothing, half a ClientHello, and a whole one: returns the seconds until each one ends."""
+    """Sends nothing, half a ClientHello, and a whole one. Returns the seconds until each connection
+    ends."""
     greeting = ssl.MemoryBIO()
     client = ssl.create_default_context().wrap_bio(ssl.MemoryBIO(), greeting, server_hostname="x")
     try:
@@ -237,7 +239,7 @@ def make_sheet(server):
 def plain(table):
     section = table.section("Slow and idle connections")
     may_crowd = allow_descriptors(2 * CONNECTIONS + 1000)
-    # A server with the defaults, for attempts that must last while others run.
+    # one server has the defaults, for attempts that must last while others run
     with StrataServer() as patient, StrataServer(options=options()) as server:
         for each in (patient, server):
             make_sheet(each)

@@ -1,8 +1,8 @@
-// Every screen and dialog of the page: axe-core's findings, in English and German; the contrast in
-// each theme; no overflow in the longest language, in four sizes of the window; the keyboard starts
-// in dialogs at a sensible control, reaches every control with a visible focus, stays in dialogs
-// and returns from them. accessibility_test.mjs [PART…]: only these parts of `kParts`, which CTest
-// runs in parallel.
+// Checks every screen and dialog of the page: axe-core's findings in English and German, the
+// contrast in each theme, and overflow in the longest language, in four window sizes. The keyboard
+// focus starts in dialogs at a sensible control, reaches every control visibly, stays in dialogs
+// and returns from them. `accessibility_test.mjs [PART…]` runs only these parts of `kParts`, which
+// CTest runs in parallel.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -20,13 +20,13 @@ const kSizes = [
   [1280, 800],
   [3840, 2160],
 ];
-const kShownSizes = new Set([390, 1280]); // takes their pictures
+const kShownSizes = new Set([390, 1280]); // sizes in which the test takes screenshots
 const kThemes = ["light", "dark", "contrast"];
 const output =
   process.env.STRATA_TEST_OUTPUT && join(process.env.STRATA_TEST_OUTPUT, "accessibility");
 if (output) mkdirSync(output, { recursive: true });
 
-// each part has the language of its walk through all screens
+// each part uses the language of its walk through all screens
 const kParts = { themes: "en", keyboard: "en", german: "de" };
 const parts = process.argv.length > 2 ? process.argv.slice(2) : Object.keys(kParts);
 for (const part of parts) assert.ok(part in kParts, `${part} is none of ${Object.keys(kParts)}`);
@@ -36,7 +36,7 @@ const kLocales = { en: "en-GB", de: "de-DE" };
 const browsers = {};
 for (const language of new Set(parts.map((part) => kParts[part])))
   browsers[language] = await Browser.open({ locale: kLocales[language] });
-const bea = await Browser.open(); // another person at the model
+const bea = await Browser.open(); // another user at the model
 const server = new StrataServer({ demo: true });
 const checked = [];
 const wrong = [];
@@ -91,7 +91,7 @@ async function check(language, { page }, screen) {
   checked.push(`${language} ${screen.name}`);
 }
 
-/** Selects a locked layer as a person who may not change it, with the brush. */
+/** Selects a locked layer as a user who may not change it, with the brush. */
 async function locked_for_bea(language, site) {
   const w = texts_of(language);
   await bea.page.evaluate((chosen) => localStorage.setItem("strata.language", chosen), language);
@@ -110,7 +110,7 @@ async function focus_of_a_dialog(page) {
   const opener = account_of_owner(page);
   await opener.focus();
   const before = await active(page);
-  // Each key moves the focus, and the next key depends on the new focus.
+  // each key moves the focus, and the next key depends on the new focus
   const moves = async (key) => {
     const from = await active(page);
     await page.keyboard.press(key);
@@ -195,7 +195,7 @@ try {
   }
 
   step = "empty home";
-  // the home page also requests a picture of the deleted model
+  // the home page also requests a thumbnail of the deleted model
   for (const { page } of [...Object.values(browsers), bea]) await page.goto("about:blank");
   await server.request("DELETE", `/models/${site.model}`);
   for (const [language, browser] of Object.entries(browsers)) {

@@ -1,4 +1,4 @@
-// The activity of a model in the side panel: by days, with new lines of others, earlier lines on
+// The activity of a model in the side panel: its days, new lines of others, earlier lines on
 // request, and the target of a line.
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -19,7 +19,7 @@ const shot = async ({ page }, name) => {
 };
 const panel = ({ page }) => page.locator("strata-activity-panel");
 const line = (who, text) => panel(who).locator("[data-activity]", { hasText: text });
-/** Sends a request as a person other than the owner. */
+/** Sends a request as a user other than the owner. */
 const post = async ({ token }, path, body) => {
   const headers = { Authorization: `Bearer ${token}`, "Content-Type": "application/json" };
   const answer = await fetch(`${server.url}/api/v1${path}`, {

@@ -1,5 +1,5 @@
-// Whole areas: the selection of polygon and lasso, connected fill, fill with a condition. Tests the
-// page while they are drawn, the painted areas, and their undo.
+// Whole areas: the selection of polygon and lasso, connected fill, and fill with a condition. The
+// file tests the page during drawing, the painted areas, and their undo.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
@@ -24,7 +24,7 @@ const shot = async (name) => {
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 
-/** Converts points in shares of the stage to pixels of the page. */
+/** Converts points from shares of the stage to pixels of the page. */
 async function pixels(points) {
   const box = await browser.stage_box();
   return points.map(([x, y]) => [box.x + x * box.width, box.y + y * box.height]);
@@ -60,7 +60,7 @@ async function taken_back(what) {
   await wait_for(async () => (await magenta()) === 0, `${what} to be taken back`, 150);
 }
 
-let cameras = 0; // number of sent cameras; a picture may show an older one
+let cameras = 0; // number of cameras that the page sent; a frame may show an older camera
 
 let browser, page, server, corners, now;
 
@@ -245,7 +245,7 @@ test("a condition over other layers; a wrong one says where it is wrong", async 
   assert.equal(await condition.inputValue(), "not cracks");
   await condition.fill("valid(cracks)");
   await button(words.areas.apply).click();
-  // the dialog closes when the edit is durable
+  // the dialog closes after the edit is durable
   await page.getByRole("heading", { name: /where…/ }).waitFor({ state: "hidden" });
   const cracks = (await statistics("cracks")).area_m2;
   now = (await statistics("test")).area_m2;

@@ -1,4 +1,4 @@
-// The trash on the page: Undo right after a deletion, the list of a project's deleted content, with
+// The trash on the page: Undo after a deletion, the list of a project's deleted content with
 // keyboard, mouse and finger, and the rights of each role.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
@@ -30,7 +30,7 @@ const undo = (who) =>
   who.page.locator("strata-notices").getByRole("button", { name: words.model.undo, exact: true });
 const layers_of = async () =>
   (await server.json("GET", `${kBase}/layers`)).layers.map(({ name }) => name);
-// deleting a model while its picture is drawn would cause a refused request
+// a model that is deleted before its thumbnail is drawn would cause a refused request
 const pictured = ({ page }) => page.locator("strata-thumbnail canvas.drawn").waitFor();
 const confirm = async ({ page }, name) => {
   const question = page.locator("strata-dialog").last();
@@ -40,9 +40,10 @@ const confirm = async ({ page }, name) => {
 let carl, phone, bea, everybody, server, pot, before, layer, name;
 
 test.beforeAll(async () => {
-  carl = await Browser.open(); // a curator at a desk
-  phone = await Browser.open({ ...kPhone, colorScheme: "dark" }); // an administrator
-  bea = await Browser.open({ viewport: { width: 1180, height: 820 } }); // an annotator
+  carl = await Browser.open(); // a curator at a desktop computer
+  phone = await Browser.open({ ...kPhone, colorScheme: "dark" }); // the phone of an administrator
+  // an annotator with a tablet
+  bea = await Browser.open({ viewport: { width: 1180, height: 820 } });
   everybody = { carl, phone, bea };
   server = new StrataServer({ demo: true });
   await server.start();
@@ -172,7 +173,7 @@ test("for ever is asked before, and is for ever", async () => {
 });
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
-  // the picture of a card, while the model goes into the Trash
+  // the thumbnail of a card, while the model is moved to the trash
   for (const who of Object.values(everybody)) who.assert_no_complaints(["/frame)"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

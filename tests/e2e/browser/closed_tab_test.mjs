@@ -1,5 +1,5 @@
-// A tab is closed or crashes while edits are not saved: closing it shows a warning, and the
-// person's next page sends the edits, once.
+// A tab is closed or crashes with unsaved edits. Closing it shows a warning. The next page of the
+// same user sends the edits, once.
 import assert from "node:assert/strict";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
@@ -55,7 +55,7 @@ async function paint_unheard(y) {
   return kept();
 }
 
-/** The tab crashes, and another one is opened. */
+/** Crashes the tab and opens another one. */
 async function tab_dies() {
   const crashed = page.waitForEvent("crash");
   (await browser.context.newCDPSession(page)).send("Page.crash").catch(() => {});

@@ -1,5 +1,5 @@
-// Two people on one model: each sees the strokes of the other, undo affects only a person's own
-// edits, and no stroke is lost when the server is killed.
+// Two users at one model: each sees the strokes of the other, undo affects only a user's own edits,
+// and no stroke is lost when the server is killed.
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
@@ -12,8 +12,8 @@ const words = texts_of("en");
 
 const kScan = join(process.env.STRATA_TEST_DATA ?? "", "statue_nefertiti_70k.ply");
 const has_scan = existsSync(kScan);
-const kEnough = 150; // pixels of a visible stroke
-const kFew = 12; // pixels that match by chance
+const kEnough = 150; // minimum number of pixels of a visible stroke
+const kFew = 12; // maximum number of pixels that match by chance
 
 if (!has_scan) console.log(`the demo pot stands in for the scan: there is no ${kScan}`);
 
@@ -63,7 +63,7 @@ test("a layer of classes is created in the dialog", async () => {
   );
   [bone, glass] = layer.palette.points.map((point) => rgb(point.color));
   path = `/models/${id}/layers/${layer.id}`;
-  // Other layers would only disturb the counting of pixels.
+  // other layers would disturb the counting of pixels
   for (const other of layers.layers)
     if (other.id !== layer.id)
       await server.json("PATCH", `/models/${id}/layers/${other.id}`, { visible: false });
@@ -73,7 +73,7 @@ test("somebody else opens the same model and looks from another side", async () 
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
   await bea.page.goto(`${server.url}/models/${id}`);
   await bea.drawn();
-  // She may paint, but not create layers or set the model's size.
+  // Bea may paint, but may not create layers or set the model's size.
   assert.equal(await bea.page.getByRole("button", { name: words.layers.new }).count(), 0);
   assert.equal(await bea.page.getByRole("button", { name: words.model.check_size }).count(), 0);
   await bea.page.keyboard.press("v");

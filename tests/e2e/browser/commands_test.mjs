@@ -1,6 +1,6 @@
-// The command palette: found by words in any order, run by keys and by mouse, the recently used
-// first, greyed with the reason where a command is not possible, and reached on a phone; and the
-// help, which lists the same keys.
+// The command palette: it finds commands by words in any order, runs them by keys and by mouse, and
+// lists recently used commands first. Impossible commands are gray and show the reason. The file
+// also tests the palette on a phone, and the help, which lists the same keys.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";

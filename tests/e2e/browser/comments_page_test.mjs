@@ -1,6 +1,6 @@
-// Comments on the surface: written at a place, kept while unsent, visible to others immediately,
-// answered, resolved, edited, deleted, found in the panel and by their address; by mouse, keyboard
-// and finger. The model hides the pins behind it.
+// Comments on the surface: written at a point, kept while unsent, immediately visible to others,
+// answered, resolved, edited, deleted, and found in the panel and by their address. The file tests
+// mouse, keyboard and finger. The model hides the pins behind it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -13,7 +13,7 @@ const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-const kExpected = ["status of 412", "status of 422"]; // answers that the test causes
+const kExpected = ["status of 412", "status of 422"]; // responses that the test causes
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -72,7 +72,7 @@ test.beforeAll(async () => {
     where: "true",
     value: 1,
   });
-  // otherwise the page asks curators for it
+  // otherwise the page asks curators to confirm the scale
   model = await server.json("PATCH", kBase, { scale_verified: true });
   id = model.id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
@@ -212,7 +212,7 @@ test("pins are hidden behind the surface: on the far side, and inside where the 
   await bea.page.keyboard.press("2");
   await gone(pin(bea, first.id));
   await gone(pin(bea, inside.id));
-  await bea.page.keyboard.press("1"); // from the front, which it still faces
+  await bea.page.keyboard.press("1"); // from the front, where the pin is visible
   await pin(bea, first.id).waitFor();
   await gone(pin(bea, inside.id));
   await server.request("DELETE", `/comments/${inside.id}`);

@@ -1,6 +1,6 @@
-// A computed layer in the page: completion of names, the result for the current expression, errors
-// with their position; the layer is stale after a change of its inputs, and is computed again by a
-// button or automatically.
+// A computed layer on the page: completion of names, the result of the current expression, and
+// errors with their position. The layer is stale after a change to its inputs. A button computes it
+// again, or the server does so automatically.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { attach_log, ends_well, test } from "../support/js/cases.mjs";

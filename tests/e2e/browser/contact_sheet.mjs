@@ -1,7 +1,8 @@
-// Puts pictures of every screen and dialog of the page, in the windows of a phone, a tablet and a
-// desk, on one sheet for a person to judge. This is not a test: it detects no faults.
-// `scripts/contact_sheet` runs it; the first argument is the folder for the output, `--language`
-// and `--theme` set the page's language and theme, `--windows` the windows: a wall's has 4K.
+// Shows screenshots of every screen and dialog of the page on one sheet, for a person to judge. The
+// screenshots have the window sizes of a phone, a tablet and a desktop computer. This is not a test
+// and detects no errors. `scripts/contact_sheet` runs it. The first argument is the folder for the
+// output. `--language` and `--theme` set the page's language and theme. `--windows` selects the
+// windows. The window of a wall display has 4K.
 import { mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -14,12 +15,12 @@ import { StrataServer } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
 const kSizes = { phone: [390, 844], tablet: [820, 1180], desk: [1440, 900], wall: [3840, 2160] };
-const kDesk = { width: 1280, height: 800 }; // the window in which screens are reached
-const kScale = 0.3; // of the pictures on the sheet
-const kMostBytes = 2_000_000; // for the sheet as one picture
+const kDesk = { width: 1280, height: 800 }; // the window in which the functions open the screens
+const kScale = 0.3; // scale of the screenshots on the sheet
+const kMostBytes = 2_000_000; // size of the sheet as one image
 const kQualities = [70, 60, 50, 40, 30, 20];
 const kLocales = { en: "en-GB", de: "de-DE", es: "es-ES" };
-const kFrame_ms = 20_000; // a picture that takes longer is shown in its current state
+const kFrame_ms = 20_000; // after this time, the screenshot shows the current state
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -54,7 +55,7 @@ const { page } = viewer;
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 const file_of = (screen, window) => `shots/${screen.name.replaceAll(/\W+/g, "_")}_${window}.jpg`;
 
-/** After a change of the window's size, waits until the server has drawn the model again. */
+/** Waits after a change of the window's size until the server has drawn the model again. */
 async function settled() {
   await page.evaluate(
     () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
@@ -101,7 +102,7 @@ function sheet_of(screens) {
   </style><h1>${screens.length} screens</h1><p>${sizes}; ${language}, ${theme}.</p><main>${screens.map(figure).join("\n")}</main>`;
 }
 
-/** Returns the whole sheet as one picture, in the best quality below the size limit. */
+/** Returns the whole sheet as one image, in the best quality below the size limit. */
 async function picture_of(sheet) {
   await page.setViewportSize({ width: 2530, height: 1000 });
   await page.goto(pathToFileURL(sheet).href);

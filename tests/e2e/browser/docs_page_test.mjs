@@ -1,5 +1,5 @@
-// The page of the contract: it has every operation, its menu leads to each, and it neither violates
-// the content security policy nor loads from another host.
+// The page of the contract: it contains every operation, and its menu leads to each. It neither
+// violates the content security policy nor loads files from another host.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";

@@ -1,6 +1,6 @@
-// Measured figures on the page: options with a preview of the sheet, files, with the person's
-// current view or a saved view, also perpendicular to a picked face; cancelled, refused, and left
-// running in the background. Viewers can also make them.
+// Measured figures on the page: options with a preview of the sheet, and files. The figures show
+// the user's current view or a saved view, also perpendicular to a picked face. Figures are
+// canceled, refused, and left running in the background. Viewers can also make figures.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -14,7 +14,7 @@ const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-const kExpected = ["status of 404", "status of 422"]; // answers that the test causes
+const kExpected = ["status of 404", "status of 422"]; // responses that the test causes
 let id;
 
 const shot = async ({ page }, name) => {
@@ -33,8 +33,8 @@ const notice = ({ page }, text) => page.locator("strata-notices .notice", { hasT
 const closed = (who) => dialog(who).waitFor({ state: "detached" });
 const bar = (who) => dialog(who).getByRole("progressbar");
 
-/** The body of the page's newest request of each kind. */
-const asked = new Map(); // who → { preview, file }
+/** The body of the page's latest request of each kind. */
+const asked = new Map(); // user → { preview, file }
 function listen(who) {
   asked.set(who, {});
   who.page.on("request", (request) => {
@@ -46,8 +46,7 @@ function listen(who) {
 
 const state = (who) => dialog(who).locator("figure").getAttribute("data-state");
 /**
- * Returns the sheet that is drawn for the current options: the kinds of its pixels, and a text that
- * is equal for equal pictures.
+ * Returns the sheet for the current options: its colors, and a text that is equal for equal images.
  */
 async function sheet(who) {
   await wait_for(async () => (await state(who)) === "drawn", "the sheet");
@@ -79,7 +78,7 @@ async function sheet(who) {
       };
     });
 }
-/** Returns the sheet after a choice; it must differ from the one before. */
+/** Returns the sheet after a choice. It must differ from the sheet before. */
 async function sheet_after(who, before, choose) {
   await choose();
   return wait_for(async () => {
@@ -97,7 +96,7 @@ async function open_dialog(who) {
   await who.page.keyboard.press("f");
   await dialog(who).getByRole("dialog").waitFor();
 }
-/** Returns the downloaded file of the action: its name and bytes. */
+/** Returns the name and bytes of the file that the action downloads. */
 async function download(who, act) {
   const [file] = await Promise.all([who.page.waitForEvent("download"), act()]);
   return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
@@ -468,8 +467,8 @@ test("on a phone, by who may only look", async () => {
   const phone_hint = phone.page.locator("strata-face-hint section");
   await phone_hint.waitFor();
   await shot(phone, "phone_pick");
-  // The hidden dialog gave the stage another shape: wait until the picture has it, so that a tap
-  // meets the visible content.
+  // The hidden dialog changed the shape of the stage. This waits until the frame has the new shape,
+  // so a tap hits the visible content.
   const fits = (canvas) =>
     Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
   await wait_for(

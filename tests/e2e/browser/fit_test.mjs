@@ -1,6 +1,6 @@
-// No elements overlap or touch: long names of layers, numbers with their units, the filter next to
-// a chosen record, the switch of the light. On a phone the active layer and undo stay visible.
-// Controls have their visible text as name, and the whole page is in landmarks.
+// Elements do not overlap or touch: long names of layers, numbers with their units, the filter next
+// to a selected record, the switch of the light. On a phone the active layer and undo stay visible.
+// The visible text of a control is its name. All of the page is in landmarks.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -37,7 +37,7 @@ const apart = (a, b) =>
   b.right <= a.left + 0.5 ||
   a.bottom <= b.top + 0.5 ||
   b.bottom <= a.top + 0.5;
-/** Returns the boxes of a field's drawn text and of its unit. */
+/** Returns the boxes of a field's text and of its unit. */
 const number_box = (field) =>
   field.evaluate((all) => {
     const input = all.querySelector("input");
@@ -108,7 +108,7 @@ test.beforeAll(async () => {
     const panel = (await boxes(page.locator("strata-model-page aside")))[0];
     for (const card of await boxes(page.locator("strata-layer-panel li.layer")))
       assert.ok(
-        card.right <= panel.right - 12, // the padding of the panel
+        card.right <= panel.right - 12, // 12 pixels are the padding of the panel
         `a card ends at ${card.right} in a panel that ends at ${panel.right}`,
       );
     const name = page.locator("strata-layer-panel li.selected .name .ellipsis");
@@ -243,7 +243,7 @@ test("controls are named by what is seen on them, and everything lies in a landm
   await page.reload();
   await desk.drawn();
   assert.deepEqual(await violations(page, kHeadRules), []);
-  // the layer that is chosen after a reload has no table
+  // the layer that is selected after a reload has no table
   await button(words.layers.select("Stone observations")).click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");

@@ -1,13 +1,13 @@
-// The page's own fonts: the page and the guide show them under the content security policy, load
-// only the scripts that they show, and nothing moves when a font arrives late.
+// The page's own fonts: the page and the guide use them under the content security policy, and load
+// only the scripts that they need. The layout does not move when a font arrives late.
 import assert from "node:assert/strict";
 import { attach_log, ends_well, test } from "../support/js/cases.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
 const w = texts_of("en");
-const kMostShift = 0.01; // sum of the layout shifts; Chromium calls 0.1 good
+const kMostShift = 0.01; // sum of the layout shifts; Chromium rates 0.1 as good
 
-/** The families and the number of files that the page has loaded. */
+/** Returns the families and the number of font files that the page has loaded. */
 const loaded = (page) =>
   page.evaluate(async () => {
     await document.fonts.ready;
@@ -21,7 +21,7 @@ const loaded = (page) =>
     };
   });
 
-/** Those of the own fonts that have arrived. */
+/** Returns the page's own font families that are loaded. */
 const arrived = (page) =>
   page.evaluate(() =>
     [...document.fonts].flatMap(({ status, family }) =>
@@ -116,4 +116,4 @@ test("the notices name the fonts and their license", async ({ server }) => {
   assert.ok(text.includes("SIL OPEN FONT LICENSE"));
 });
 
-ends_well({ complaints: ["/api/v1/me"] }); // nobody has signed in
+ends_well({ complaints: ["/api/v1/me"] }); // no user has signed in

@@ -1,6 +1,7 @@
-// Compares the page and the streamed picture with the pictures of tests/golden (generated models
-// only). STRATA_UPDATE_GOLDEN=1 updates them: check the new pictures before you commit them. On
-// failure the picture and a difference image (red: differing pixels) are in the build folder.
+// Compares screenshots of the page and streamed frames with the images in tests/golden (generated
+// models only). STRATA_UPDATE_GOLDEN=1 updates the images. Check the new images before you commit
+// them. After a failure, the screenshot and an image of the differences (in red) are in the build
+// folder.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -17,21 +18,21 @@ const kGolden = join(kRoot, "tests", "golden");
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-golden";
 const is_update = process.env.STRATA_UPDATE_GOLDEN === "1";
 
-// A pixel differs if a channel is off by more than `kStep`: other versions of Mesa, libjpeg and
-// FreeType cause smaller differences. `share` is the allowed share of such pixels: another
-// rasterizer moves the pot's edges by a pixel, another FreeType the letters. `mean` limits the
-// whole picture: neither limit allows a wrong color on a small patch.
+// A pixel differs if a channel is off by more than `kStep`. Other versions of Mesa, libjpeg and
+// FreeType cause smaller differences. `share` is the allowed share of such pixels. Another
+// rasterizer moves the pot's edges by a pixel, and another FreeType moves the letters. `mean`
+// limits the difference over the whole image. Both limits detect a wrong color on a small patch.
 const kStep = 40;
 const kPageLimits = { share: 0.012, mean: 1.6 };
 const kPictureLimits = { share: 0.004, mean: 0.8 };
 // A small missing element has little effect on a whole page, so details are compared separately.
-// The limits allow for the edges of letters and lines; the test checks that it detects each missing
+// The limits allow for the edges of letters and lines. The test checks that it detects each missing
 // detail.
 const kDetailLimits = { share: 0.05, mean: 7 };
 
 const failures = [];
 
-/** Compares the box (in pixels) of two pictures of one size. */
+/** Compares a box, in pixels, of two images with the same size. */
 function difference(now, golden, { x, y, width, height }) {
   let [off, sum] = [0, 0];
   for (let row = y; row < y + height; ++row) {
@@ -48,7 +49,7 @@ function difference(now, golden, { x, y, width, height }) {
 const within = (found, limits) => found.share <= limits.share && found.mean <= limits.mean;
 const whole = ({ width, height }) => ({ x: 0, y: 0, width, height });
 
-/** Gray, and red where the pictures differ. */
+/** Makes a gray image with the differing pixels in red. */
 function difference_picture(now, golden) {
   const picture = { ...now, data: new Uint8Array(now.data.length) };
   for (let at = 0; at < now.data.length; at += 4) {
@@ -59,7 +60,7 @@ function difference_picture(now, golden) {
   return encode_png(picture);
 }
 
-/** `details`: names and boxes of small parts, compared separately. */
+/** `details` are names and boxes of small parts, which are compared separately. */
 function compare(name, shot, limits, details = {}) {
   mkdirSync(kOutput, { recursive: true });
   const file = join(kGolden, `${name}.png`);
@@ -94,7 +95,7 @@ function compare(name, shot, limits, details = {}) {
   writeFileSync(join(kOutput, `${name}.diff.png`), difference_picture(now, golden));
 }
 
-/** The page without a detail must not match the golden picture. */
+/** Checks that the page without a detail does not match the golden image. */
 function assert_noticed(name, detail, box, without) {
   if (is_update) return;
   const found = difference(
@@ -120,7 +121,7 @@ async function box_of(locator) {
   };
 }
 
-/** The page's own screens, at the size of a laptop and of a phone. */
+/** Compares the page's own screens, in the window of a laptop and of a phone. */
 async function compare_page(server) {
   // tall enough to show the legend below the brush
   const laptop = await Browser.open({ viewport: { width: 1280, height: 900 } });
@@ -196,7 +197,7 @@ const frame = async (server, request) =>
     await (await server.request("POST", "/models/demo-pot/frame", request)).arrayBuffer(),
   );
 
-/** Searches for one along a line across the pot. */
+/** Finds a point on an open crack, along a line across the pot. */
 async function point_at_open_crack(browser) {
   const card = browser.page.locator("strata-value-readout .card");
   let before = "";
@@ -210,7 +211,7 @@ async function point_at_open_crack(browser) {
   throw new Error("there is no open crack across the pot");
 }
 
-/** docs/public/demo.png: the page at work, slightly closer. */
+/** Writes docs/public/demo.png: the page in use, with the model slightly closer. */
 async function write_readme_picture(browser) {
   const { page } = browser;
   await page.keyboard.press("Escape");
@@ -223,7 +224,7 @@ async function write_readme_picture(browser) {
   await point_at_open_crack(browser);
   mkdirSync(join(kRoot, "docs", "public"), { recursive: true });
   const picture = decode_png(await browser.settled());
-  // fewer colors make the file a quarter smaller and look the same
+  // with fewer colors the file is a quarter smaller and looks the same
   picture.data.forEach(
     (value, at) => (picture.data[at] = Math.min(254, Math.round(value / 2) * 2)),
   );
@@ -242,7 +243,7 @@ function distance_to(path, x, y) {
   return least;
 }
 
-/** painting across a chart seam shows no visible seam */
+/** painting across a seam of the atlas shows no visible seam */
 async function compare_seam(server) {
   const camera = pot_camera(960, 720);
   const path = [
@@ -253,8 +254,8 @@ async function compare_seam(server) {
   ];
   const radius = 30;
   const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ff" }] };
-  // Finer than a pixel: on a surface seen edge-on, a coarser texel may show a corner while its
-  // center is hidden and unpainted.
+  // The texels are smaller than a pixel. On a surface in edge view, a larger texel may show a
+  // corner while its center is hidden and unpainted.
   await server.json("POST", "/models/demo-pot/layers", {
     name: "Seam",
     type: "u8",
@@ -270,7 +271,7 @@ async function compare_seam(server) {
   });
   assert.ok(edit.texels_changed > 10_000, JSON.stringify(edit));
 
-  // The stroke does cross seams: neighbors on the surface are far apart in the texture.
+  // The stroke must cross seams: neighbors on the surface are far apart in the atlas.
   let seams = 0;
   let last = null;
   for (let x = path[0][0]; x <= path.at(-1)[0]; x += 4) {
@@ -318,9 +319,9 @@ async function compare_seam(server) {
   );
 }
 
-/** the pot cut open, its inside painted; and its relief in raking light */
+/** the pot with a section and with its inside painted, and its relief in raking light */
 async function compare_cut(server) {
-  // without the half nearer to the camera
+  // the section removes the half that is nearer to the camera
   const camera = { ...pot_camera(960, 720, 0.3), section: [[0, 1, 0, 0]] };
   const palette = { mode: "categorical", points: [{ at: 1, color: "#00c8ff" }] };
   await server.json("POST", "/models/demo-pot/layers", {

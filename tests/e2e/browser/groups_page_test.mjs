@@ -1,6 +1,6 @@
-// Groups on the page: an administrator creates one, adds people and gives it a role in a project;
-// its people see the project and the origin of their role, until it ends while their pages are
-// open.
+// Groups on the page: an administrator creates a group, adds users and gives it a role in a
+// project. Its members see the project and the origin of their role, until the role ends while
+// their pages are open.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
@@ -11,7 +11,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-// Console messages about answers that the test causes, and about sockets that the server ends.
+// Console messages about responses that the test causes, and about sockets that the server closes.
 const kExpected = [
   "status of 401",
   "status of 403",

@@ -1,5 +1,5 @@
-// The guide: it opens without an account, its search finds pages, the page leads to it, and nothing
-// in it breaks the content security policy or comes from another host.
+// The guide opens without an account, its search finds pages, and the page links to it. It does not
+// violate the content security policy, and loads no files from another host.
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import { join } from "node:path";

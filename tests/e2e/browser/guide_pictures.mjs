@@ -1,5 +1,5 @@
-// Takes the pictures of the guide (docs/pictures) from the real page. No test.
-// `scripts/guide_pictures` runs it; the argument is the folder that it writes.
+// Takes the screenshots for the guide (docs/pictures) from the real page. This is not a test.
+// `scripts/guide_pictures` runs it. The argument is the folder for the output.
 import { mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -9,7 +9,7 @@ import { make_site, screens_of } from "../support/js/screens.mjs";
 import { StrataServer } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
-// Screens of screens.mjs and kiosk-screens.mjs, and the files that show them.
+// Screens of screens.mjs and kiosk-screens.mjs, and the files for them.
 const kPictures = {
   home: "home",
   people: "people",
@@ -60,7 +60,7 @@ async function take_all(screens) {
 try {
   await server.start();
   const site = await make_site(server, bea);
-  // Measured on some of the pieces only, so that the other layers are seen.
+  // only some of the pieces are measured, so the other layers stay visible
   await server.json("POST", "/models/demo-pot/layers/moisture/edits", {
     op: "fill",
     mode: "where",

@@ -1,5 +1,5 @@
-// The histogram of a measurement: keys and the pointer move the colors' range, which then changes
-// for everyone.
+// The histogram of a measurement: keys and the pointer move the range of the colors, which then
+// changes for all users.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { attach_log, ends_well, test } from "../support/js/cases.mjs";

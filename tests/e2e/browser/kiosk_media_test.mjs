@@ -1,5 +1,5 @@
-// The design and the media of a tour: made in the editor, shown on a kiosk in a dark room, with the
-// code for phones, and without the server.
+// The design and the media of a tour: made in the editor, and shown on a kiosk in a dark room, with
+// the QR code for phones, and without the server.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { findings } from "../support/js/accessible.mjs";
@@ -24,7 +24,7 @@ function picture(width, height, color) {
   for (let at = 0; at < width * height; ++at) data.set(color, 4 * at);
   return encode_png({ width, height, data });
 }
-/** A tone of 20 seconds, 8-bit mono. */
+/** Returns a tone of 20 seconds, 8-bit mono. */
 function sound() {
   const samples = 8000 * 20;
   const wav = Buffer.alloc(44 + samples);

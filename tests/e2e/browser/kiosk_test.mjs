@@ -1,10 +1,14 @@
-// A kiosk in a real browser: by its link alone, with fingers, left alone and used again, without
-// its server and with it again, reloaded remotely and revoked. The test controls the page's clock.
-// STRATA_KIOSK_ROUNDS: number of visits during which memory is measured; STRATA_KIOSK_ALONE_MIN:
-// minutes of that clock for which the tour plays alone after each visit; STRATA_KIOSK_STEP_S:
-// seconds that pass at once in that time, with one stop of the tour each; STRATA_KIOSK_TOURS:
-// number of complete tours before the visits, each with every camera movement at normal speed. 205,
-// 50, 75 and 0 are a week, in an hour; 24, 1, 5 and 10 are 480 movements, in 40 minutes.
+// A kiosk in a real browser: opened by its link alone, operated with fingers, left alone and used
+// again, without its server and with it again, reloaded remotely, and revoked. The test controls
+// the page's clock. Environment variables:
+// - STRATA_KIOSK_ROUNDS: number of visits during which memory is measured
+// - STRATA_KIOSK_ALONE_MIN: minutes of the page's clock for which the tour plays alone after each
+//   visit
+// - STRATA_KIOSK_STEP_S: seconds that pass in one step of that time, with one stop of the tour each
+// - STRATA_KIOSK_TOURS: number of complete tours before the visits, each with every camera movement
+//   at normal speed
+// The values 205, 50, 75 and 0 are a week of operation and take an hour. The values 24, 1, 5 and 10
+// are 480 movements and take 40 minutes.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -19,13 +23,13 @@ const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
 const kStep_s = Number(process.env.STRATA_KIOSK_STEP_S ?? 5);
 const kTours = Number(process.env.STRATA_KIOSK_TOURS ?? 1);
 const kUpright = { width: 1080, height: 1920 };
-// the test itself uses the last one
+// the test itself uses the last screen
 const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright];
-const kTarget_px = 57; // 15 mm
-// MB, for the page, and below for the server: allows for the allocators of both with the same work,
-// but not for a leak of a picture a round
+const kTarget_px = 57; // 15 mm on the screen of a kiosk
+// In MB, for the page and below for the server. The limits allow for the allocators of both with
+// the same work, but not for a leak of one picture per round.
 const kMostHeapGrowth = 1.5;
-const kMostServerGrowth = 48; // MB
+const kMostServerGrowth = 48; // in MB
 const kMostNodeGrowth = 60;
 
 const shot = async (name) => {
@@ -39,7 +43,7 @@ const live = () =>
     () => page.locator("strata-kiosk-stage canvas.live[data-still=true]").count(),
     "a live picture that is still",
   );
-/** Advances the page's clock in steps; between them the page handles messages of the server. */
+/** Advances the page's clock in steps. Between them the page handles messages from the server. */
 const pass = async (seconds, step_s = 5) => {
   for (let left = seconds; left > 0; left -= step_s) {
     await page.clock.fastForward(Math.min(step_s, left) * 1000);
@@ -72,8 +76,8 @@ const middle = async (locator) => {
 };
 
 /**
- * On each screen, all controls are large enough, in the lower half, and no link leads to another
- * page.
+ * Checks that all controls are large enough and in the lower half of each screen, and that no link
+ * leads to another page.
  */
 async function assert_within_reach(where) {
   for (const screen of kScreens) {
@@ -137,7 +141,7 @@ let browser,
 
 test.beforeAll(async () => {
   browser = await Browser.open({ viewport: kUpright, hasTouch: true });
-  // on a busy machine more threads have separate memory, which looks like growth
+  // on a busy machine more threads have separate memory, which would look like growth
   server = new StrataServer({ demo: true, env: { MALLOC_ARENA_MAX: "2" } });
   ({ page } = browser);
   // a kiosk does not need WebCodecs
@@ -184,7 +188,9 @@ test("at rest the server is asked for nothing; the picture comes nearer by itsel
       .evaluate((canvas) =>
         canvas.getAnimations().some(({ animationName }) => animationName === "come-near"),
       );
-  /** Returns how often the camera was sent within a moment; null if the stop changed during it. */
+  /**
+   * Returns how often the page sent the camera in 1.5 s, or null if the stop changed in that time.
+   */
   const moves = async () => {
     const [title, seq] = [await page.locator("h1").textContent(), sent.camera.seq];
     await page.clock.runFor(1500);
@@ -334,7 +340,7 @@ test("the next stop is there where its view has it, whatever was turned before; 
   await touch(line([text.x + 700, text.y + 100], [text.x + 300, text.y + 110]));
   await is_shown("pieces");
   await touch(line([text.x + 700, text.y + 100], [text.x + 300, text.y + 110]));
-  await is_shown("pieces"); // the last one
+  await is_shown("pieces"); // the last layer
   const row = await page.locator(".layers").boundingBox();
   await touch(line([row.x + 200, row.y + 30], [row.x + 500, row.y + 32]));
   await is_shown("cracks");
@@ -346,7 +352,7 @@ test("a tap on a class says which it is, beside the place, until the object move
   await fits("second stop");
   const choose = (name) =>
     wait_for(async () => {
-      await button(name).tap(); // while the row of buttons slides, a tap may miss
+      await button(name).tap(); // a tap may miss the button while the row of buttons moves
       return (await button(name).getAttribute("aria-pressed")) === "true";
     }, `the layer ${name}`);
   await choose("pieces");
@@ -409,14 +415,14 @@ test("a tap tells of what is there, with its picture", async () => {
 test("its words are in the visitor's language", async () => {
   await button("Deutsch").tap();
   await heading("Vierzehn Scherben").waitFor();
-  // the last one has no German name
+  // the last layer has no German name
   for (const name of ["Scherben", "Risse", "pieces"]) await button(name).waitFor();
   await button("Sherd 3").tap();
   await card.getByText("Wandstärke", { exact: true }).waitFor();
   await shot("german");
   await button("Schließen").tap();
   await button("Español").tap();
-  await heading("Fourteen sherds").waitFor(); // which has no translation
+  await heading("Fourteen sherds").waitFor(); // this title has no translation
   await button("Siguiente").waitFor();
 });
 
@@ -448,7 +454,7 @@ test("it keeps what it shows", async () => {
     );
   await wait_for(
     async () => {
-      await pass(31); // a heartbeat
+      await pass(31); // time for a heartbeat
       const keys = await stored();
       return (
         keys.filter((key) => key.endsWith("/picture")).length === 3 &&
@@ -482,7 +488,7 @@ test("without its server the tour goes on with stored pictures", async () => {
   await is_loaded();
   await assert_accessible("away");
   await shot("away");
-  // The server took its time to end, so the tour may have restarted.
+  // The server needed some time to end, so the tour may have restarted.
   if (await begin.isVisible()) await begin.tap();
   await button("Next").tap();
   await heading("Fourteen sherds").waitFor();
@@ -563,7 +569,7 @@ test(`memory stays flat over ${kRounds} visitors`, async () => {
   const told = ({ heap_mb, nodes, listeners, server_mb: rss }) =>
     `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
   await cdp.send("Performance.enable");
-  // with the least number of cameras on the way to each
+  // each stop with the smallest number of cameras on the way to it
   const kStops = [
     ["The vessel from the well", 2],
     ["Fourteen sherds", 2],
@@ -593,10 +599,11 @@ test(`memory stays flat over ${kRounds} visitors`, async () => {
     await page.emulateMedia({ reducedMotion: "reduce" });
     await pass(kAlone_min * 60, kStep_s);
   };
-  // until everything is loaded and compiled
+  // runs until everything is loaded and compiled
   for (let round = 0; round < 8; ++round) await visit(round === 0 ? kTours : 0);
   const first = await used();
-  // the state after half of the visitors: allocators grow for a while, and leaks do not stop
+  // the state after half of the visits; allocators grow for a limited time, and leaks grow without
+  // limit
   let settled = first;
   const clock = () => page.evaluate(() => performance.now());
   const from_ms = await clock();
@@ -630,7 +637,7 @@ test("revoked, it says so in plain words, and keeps nothing", async () => {
   await page.getByRole("heading", { name: "This screen no longer has a tour" }).waitFor();
   assert.equal(new URL(page.url()).pathname, "/kiosk/nothing");
 
-  // a stopping server reports this while it still answers
+  // a stopping server responds with this status
   browser.assert_no_complaints([...kOfLostServer, "status of 401", "status of 503"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

@@ -1,5 +1,5 @@
-// The page in the language of the browser or in the chosen one: texts, numbers and names of data,
-// and the files loaded for it.
+// The page in the browser's language or in the selected one: texts, numbers, names of data, and the
+// files that it loads for a language.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
@@ -9,7 +9,7 @@ import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 const language_of = ({ page }) => page.evaluate(() => document.documentElement.lang);
 const heading = ({ page }, name) => page.getByRole("heading", { name, exact: true }).waitFor();
 
-/** The languages whose texts a browser loaded. */
+/** The languages whose texts a browser has loaded. */
 const loaded = [];
 
 let german, french, server, model, project, value;
@@ -90,7 +90,7 @@ test("numbers are written and read with a comma", async () => {
   const highest = async () =>
     (await server.json("GET", `/models/${model}/layers/${wet.id}/statistics`)).max;
   assert.equal(await wait_for(highest, "something painted"), 1.25);
-  await value.fill("1.250"); // which is ambiguous
+  await value.fill("1.250"); // this number is ambiguous
   await value.press("Enter");
   await german.page.getByText("ohne Tausenderpunkte").waitFor();
 });

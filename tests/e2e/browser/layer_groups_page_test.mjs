@@ -1,5 +1,6 @@
-// Long lists of layers: groups that a curator makes in the layer's dialog and by dragging, which
-// other pages get at once; folding; showing and hiding a whole group; search and filter.
+// Long lists of layers: groups that a curator makes in the layer's dialog and by dragging, and that
+// other pages receive immediately. Also folding, showing and hiding a whole group, search, and
+// filter.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -74,7 +75,7 @@ test("the eye of a group hides all of its layers, and the name folds it", async 
   await button(ida, words.layers.hide("Deposits")).click();
   for (const name of ["Soot", "Moss", "Salts"])
     await button(ida, words.layers.show(name)).waitFor();
-  await button(ada, words.layers.hide("Soot")).waitFor(); // only for this person
+  await button(ada, words.layers.hide("Soot")).waitFor(); // the change affected only the other user
   await ida.page.locator("strata-layer-panel .fold").click();
   await is_listed(ida, ["Deposits", "cracks", "pieces"]);
   await shoot(ida, "folded");

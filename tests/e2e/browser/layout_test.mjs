@@ -1,6 +1,6 @@
-// The layout in windows of phones, tablets, desks and walls: the chosen element becomes visible,
-// menus stay inside the window, scrolling rows indicate it, texts match the available pointers, and
-// are readable on walls.
+// The layout in the windows of phones, tablets, desktop computers and wall displays. The selected
+// element becomes visible, menus stay inside the window, and scrolling rows show that they scroll.
+// Texts match the available pointers, and are readable on wall displays.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";

@@ -1,5 +1,5 @@
-// A curator locks a layer while somebody paints on it: she sees it immediately, her page sends no
-// more edits, and painting continues after it is unlocked.
+// A curator locks a layer while another user paints on it. That user sees the lock immediately, and
+// her page sends no further edits. She can paint again after the layer is unlocked.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
@@ -9,7 +9,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-const kEnough = 150; // pixels of a visible stroke
+const kEnough = 150; // minimum number of pixels of a visible stroke
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -27,7 +27,7 @@ const told_in_panel = ({ page }) =>
   page.locator("strata-brush-panel").getByText(words.layers.locked_detail("Finds"));
 const lock_of = ({ page }, says) =>
   page.locator("strata-layer-panel").getByRole("img", { name: says });
-/** Collects the messages with changes that this page sends from now on. */
+/** Collects the messages with changes that this page sends after this call. */
 function changes_sent({ page }) {
   const sent = [];
   page.on("websocket", (socket) =>

@@ -1,6 +1,6 @@
-// Maps from files in the page: a shapefile with names, a scanned map by its colors, a raster of
-// numbers, an orthophoto as a surface image, which is then renamed and moved. Tests the dialogs'
-// texts about the files, and refusals.
+// Maps from files on the page: a shapefile with names, a scanned map by its colors, and a raster of
+// numbers. An orthophoto becomes a surface image, which is then renamed and moved. The file also
+// tests the dialogs' texts about the files, and refusals.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -47,7 +47,7 @@ async function paint() {
   await dialog.waitFor({ state: "detached" });
 }
 
-/** Makes files over the front of the model, seen along y: x and z. */
+/** Makes files that cover the front of the model, in x and z, seen along y. */
 function make_files({ min, max }) {
   const [x, z, size] = [(min[0] + max[0]) / 2, (min[2] + max[2]) / 2, max[0] - min[0]];
   const code = `

@@ -1,6 +1,6 @@
-// Measuring on a surface with a known shape: a ridge like a roof. Straight lengths, lengths along
-// the surface, heights, areas and the profile equal those of the roof, by mouse, keys and fingers,
-// also for viewers.
+// Measuring on a surface with a known shape, a ridge like a roof. Straight lengths, lengths along
+// the surface, heights, areas and the profile equal those of the roof. The file tests mouse, keys
+// and fingers, also for viewers.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -16,11 +16,11 @@ const shot = async (name, of = page) => {
     await of.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `measure_${name}.png`) });
 };
 
-// A roof of 200 mm × 120 mm, seen from above: it rises from y = 0 to a ridge of 45 mm along y = 60,
+// A roof of 200 mm × 120 mm, seen from above. It rises from y = 0 to a ridge of 45 mm along y = 60,
 // and falls to y = 120.
 const kRidge_mm = 45;
 const kSlope = kRidge_mm / 60;
-const kAlong = Math.hypot(1, kSlope); // length up the roof divided by its projection
+const kAlong = Math.hypot(1, kSlope); // length along the roof divided by its projection
 const height_at = (y) => kRidge_mm - kSlope * Math.abs(y - 60);
 const roof = [
   "ply",
@@ -67,7 +67,7 @@ const of = (where) => {
   const panel = where.page.locator("strata-measure-panel");
   const button = (name) => panel.getByRole("button", { name, exact: true });
   const figure = (name) => panel.locator(`[data-figure="${name}"]`);
-  /** In millimeters, or square millimeters. */
+  /** Returns the value in millimeters or square millimeters. */
   const told = async (name) => {
     const text = await figure(name).innerText();
     const [, number, unit] =
@@ -101,13 +101,13 @@ const of = (where) => {
 };
 
 /**
- * In an orthographic view from above: returns the mapping from the roof to the page, from the
+ * Sets an orthographic view from above. Returns the mapping from the roof to the page, from the
  * server's positions of two pixels of the page.
  */
 async function from_above({ page: on }) {
   await on.locator("strata-stage .surface").focus();
   await on.keyboard.press("o");
-  await on.keyboard.press("5"); // from above
+  await on.keyboard.press("5"); // view from above
   const box = await on.locator("strata-stage").boundingBox();
   const place_at = async (x, y) => {
     await on.mouse.move(box.x + x, box.y + y);
@@ -219,7 +219,7 @@ test("who may only look has the tool, by its key, with no layer chosen", async (
   await browser.drawn();
   roof_from_above = await from_above(browser);
   ({ mm_per_px, click } = roof_from_above);
-  near = 2.5 * mm_per_px; // two ends, each within somewhat more than a pixel
+  near = 2.5 * mm_per_px; // for two ends, each with an error of slightly more than a pixel
   await page.keyboard.press("m");
   assert.equal(
     await page
@@ -357,7 +357,7 @@ test("at one scale for both the roof is as steep as it is", async () => {
     const [[x0, y0], [x1, y1]] = [points[0], points[Math.floor(points.length * 0.4)]];
     return (y0 - y1) / (x1 - x0);
   };
-  const shown = kSlope / kAlong; // relative to the length of the slope
+  const shown = kSlope / kAlong; // relative to the length along the slope
   assert.ok(Math.abs((await slope()) / shown - 1) > 0.1, "blown up at first");
   await desk.panel.getByLabel(words.measure.equal).check();
   await wait_for(async () => Math.abs((await slope()) / shown - 1) < 0.03, "the true slope");
@@ -372,7 +372,7 @@ test("the curve of a layer has a gap where there is no value", async () => {
   await click(190, 30);
   await desk.places(2);
   await page.keyboard.press("Enter");
-  await desk.panel.getByLabel(words.measure.shows).waitFor(); // after the server's profile
+  await desk.panel.getByLabel(words.measure.shows).waitFor(); // waits for the server's profile
   assert.deepEqual(
     await desk.panel.getByLabel(words.measure.shows).locator("option").allInnerTexts(),
     ["Height (z)", "Moisture (%)"],
@@ -403,7 +403,7 @@ test("the curve of a layer has a gap where there is no value", async () => {
     where: "x > 150",
     value: 2,
   });
-  await readout.getByText("Moisture 2 %").waitFor(); // another person's edit in the meantime
+  await readout.getByText("Moisture 2 %").waitFor(); // another user has changed the value
 });
 
 test("the profile is saved as the server's CSV and as a picture", async () => {
@@ -519,10 +519,10 @@ test("where not all places are seen at once, the nearest surface counts, and the
 test("what lies on two sides is measured straight; a line through the object is no way over its surface, and none is told", async () => {
   await page.keyboard.press("Escape");
   await desk.none();
-  await page.keyboard.press("1"); // from the front
+  await page.keyboard.press("1"); // view from the front
   await page.keyboard.press("m");
   await desk.places(1);
-  await page.keyboard.press("2"); // from behind
+  await page.keyboard.press("2"); // view from the back
   await page.keyboard.press("m");
   await desk.places(2);
   await desk.is_about("straight", 60, near);
@@ -530,7 +530,7 @@ test("what lies on two sides is measured straight; a line through the object is 
   assert.equal(await desk.figure("along").count(), 0);
   await page.keyboard.press("Enter");
   await shot("through");
-  await page.keyboard.press("5"); // both are visible from above
+  await page.keyboard.press("5"); // both points are visible from above
   await desk.panel.getByRole("radio", { name: words.measure.ways.seen }).click();
   await desk.is_about("along", 60 * kAlong, near * kAlong);
   assert.equal(await desk.panel.getByText(/The straight lines pass/).count(), 0);

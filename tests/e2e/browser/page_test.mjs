@@ -1,5 +1,5 @@
-// The page with one person: the cursor shows the area that is painted, keys and fingers have their
-// own functions, navigation loses nothing, and changes of others are not overwritten.
+// The page with one user: the cursor shows the area that a click paints, and keys and fingers have
+// different functions. Navigation loses no edits, and changes by others are not overwritten.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, has_hue, kOfLostServer, rgb } from "../support/js/browser.mjs";
@@ -10,7 +10,7 @@ import { texts_of } from "../support/js/texts.mjs";
 const words = texts_of("en");
 
 const kMagenta = "#ff00ffff"; // no part of the pot has this hue
-const kEdge_px = 3; // around the edge: half a texel, and JPEG's blocks of color
+const kEdge_px = 3; // tolerance at the edge: half a texel, and JPEG's blocks of color
 
 const base = "/models/demo-pot";
 const edits = async (layer) =>
@@ -27,7 +27,9 @@ const menu = async (layer, item) => {
   await page.getByRole("menuitem", { name: item }).click();
 };
 
-/** Whether it is magenta, even in the shade, where JPEG leaves little of the hue. */
+/**
+ * Returns whether a pixel may be magenta, even in the shade, where JPEG keeps little of the hue.
+ */
 const may_be_magenta = (data, at) => {
   const least = Math.min(data[at], data[at + 2]);
   return least > 24 && data[at + 1] < 0.5 * least;
@@ -45,7 +47,7 @@ async function cursor() {
 /** Clicks once at the pointer, and compares the painted area with the circle. */
 async function compare_footprint(what) {
   await browser.point(0.5, 0.62);
-  // the depth under the pointer has arrived
+  // waits for the depth under the pointer
   await page
     .locator("strata-value-readout")
     .getByText(/Position/)
@@ -94,7 +96,7 @@ async function compare_footprint(what) {
   return circle.r;
 }
 
-/** Drops a box on the page as a person does. */
+/** Drops a scan of a box on the page, as a user does. */
 async function drop_scan(name) {
   const corners = Array.from({ length: 8 }, (_, i) =>
     [i & 1, i & 2 ? 1 : 0, i & 4 ? 1 : 0].map((c) => c * 40).join(" "),
@@ -149,7 +151,7 @@ test.beforeAll(async () => {
     palette,
   });
   await show_only("test");
-  cameras = []; // sent by the page
+  cameras = []; // the cameras that the page sends
   page.on("websocket", (socket) =>
     socket.on("framesent", ({ payload }) => {
       const message = JSON.parse(payload);
@@ -267,7 +269,8 @@ test("somebody else changes the layer that is being edited", async () => {
     await page.getByLabel(words.layer_dialog.name, { exact: true }).inputValue(),
     "Test",
   );
-  await button(words.layer_dialog.class_add).click(); // adds a second class to a layer of one class
+  // adds a second class to a layer with one class
+  await button(words.layer_dialog.class_add).click();
   await page.getByLabel(words.layer_dialog.class_label(2)).fill("Second");
   await button(words.save).click();
   await radio("Second").waitFor();
@@ -328,7 +331,7 @@ test("a scan that is dropped on a model's page is imported, and the person stays
   assert.equal(page.url(), here);
   await page.getByRole("link", { name: words.import.open, exact: true }).click();
   await page.getByRole("heading", { name: "dropped box", exact: true }).waitFor();
-  await browser.drawn(); // directly from one model to another
+  await browser.drawn(); // the page goes directly from one model to another
   await page.getByText(/Is this object .*\?/).waitFor();
 });
 

@@ -1,18 +1,18 @@
 // The bytes that a browser loads before it first shows a page, with the larger encoding (gzip,
-// which browsers also accept by plain http).
+// which browsers also accept over plain http).
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { kRoot, missing } from "../support/js/modules.mjs";
 
 const kMost = 200_000;
-const kMostFonts = 100_000; // of the fonts that it requests at once
+const kMostFonts = 100_000; // for the fonts that the page requests immediately
 const dist = join(kRoot, "web-client", "dist");
 const list = join(dist, ".vite", "manifest.json");
 if (!existsSync(list)) missing("the page is not built");
 const manifest = JSON.parse(readFileSync(list, "utf8"));
 
-/** Returns an entry with all its imports. */
+/** Returns an entry with all its direct and indirect imports. */
 function with_imports(key, found = new Set()) {
   if (found.has(key)) return found;
   assert.ok(manifest[key], `${key} is no piece of the page: ${Object.keys(manifest)}`);
@@ -34,7 +34,7 @@ function weight(...keys) {
   return bytes.reduce((sum, each) => sum + each, statSync(join(dist, "index.html")).size);
 }
 
-// other entries import it, so its name is not that of a source
+// other entries import this one, so it does not have the name of a source file
 const kShell = [
   "index.html",
   Object.keys(manifest).find((key) => manifest[key].name === "strata-app"),
@@ -63,7 +63,7 @@ console.log(`fonts: ${font_bytes} bytes in ${fonts.length} files`);
 assert.equal(fonts.length, 2);
 assert.ok(font_bytes <= kMostFonts);
 
-// Encoded files have the content of the plain ones, and every script has a source map.
+// Encoded files have the same content as the plain files, and every script has a source map.
 const { brotliDecompressSync, gunzipSync } = await import("node:zlib");
 for (const { file } of Object.values(manifest)) {
   const at = join(dist, file);

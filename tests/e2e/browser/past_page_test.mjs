@@ -1,5 +1,5 @@
-// The history on the page: two people paint, one looks at the states before, compares them with now,
-// and restores a part.
+// The history on the page: two users paint. One of them views earlier states, compares them with
+// the newest one, and restores a part.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -11,7 +11,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 const past = words.past;
-const kEnough = 150; // pixels of a visible stroke
+const kEnough = 150; // minimum number of pixels of a visible stroke
 
 let ada, ben, phone, server, model, finds, bone;
 
@@ -29,7 +29,7 @@ async function stroke(who, from, to) {
   await who.drag([from, to]);
   await who.saved();
 }
-/** Waits until the stage shows that state. */
+/** Waits until the stage shows the state with that sequence. */
 const shows = (who, sequence) =>
   who.page
     .locator(`strata-stage canvas[data-scene-sequence="${sequence}"][data-still=true]`)
@@ -62,7 +62,7 @@ test.beforeAll(async () => {
     await who.page.getByRole("button", { name: words.layers.select("Finds") }).click();
 });
 
-const states = []; // sequence and texels after each stroke
+const states = []; // the sequence and the number of texels after each stroke
 
 test("each edit of both is a state of the history", async () => {
   const begin = await newest();
@@ -121,7 +121,7 @@ test("then is next to now, with a divider that moves", async () => {
   const now = await ada.count(bone);
   await ada.page.keyboard.press("End");
   await wait_for(async () => (await ada.count(bone)) < now - kEnough, "a picture of then alone");
-  // The camera moves both.
+  // the camera moves both sides
   await ada.page.keyboard.press("Home");
   const box = await ada.stage_box();
   const handle = await divider.boundingBox();
@@ -144,7 +144,7 @@ test("a part of the layer is restored, after its size was shown", async () => {
     .waitFor();
   await bar(ada).getByRole("button", { name: past.part, exact: true }).click();
   await bar(ada).getByText(past.draw_part).waitFor();
-  // around the third stroke alone
+  // an outline around only the third stroke
   await ada.drag([
     [0.36, 0.62],
     [0.62, 0.62],

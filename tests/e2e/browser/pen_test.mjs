@@ -1,5 +1,5 @@
-// A pen on a tablet: it paints while the hand that holds it rests on the screen; without the pen
-// two fingers move the model, and one turns it.
+// A pen on a tablet: it paints while the hand that holds it rests on the screen. Without the pen,
+// two fingers move the model, and one finger rotates it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -46,7 +46,7 @@ test.beforeAll(async () => {
 });
 
 test("the pen paints with the hand beside it, which neither paints nor turns", async () => {
-  await tilda.idle(); // the tool's panel changes the size of the picture
+  await tilda.idle(); // the tool's panel changes the size of the 3D view
   const stood = await camera();
   await pen("mouseMoved", [0.4, 0.5]);
   await touch("touchStart", [0.7, 0.7]);
@@ -115,9 +115,10 @@ test("pressed half as hard the pen paints a narrower line, and as wide as ever w
 });
 
 test("away with the pen: two fingers move the model, one turns it, and neither paints", async () => {
-  await pen("mouseMoved", [-0.02, 0.5]); // over the tools
+  await pen("mouseMoved", [-0.02, 0.5]); // the pen is over the tools
   painted = await edits();
-  // The page decides how long the pen counts as present: the fingers repeat until the page reacts.
+  // The page decides how long the pen counts as present, so the fingers repeat the gesture until
+  // the page reacts.
   const moves = (gesture) => async () => {
     const from = await camera();
     await gesture();

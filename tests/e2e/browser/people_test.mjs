@@ -1,5 +1,5 @@
 // Accounts on the page: a password for the owner, an invitation by link, the controls of each role,
-// and the removal of people.
+// and the removal of users.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
@@ -13,7 +13,7 @@ const kOwnersPassword = "four words of mine";
 const kAdasPassword = "engines weave algebra";
 const kAdasNext = "as the loom weaves flowers";
 const kAdasThird = "notes upon the memoir";
-// Console messages about answers that the test causes, and about sockets that the server ends.
+// Console messages about responses that the test causes, and about sockets that the server closes.
 const kExpected = [
   "status of 401",
   "status of 403",
@@ -57,7 +57,7 @@ const shot = async ({ page }, name) => {
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) });
 };
 
-/** A square of 100 mm. */
+/** Imports a square of 100 mm. */
 async function import_square(name, project) {
   const ply = [
     "ply",
@@ -139,7 +139,7 @@ test("they sign out, and in again by name and password", async () => {
   await alert_of(owner, words.sign_in.wrong);
   await sign_in(owner, "nobody", kOwnersPassword);
   await alert_of(owner, words.sign_in.wrong);
-  await sign_in(owner, "Owner", kOwnersPassword); // letter case is ignored
+  await sign_in(owner, "Owner", kOwnersPassword); // the server ignores the case of letters
   await at_home(owner);
 });
 
@@ -274,7 +274,7 @@ test("the owner disables her: she is out, and cannot come back", async () => {
     .waitFor();
   await at_sign_in(ada);
   await sign_in(ada, "ada", kAdasPassword);
-  // before the next attempt, which must wait for this one
+  // the next attempt must wait for the response to this one
   await alert_of(ada, words.sign_in.wrong);
   await at_sign_in(ada);
 });
@@ -298,7 +298,7 @@ test("who forgot a password gets a new link; the old password is good for nothin
   await phone.page.getByLabel(words.join.repeat).fill(kAdasNext);
   await phone.page.keyboard.press("Enter");
   await at_home(phone);
-  await at_sign_in(ada); // the new password ended her other sessions
+  await at_sign_in(ada); // the new password has ended her other sessions
   await sign_in(ada, "ada", kAdasPassword);
   await alert_of(ada, words.sign_in.wrong);
   await sign_in(ada, "ada", kAdasNext);

@@ -1,6 +1,6 @@
-// One person's hidden layers and order are kept after a reload and in another browser, and others
-// do not see them; a computed layer is at first hidden for others, locked, and marked after edits
-// by hand; and a person has one color and one name everywhere.
+// A user's hidden layers and order are kept after a reload and in another browser, and other users
+// do not see them. A computed layer is hidden for others at first, is locked, and is marked after
+// edits by hand. A user has the same color and name everywhere.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";

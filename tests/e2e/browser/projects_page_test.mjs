@@ -1,5 +1,5 @@
 // Projects on the page: administrators create, rename and delete them, by keyboard, mouse and
-// touch; the page lists the content that would be lost; other people have no such controls.
+// touch. The page lists the content that would be lost. Other users have no such controls.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -44,7 +44,7 @@ const status = async ({ token }, method, path, body) =>
     })
   ).status;
 
-/** 100 mm wide. */
+/** A square of 100 mm. */
 const kSquare = [
   "ply",
   "format ascii 1.0",
@@ -67,9 +67,10 @@ const kSquare = [
 let ada, pia, nora, everybody, server, pot, curator, annotator;
 
 test.beforeAll(async () => {
-  ada = await Browser.open(); // an administrator at a desk
-  pia = await Browser.open({ ...kPhone, colorScheme: "dark" }); // another, with a phone
-  nora = await Browser.open(); // without the rights
+  ada = await Browser.open(); // an administrator at a desktop computer
+  // another administrator, with a phone
+  pia = await Browser.open({ ...kPhone, colorScheme: "dark" });
+  nora = await Browser.open(); // a user without these rights
   everybody = { ada, pia, nora };
   server = new StrataServer({ demo: true });
   await server.start();
@@ -261,7 +262,7 @@ test("with tables only, these are named, and its name is typed", async () => {
   await shoot(pia, "with_tables_phone_dark");
   await typed.fill("Villa Giulia, Rome");
   await remove.tap();
-  await heading(pia, words.home.title); // of the only remaining project
+  await heading(pia, words.home.title); // the title of the only remaining project
   assert.equal(new URL(pia.page.url()).pathname, "/");
   await pia.page.getByText("“Villa Giulia, Rome” was deleted.").waitFor();
   assert.equal(await status({ token: server.token }, "GET", "/projects/villa-giulia"), 404);
@@ -330,7 +331,7 @@ test("whose role changes while the dialog is open is told so there", async () =>
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   ada.assert_no_complaints(["412", "403", "401"]);
-  pia.assert_no_complaints(["409"]); // deleting a referenced table is tried first
+  pia.assert_no_complaints(["409"]); // the page first tries to delete a table that others refer to
   nora.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

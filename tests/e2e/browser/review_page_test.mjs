@@ -1,5 +1,5 @@
-// A curator turns on the review of a layer's edits: an annotator's edits are hatched, listed,
-// accepted, rejected with a visible reason, and reopened.
+// A curator turns on the review of a layer's edits. An annotator's edits are hatched and listed.
+// They are accepted, rejected with a visible reason, and reopened.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -11,7 +11,7 @@ import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-const kEnough = 150; // pixels of a visible stroke
+const kEnough = 150; // minimum number of pixels of a visible stroke
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -102,7 +102,7 @@ test("what she paints is hatched for both, and the curator's list has it", async
 });
 
 test("the curator looks at a stroke as its author saw it", async () => {
-  await cleo.page.keyboard.press("6"); // another view
+  await cleo.page.keyboard.press("6"); // selects another view
   await cleo.drawn();
   await listed(cleo).first().click();
   await wait_for(

@@ -1,6 +1,6 @@
-// The question about size and up direction, as after dropping files: it shows the server's proposal
-// with its reason first; the model shows the choice, is not dimmed and can be used; "Decide later"
-// keeps the values of the card. On a desk and on a phone.
+// The question about size and up direction, as after dropping files. It first shows the server's
+// proposal and its reason. The model shows the choice, is not dimmed and can be used. "Decide
+// later" keeps the values of the card. On a desktop computer and on a phone.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -17,8 +17,8 @@ const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile
 const kUps = ["+X", "+Y", "+Z", "−X", "−Y", "−Z"];
 
 /**
- * A bowl with a foot, upright along `axis`, 80 units wide. Its wall has a dent on one side: a round
- * bowl looks the same with +X and −X up.
+ * A bowl with a foot, upright along `axis`, 80 units wide. Its wall has a dent on one side, because
+ * a round bowl looks the same with +X and −X up.
  */
 function bowl(axis, comment = "") {
   const rings = [
@@ -97,7 +97,7 @@ async function asked(who) {
   await card(who).waitFor();
   await who.drawn();
 }
-/** Returns the brightness of the stage outside the model: a dimmed stage is darker. */
+/** Returns the brightness of the stage outside the model. A dimmed stage is darker. */
 async function ground(who) {
   const box = await who.stage_box();
   const { data } = await who.picture({
@@ -200,7 +200,7 @@ test("decide later: what the card named is kept, marked, and asked again", async
   await bar_says(desk, "(mm|cm)");
   assert.match(await bar(desk), /Size not confirmed/);
   const without_card = await ground(desk);
-  // dimming subtracts 80; JPEG a few
+  // dimming subtracts 80, and JPEG only a few
   assert.ok(
     Math.abs(without_card - with_card) < 12,
     `the picture was dimmed while the card was open: ${with_card} of ${without_card}`,

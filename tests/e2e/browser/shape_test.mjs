@@ -1,5 +1,5 @@
-// Layers that are computed from the shape and layers transferred from another scan, as a person
-// makes them on the page.
+// Layers that are computed from the shape, and layers that are transferred from another scan, as a
+// user makes them on the page.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -14,14 +14,17 @@ const pictures = process.env.STRATA_TEST_OUTPUT;
 const button = (name) => page.getByRole("button", { name, exact: true });
 const base = "/models/demo-pot";
 
-/** For people to check; the test does not compare them. */
+/** Saves a screenshot for people to check. The test does not compare it. */
 async function keep_picture(name) {
   if (!pictures) return;
   mkdirSync(pictures, { recursive: true });
   await page.screenshot({ path: join(pictures, `shape-${name}.png`) });
 }
 
-/** Returns a hill of `cells` × `cells` squares, 100 mm wide, as a PLY with an additional number. */
+/**
+ * Returns a hill of `cells` × `cells` squares, 100 mm wide, as a PLY with an additional number at
+ * each vertex.
+ */
 function hill(cells) {
   const at = Array.from({ length: cells + 1 }, (_, i) => (100 * i) / cells);
   const vertices = at.flatMap((y) =>
@@ -101,7 +104,7 @@ test("a layer is computed from the shape", async () => {
   await button(words.layers.select("Curvature")).waitFor();
   const layer = await server.json("GET", `${base}/layers/curvature`);
   assert.equal(layer.unit, "1/mm");
-  // the description shows that it is selected
+  // the description shows that the layer is selected
   await page
     .getByText(/Quadric|quadric that fits the surface within 4 mm/)
     .first()
@@ -144,7 +147,7 @@ test("long work shows how far it is, and is cancelled", async () => {
   await button(words.layer_dialog.compute).click();
   await page.getByText(words.shape.bad_rays(16, 1024)).waitFor();
   await page.getByLabel(words.shape.rays).fill("128");
-  // the finest takes longest
+  // the highest resolution takes longest
   await page
     .getByRole("radiogroup", { name: words.layer_dialog.detail })
     .getByRole("radio")

@@ -1,5 +1,5 @@
-// The person's own steps on the page, snapshots on the slider of the history, and what changed since
-// a state.
+// The user's own steps on the page, snapshots on the slider of the history, and changes since a
+// state.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -36,7 +36,7 @@ async function stroke(who, from, to) {
 const opens = ({ page }) => page.getByRole("button", { name: steps.title, exact: true }).click();
 const select = ({ page }, name) =>
   page.getByRole("button", { name: words.layers.select(name) }).click();
-/** How many of the rows are undone. */
+/** Returns the number of undone rows. */
 const undone = (who) => list(who).locator(".undone").count();
 
 test.beforeAll(async () => {
@@ -89,7 +89,7 @@ test("a click goes back two steps, and forward again", async () => {
   assert.ok((await texels()) < finds, "the second stroke on Finds is undone");
   assert.equal(await rows(ada).nth(2).getAttribute("aria-current"), "step");
   await shoot(ada, "back");
-  // after a reload, the list is the same
+  // the list is the same after a reload
   await ada.page.reload();
   await ada.drawn();
   await opens(ada);
@@ -101,7 +101,7 @@ test("a click goes back two steps, and forward again", async () => {
 });
 
 test("a refused step stops the walk with its reason", async () => {
-  // a curator locks the layer below the open list
+  // a curator locks the layer while the list is open
   const turns = [];
   await ada.page.route("**/undo", async (route) => {
     if (route.request().method() === "POST") {
@@ -197,7 +197,7 @@ test("a snapshot is deleted after a question", async () => {
 });
 
 test("nobody complained", async () => {
-  ada.assert_no_complaints(["/undo)"]); // the refused one
+  ada.assert_no_complaints(["/undo)"]); // the refused undo
   ben.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

@@ -1,5 +1,5 @@
-// Two people on one model: each sees the participants, the other's pointer and the other's strokes
-// while they are painted; one follows the other's view, invites the other to follow, and is
+// Two users at one model: each sees the participants, the other's pointer, and the other's strokes
+// while they are painted. One user follows the other's view, invites the other to follow, and is
 // notified when the other leaves.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
@@ -14,7 +14,7 @@ const words = texts_of("en");
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-together";
 const kMagenta = "#ff00ff"; // no part of the pot has this hue
-const kEnough = 150; // pixels of a visible stroke
+const kEnough = 150; // minimum number of pixels of a visible stroke
 const kPhone = { width: 390, height: 844 };
 const kDesk = { width: 1280, height: 800 };
 const kCrowd = [
@@ -35,7 +35,8 @@ const pose_of = ({ view, projection, width, height }) =>
   JSON.stringify([view, projection, width, height]);
 
 /**
- * Records the messages between a page and the server: `sent` and `heard` by op, only the newest.
+ * Records the messages between a page and the server: only the newest message of each op, in `sent`
+ * and `heard`.
  */
 function listen(who) {
   who.sent = {};
@@ -46,7 +47,7 @@ function listen(who) {
       ({ payload }) => {
         if (typeof payload !== "string") return;
         const message = JSON.parse(payload);
-        // The same camera, sent again at rest, may not be drawn again.
+        // The server may not draw the same camera again when the page sends it at rest.
         if (message.op === "camera")
           message.drawn_from =
             where.camera && pose_of(where.camera) === pose_of(message)
@@ -60,12 +61,12 @@ function listen(who) {
 }
 const bea_as_heard = () => anna.heard.presence?.users.find(({ name }) => name === "bea");
 
-/** Column-major matrices, as in the protocol. */
+/** The matrices are column-major, as in the protocol. */
 const times = (m, v) =>
   [0, 1, 2, 3].map((row) =>
     [0, 1, 2, 3].reduce((sum, column) => sum + m[4 * column + row] * v[column], 0),
   );
-/** Returns a place's position in the window of a camera, from its matrices. */
+/** Returns a point's position in the window of a camera, from its matrices. */
 function projected({ view, projection, width, height }, place) {
   const [x, y, , w] = times(projection, times(view, [...place, 1]));
   return { x: (x / w / 2 + 0.5) * width, y: (0.5 - y / w / 2) * height };
@@ -83,7 +84,7 @@ const at_rest = (who) =>
     "a still picture of the newest camera",
     100,
   );
-/** Returns Bea's pointer on Anna's page: CSS pixels of the stage. */
+/** Returns the position of Bea's pointer on Anna's page, in CSS pixels of the stage. */
 const cursor_at = () =>
   cursor.evaluate((element) => {
     const [box, stage] = [
@@ -122,7 +123,7 @@ test.beforeAll(async () => {
   cursor = anna.page.locator("strata-people-overlay .person");
   await server.start();
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
-    // they would disturb the counting of pixels
+    // other layers would disturb the counting of pixels
     await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false });
   const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Soot" }] };
   await server.json("POST", "/models/demo-pot/layers", {
@@ -194,7 +195,7 @@ test("from the sixth on they are counted, and the menu lists all of them", async
   const folded = crowd.locator("strata-people-menu .faces .face");
   assert.deepEqual([await folded.count(), (await folded.last().textContent()).trim()], [6, "+3"]);
   await crowd.locator("strata-people-menu .faces").click();
-  // and the person's own other window
+  // includes the user's own other window
   assert.equal(
     await crowd
       .locator("strata-people-menu")
@@ -300,7 +301,7 @@ test("following: the other's view, in their colour, wherever they turn", async (
     await bea.page.keyboard.press(key);
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "Anna's camera to be Bea's");
   await Promise.all([at_rest(anna), at_rest(bea)]);
-  await bea.page.mouse.move(5, 5); // a pointer would make the pictures differ
+  await bea.page.mouse.move(5, 5); // the pointer would make the frames differ
   await cursor.waitFor({ state: "detached" });
   const [mine, hers] = await Promise.all(
     [anna, bea].map(async (who) => {
@@ -342,7 +343,7 @@ test("on a phone all that she sees is seen, from where she stands", async () => 
   eye(anna.sent.camera).forEach((value, index) =>
     assert.ok(Math.abs(value - eye(bea.sent.camera)[index]) < 1e-6, "another eye"),
   );
-  // Half of the horizontal and vertical field of view: tangents, for each camera.
+  // Half of the horizontal and vertical field of view, as tangents, for each camera.
   const [own, other] = [anna.sent.camera, bea.sent.camera].map(({ projection }) => [
     1 / projection[0],
     1 / projection[5],

@@ -1,5 +1,5 @@
-// Brush shapes on the page: made from a picture by file and by drop, chosen by mouse and by keys,
-// used for painting, renamed, and deleted by another person; and the limit of the slant.
+// Brush shapes on the page: made from a picture by file and by drop, selected by mouse and by keys,
+// used for painting, renamed, and deleted by another user. Also the limit of the slant.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -17,7 +17,7 @@ const shape = (name) => picker.getByRole("radio", { name, exact: true });
 const shot = async (name, of = browser) =>
   writeFileSync(join(kOutput, `tools-${name}.png`), await of.settled());
 
-/** A dark shape on white paper. */
+/** Returns a dark shape on white paper. */
 function drawing(inside) {
   const side = 200;
   const data = new Uint8Array(side * side * 4);

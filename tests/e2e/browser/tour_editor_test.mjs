@@ -1,6 +1,6 @@
-// Tours on the page: made of saved views, translated, reordered, tested on the model; another
-// person's simultaneous change and the server's refusals are shown in the right place and lose
-// nothing. Links for kiosks: shown once, reloaded on request, revoked. Also on a phone. Only
+// Tours on the page: made from saved views, translated, reordered, and tested on the model. Another
+// user's simultaneous change and the server's refusals are shown at the right position and lose no
+// input. Links for kiosks are shown once, reloaded on request, and revoked. Also on a phone. Only
 // curators have these controls.
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -14,7 +14,7 @@ const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-// answers that the test causes
+// responses that the test causes
 const kExpected = ["status of 412", "status of 422", "status of 404"];
 
 const shot = async ({ page }, name) => {
@@ -54,7 +54,7 @@ const question = ({ page }) => page.locator("strata-question");
 const listed = ({ page }) => page.getByRole("link", { name: /Demo pot/ });
 const path_of = ({ page }) => new URL(page.url()).pathname;
 const home = ({ page }) => page.getByRole("link", exact(words.model.back)).click();
-/** Waits until the page has the event. */
+/** Goes back in the history, and waits until the page has received the event. */
 const back = ({ page }) =>
   page.evaluate(() =>
     new Promise((resolve) => {
@@ -68,7 +68,7 @@ const from_account = async (who, item) => {
 };
 
 async function open_model(who) {
-  await listed(who).click(); // the history leads back to the list
+  await listed(who).click(); // the history then leads back to the list
   await who.drawn();
 }
 async function open_panel(who) {
@@ -98,7 +98,7 @@ test.beforeAll(async () => {
   ];
   server = new StrataServer({ demo: true });
   await server.start();
-  // otherwise the page asks curators for it
+  // otherwise the page asks curators to confirm the scale
   id = (await server.json("PATCH", kBase, { scale_verified: true })).id;
   layers = (await server.json("GET", `${kBase}/layers`)).layers;
   const { project } = await server.json("GET", kBase);
@@ -123,7 +123,7 @@ test("a tour needs views, and says how they are had", async () => {
   await button(list(ada), words.tours.new).click();
   await editor(ada).getByText(words.tours.no_views).waitFor();
   await shot(ada, "no_views");
-  await button(editor(ada), words.cancel).click(); // without changes there is no question
+  await button(editor(ada), words.cancel).click(); // without changes the page asks no question
   await gone(editor(ada));
   await keep_view(ada, "West wall", ["4"]);
   await keep_view(ada, "From above", ["7"]);
@@ -237,7 +237,7 @@ test("it is translated, and what lacks is marked", async () => {
     .waitFor();
   await choose_stop(ada, "The handle");
   await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).fill("El asa");
-  await fields(ada).getByText(words.tours.lacks).waitFor(); // the text
+  await fields(ada).getByText(words.tours.lacks).waitFor(); // the text is still missing
   await fields(ada).getByLabel(words.tours.stop_text_in("Spanish")).fill("Hecha aparte.");
   await gone(
     stops(ada).locator("li", { hasText: "The handle" }).getByText(words.tours.missing("Spanish")),
@@ -301,7 +301,7 @@ test("closing with changes asks, by Escape, too, and again", async () => {
   await button(question(ada), words.cancel).click();
   await gone(question(ada));
   await button(editor(ada), words.close).click();
-  await ada.page.keyboard.press("Escape"); // the answer no
+  await ada.page.keyboard.press("Escape"); // Escape means no
   await gone(question(ada));
   assert.equal(
     await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
@@ -332,7 +332,7 @@ test("leaving the page asks as well while a stop is tried: by its links, back, s
     await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
     "El asa",
   );
-  await back(ada); // also outside the editor itself
+  await back(ada); // also for navigation outside the editor
   await question(ada).getByText(words.tours.leave_lead).waitFor();
   await back(ada);
   assert.equal(await question(ada).count(), 1);
@@ -394,7 +394,7 @@ test("what the server refuses is said at its field of the right stop", async () 
   await ada.page.route(`**/tours/${again.id}`, async (route) => {
     if (route.request().method() !== "PATCH") return route.continue();
     const body = JSON.parse(route.request().postData());
-    body.stops[2].layers.push("ghost"); // a layer that another person has just deleted
+    body.stops[2].layers.push("ghost"); // a layer that another user has just deleted
     return route.continue({ postData: JSON.stringify(body) });
   });
   await save(ada);
@@ -530,7 +530,7 @@ test("on a phone a stop has the window to itself", async () => {
   await save(phone);
   await gone(editor(phone));
   assert.equal((await tour("around-the-pot")).stops[2].title.es, "El asa de la vasija");
-  // it was hidden to show the model
+  // the panel was hidden to show the model
   await phone.page.getByRole("button", { name: words.model.show_panel }).tap();
   await row(phone, "Around the pot").scrollIntoViewIfNeeded();
   await from_menu(phone, "Around the pot", words.kiosks.of_tour);

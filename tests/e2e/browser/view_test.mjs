@@ -1,5 +1,5 @@
-// The View panel: surface images, light and section change only this person's picture, by mouse and
-// by keys, and a brush paints the part that the section leaves visible.
+// The View panel: surface images, light and section change only this user's view, by mouse and by
+// keys. A brush paints the part that the section leaves visible.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -41,7 +41,7 @@ test.beforeAll(async () => {
   for (let at = 0; at < cyan.data.length; at += 4) cyan.data.set([...kCyan, 255], at);
 
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
-    // they would hide the content below
+    // the layers would hide the content below
     await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false });
 
   await page.goto(server.link);
@@ -128,7 +128,7 @@ test("a section opens the pot, and the brush paints what is seen then", async ()
       if ([219, 209, 194].every((wanted, c) => Math.abs(data[at + c] - wanted) < 4)) ++count;
     return count;
   };
-  uncut = inside(await stage()); // some of the clay also has that color
+  uncut = inside(await stage()); // some parts of the clay also have that color
   await bar.getByLabel(words.view.cut_position).fill("500");
   await wait_for(
     async () => inside(await stage()) > 3 * uncut + 3000,
@@ -162,7 +162,7 @@ test("a box keeps what is inside, and sides do not pass each other", async () =>
 test("the cube shows the side that is seen; a face, an arrow key or a drag turns the model", async () => {
   const cube = page.getByRole("radiogroup", { name: words.picture_bar.cube });
   const face = (name) => cube.getByRole("radio", { name, exact: true });
-  // once the camera has arrived
+  // waits until the camera has arrived
   const chosen = (name, what = name) =>
     wait_for(
       async () => (await face(name).getAttribute("aria-checked")) === "true",

@@ -1,6 +1,6 @@
-// Saved views on the page: created, opened and left again; by their link in another person's
-// browser; renamed, changed and deleted, which others see immediately; by mouse, keyboard and
-// finger. Viewers have no controls to change them.
+// Saved views on the page: created, opened and left again, and opened by their link in another
+// user's browser. They are renamed, changed and deleted, which others see immediately. The file
+// tests mouse, keyboard and finger. Viewers have no controls to change views.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -13,7 +13,7 @@ const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-const kExpected = ["status of 412"]; // answers that the test causes
+const kExpected = ["status of 412"]; // responses that the test causes
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -42,7 +42,7 @@ const is_current = (who, name) =>
     async () => (await go(who, name).getAttribute("aria-current")) === "true",
     `${name} to be the view that is seen`,
   );
-/** Returns the picture of the model once it is stable, without overlays. */
+/** Returns the frame of the model once it is stable, without overlays. */
 const picture = ({ page }) => {
   let last = null;
   return wait_for(
@@ -84,7 +84,7 @@ test.beforeAll(async () => {
   server = new StrataServer({ demo: true });
   await server.start();
   layers = (await server.json("GET", `${kBase}/layers`)).layers;
-  // otherwise the page asks curators for it
+  // otherwise the page asks curators to confirm the scale
   id = (await server.json("PATCH", kBase, { scale_verified: true })).id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));

@@ -1,5 +1,5 @@
-// A curator sets who can see a layer, a column and a photo, and who can download the scan; a viewer
-// loses and regains them immediately.
+// A curator sets the users who can see a layer, a column and a photo, and who can download the
+// scan. A viewer loses and regains access immediately.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -167,7 +167,7 @@ test("who downloads the scan", async () => {
   await carl.page.keyboard.press("Escape");
   await shoot(phone, "phone");
 
-  // Photos that she cannot see also have no thumbnail.
+  // invisible photos have no thumbnail either
   for (const who of [carl, vera, phone]) who.assert_no_complaints(["/attachments/"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

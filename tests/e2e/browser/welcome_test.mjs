@@ -1,5 +1,5 @@
-// First visits: the tour of the model's page, by keyboard and by touch, for annotators and viewers;
-// and a choice of projects.
+// First visits: the introduction to the model's page, by keyboard and by touch, for annotators and
+// viewers, and a choice of projects.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -27,7 +27,7 @@ const is_gone = (who) => card_of(who).waitFor({ state: "detached" });
 const button = (who, name) => card_of(who).getByRole("button", { name, exact: true });
 const progress = (who) => card_of(who).locator(".head .hint").innerText();
 
-/** The card is inside the window, next to the marked element. */
+/** Checks that the card is inside the window, next to the marked element. */
 async function lies_well(who, what) {
   const card = await card_of(who).boundingBox();
   const { width, height } = who.page.viewportSize();
@@ -58,7 +58,10 @@ async function open_model(who) {
   await who.drawn();
 }
 
-/** The tour would have begun by then: the requests after the first picture have been answered. */
+/**
+ * Checks that no introduction starts. It would have started by then, because the requests after the
+ * first frame have responses.
+ */
 async function offers_nothing(who) {
   await who.page.getByRole("button", { name: words.model.help, exact: true }).click();
   await who.page
@@ -70,7 +73,7 @@ async function offers_nothing(who) {
   assert.equal(await card_of(who).count(), 0, "the tour offers itself again");
 }
 
-/** 100 mm wide. */
+/** A square of 100 mm. */
 const kSquare = [
   "ply",
   "format ascii 1.0",
@@ -115,8 +118,8 @@ let model;
 let nora, vic, tablet, everybody, server;
 
 test.beforeAll(async () => {
-  nora = await Browser.open({ tour: true }); // an annotator at a desk
-  vic = await Browser.open({ tour: true, ...kPhone }); // a viewer
+  nora = await Browser.open({ tour: true }); // an annotator at a desktop computer
+  vic = await Browser.open({ tour: true, ...kPhone }); // a viewer with a phone
   tablet = await Browser.open({ tour: true, ...kTablet });
   everybody = { nora, vic, tablet };
   server = new StrataServer({ demo: true });
@@ -271,7 +274,7 @@ test("with several a project is chosen first; the empty ones are last, and say s
   for (const who of [nora, vic, tablet]) {
     await who.page.goto(server.url);
     await who.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
-    // Content below the window's edge is loaded when it becomes visible.
+    // content below the window's edge is loaded when it becomes visible
     for (const each of await who.page.locator("strata-project-card").all()) {
       await each.scrollIntoViewIfNeeded();
       await each.getByText(/changed (today|yesterday)/).waitFor();

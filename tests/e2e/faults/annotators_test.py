@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""People with different cameras paint one layer and are cut off at random: no edit is lost or
-doubled, and the texels equal those of a serial replay of the acknowledged edits, in the order of
-their sequence, on a fresh server.
+"""Users with different cameras paint one layer and are disconnected at random. No edit is lost or
+doubled. The texels equal those of a serial replay of the acknowledged edits on a new server, in the
+order of their sequence.
 
 annotators_test.py [--seconds 600] [--seed N] [--people 8] [--turning 4] [--model pot|FILE]
 [--json FILE]
 
-Each signs in, paints strokes, polygons and fills, undoes and redoes, over the live connection and
-over HTTP, has a separate view, and is cut off every few seconds to tens of seconds: an end, a
-reset, half a message, or a connection that hangs while the next one is open. Then edits that are
-not known to be durable are sent again under the same ids, and sometimes durable ones, too. The
-printed times and processor seconds, also in FILE, do not affect the result."""
+Each user signs in and has a separate view. The users paint strokes, polygons and fills, undo and
+redo, over the live connection and over HTTP. Each connection is cut off every few seconds to tens
+of seconds. It gets an end, a reset or half a message, or it hangs while the next one is open. After
+that, the user sends edits that are not known to be durable again with the same ids, and sometimes
+durable edits, too. The printed times and processor seconds, also in FILE, do not affect the
+result."""
 import argparse
 import collections
 import datetime
@@ -36,13 +37,13 @@ from support.npy import Raster
 from support.strata_server import LONG_S, StrataServer, wait_for
 
 LAYER = "findings"
-LEAST_CUTS = 2  # for each person, however slow the machine is
+LEAST_CUTS = 2  # the minimum for each user, regardless of the machine's speed
 LEAST_EDITS = 200
 SAMPLE_EVERY_S = 5
 
 
 class Site:
-    """A server with one model, one layer that all paint, and its people."""
+    """A server with one model, a layer that all users paint, and its users."""
 
     def __init__(self, server, asked):
         self.server, self.people, self.turning, self.pace = (
@@ -94,7 +95,7 @@ class Site:
         )
 
     def ask_and_go(self, browser, path, body, key):
-        """Sends a request without waiting for its answer."""
+        """Sends a request without waiting for the response."""
         link = http.client.HTTPConnection(self.server.host, self.server.port, timeout=LONG_S)
         content = json.dumps(body).encode() if body else b""
         link.request(
@@ -127,8 +128,8 @@ def check_faults(ledger):
 
 
 def paint(site, seconds, seed):
-    """All paint for this time, and until each was cut off and some answer was repeated. Returns the
-    annotators and the measurements."""
+    """All users paint for this time, and until each was disconnected and a response was repeated.
+    Returns the annotators and the measurements."""
     browsers = [site.sign_in(number) for number in range(site.people)]
     annotators = [
         Annotator(site, number, browser, f"{seed} {number}")
@@ -202,8 +203,8 @@ def paint(site, seconds, seed):
 
 
 def check_history(site):
-    """Checks that the history has each saved change once, and no other. Returns the changes in the
-    order of their sequence."""
+    """Checks that the history contains each saved change once, and no other change. Returns the
+    changes in the order of their sequence."""
     ledger, rows = site.ledger, site.history()
     sequences = [row["sequence"] for row in rows]
     assert sequences == list(
@@ -212,8 +213,8 @@ def check_history(site):
     saved = ledger.saved()
     of_live = {change.id: change for change in saved if not change.by_http}
     of_http = {change.answer[0]: change for change in saved if change.by_http}
-    # There was nothing to undo at first, but a copy on a hanging connection was read later, when
-    # there was.
+    # At first there was nothing to undo. The server read a copy on a hanging connection later, when
+    # an undo was possible.
     of_copies = {
         change.id: change
         for change in ledger.changes.values()
@@ -251,8 +252,8 @@ def check_history(site):
 
 
 class Replay:
-    """Repeats the edits one by one, each durable before the next is sent, by the same people on a
-    fresh server."""
+    """Repeats the edits one by one on a new server, by the same users. Each edit is durable before
+    the next is sent."""
 
     def __init__(self, site):
         self.site, self.answers, self.begun = site, queue.Queue(), set()

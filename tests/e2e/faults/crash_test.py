@@ -1,9 +1,9 @@
-"""The server is killed under load again and again, then its PostgreSQL is: every edit that was
-reported as saved is stored once and completely.
+"""The server is killed under load several times, and then its PostgreSQL is killed. Every edit that
+was reported as saved is stored once and completely.
 
-The oracle is the server itself without faults: at the end all edits are painted again, in their
-order, on fresh layers, and every texel must be equal. Before and after each kill, states at earlier
-sequences are read."""
+The reference is the server itself without faults. At the end all edits are painted again in their
+order on new layers, and every texel must be equal. Before and after each kill, the test reads
+states at earlier sequences."""
 import os
 import random
 import signal
@@ -17,13 +17,13 @@ from support.painters import Book, HttpPainter, LivePainter
 from support.strata_server import wait_for
 
 SEED = int(os.environ.get("STRATA_SEED", "1"))
-KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # of each kind
+KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # the number of kills of each kind
 LAYERS = [
     ("marks", "u8", 2048, [1, 2, 3, 255]),
     ("depth", "f32", 2048, [0.0, 1.5, -2.25, 3e7]),
     ("shift", "i16", 2048, [-32768, -5, 12, 32767]),
 ]
-# Messages that the log may contain while PostgreSQL is being killed.
+# Messages that the log may contain while PostgreSQL is killed.
 FAULT_WORDS = [
     "PostgreSQL stopped",
     "unexpected postmaster exit",
@@ -42,7 +42,7 @@ class Crashes:
         self.make_layers("")
         self.book = Book()
         self.random = random.Random(SEED)
-        self.known = {}  # (layer, sequence) -> digest of its texels
+        self.known = {}  # (layer, sequence) -> digest of the texels
 
     def make_layers(self, suffix):
         for name, kind, resolution, _ in LAYERS:
@@ -94,7 +94,8 @@ class Crashes:
         return found
 
     def remember(self):
-        """Records digests of the texels at some acknowledged sequences, including the newest."""
+        """Records digests of the texels at some acknowledged sequences, including the newest
+        one."""
         with self.book.lock:
             sequences = sorted(self.book.edits)
         for at in {sequences[-1], self.random.choice(sequences)}:
@@ -109,7 +110,8 @@ class Crashes:
             ), f"{layer} at {at} is not what it was before the kill"
 
     def check_repeats(self):
-        """Sends saved edits again: they get their first answer, and the history does not change."""
+        """Sends saved edits again. They get their first response, and the history does not
+        change."""
         with self.book.lock:
             sample = self.random.sample(self.book.repeats, min(3, len(self.book.repeats)))
         for path, edit, key, first in sample:
@@ -139,7 +141,7 @@ class Crashes:
         """Checks that an edit is complete: the number of changed texels, and their value."""
         layer, edit, answer = self.book.edits[sequence]
         changes = self.texels(layer, sequence).differences(self.texels(layer, sequence - 1))
-        # The raster also contains the gutter, which the count leaves out.
+        # the raster also contains the gutter, which the count omits
         assert len(changes) >= answer["texels_changed"], (sequence, len(changes), answer)
         assert bool(changes) == (answer["texels_changed"] > 0), sequence
         wanted = (0, False) if edit.get("erase") else (edit["value"], True)
@@ -158,8 +160,8 @@ class Crashes:
         )
 
     def survive(self, kill):
-        """Checks that everything known before each of many kills is unchanged after it, while
-        people paint."""
+        """Checks that each of many kills leaves all recorded states unchanged, while users
+        paint."""
         for _ in range(KILLS):
             self.book.wait_for_more(self.random.randint(8, 40))
             self.remember()
@@ -169,7 +171,7 @@ class Crashes:
             self.check_repeats()
 
     def compare_with_replay(self, newest):
-        """Paints all edits again in order, on fresh layers and without faults: the texels are
+        """Paints all edits again in order, on new layers and without faults. The texels are
         equal."""
         self.make_layers(" replayed")
         edits = [self.book.edits[sequence][:2] for sequence in sorted(self.book.edits)]
@@ -214,7 +216,7 @@ def crashes(server):
 
 @pytest.fixture(scope="module", autouse=True)
 def painters(crashes):
-    """They paint until their case stops them."""
+    """The painters of a case. They paint until their case stops them."""
     painters = crashes.painters()
     for painter in painters:
         painter.start()

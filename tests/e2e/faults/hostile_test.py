@@ -1,5 +1,5 @@
-"""Hostile texts, names and files in every place of tables, records and attachments that accepts
-them: refused, or stored as plain text."""
+"""Hostile texts, names and files in all inputs of tables, records and attachments. The server
+refuses them or stores them as plain text."""
 import json
 import struct
 import urllib.parse
@@ -95,7 +95,7 @@ def site(server):
 
 
 def test_texts_as_names(server, site):
-    """As names they stay unchanged; requests use the slug, which has only letters."""
+    """Names stay unchanged. Requests use the slug, which contains only letters."""
     for text in TEXTS:
         made = server.request(
             "POST",
@@ -270,7 +270,7 @@ def png_head(width, height):
 
 
 def test_hostile_files(server):
-    """In the server's origin no file runs as a script, with any name and any declared type."""
+    """No file runs as a script in the server's origin, with any name and any declared type."""
     for name, body, media_type in [
         ("photo.jpg", b"<html><script>fetch('/api/v1/projects')</script>", "text/html"),
         (

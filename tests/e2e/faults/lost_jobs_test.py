@@ -1,8 +1,8 @@
-"""Jobs that a restart of the server ends: everybody who could see them reads the outcome, no failed
-job is reported as a success, and no data are left over.
+"""Jobs that a restart of the server ends. Every user who could see them reads the outcome, no
+failed job is reported as a success, and no data remain.
 
-The server is killed, or asked to stop, while an import runs and another one waits; and again and
-again at any moment of an import, where the oracle is the list of models."""
+The server is killed, or asked to stop, while an import runs and another one waits. It is also
+killed several times at any moment of an import. The reference is then the list of models."""
 import os
 import urllib.parse
 
@@ -11,10 +11,11 @@ from support.meshes import folded_grid
 from support.project_sites import Someone
 from support.strata_server import wait_for
 
-KILLS = int(os.environ.get("STRATA_LOST_JOBS", "5"))  # at any moment of an import
+# the number of kills at any moment of an import
+KILLS = int(os.environ.get("STRATA_LOST_JOBS", "5"))
 
 
-SCAN = folded_grid(cells=120)  # some seconds of work
+SCAN = folded_grid(cells=120)  # some seconds of work for the server
 
 
 def begin(server, name):
@@ -48,7 +49,7 @@ def models(server):
 
 @pytest.fixture(scope="module")
 def outsider(server):
-    return Someone(server, "otto", "guest")  # without a role in any project
+    return Someone(server, "otto", "guest")  # has no role in any project
 
 
 def test_a_job_that_ended_is_known_after_a_restart_with_what_it_made(server, story):
@@ -95,7 +96,8 @@ def test_a_job_is_done_exactly_where_its_model_is_there(server):
     """Kills the server at any moment of an import."""
     for n in range(KILLS):
         job = begin(server, f"Model {n}")
-        # A share of the work, not of the time: each round kills later than the one before.
+        # The moment is a share of the work and not of the time. Each round kills the server later
+        # than the round before.
         wait_for(
             lambda: (lambda now: now["progress"] >= n / KILLS or now["state"] == "done")(
                 server.ok("GET", f"/jobs/{job}").json()

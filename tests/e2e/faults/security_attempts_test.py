@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Attempts of an attacker, made against real servers, with the answers as a table.
+"""Attacks on real servers, with the results as a table.
 
-Fails if an answer differs from the expected one, or docs/reference/security.md from the answers;
-`--update-docs` writes the answers to that page."""
+Fails if a result differs from the expected one, or if docs/reference/security.md differs from the
+results. `--update-docs` writes the results to that page."""
 import concurrent.futures
 import sys
 
@@ -50,7 +50,7 @@ def at_one_server(*attempted):
     return run
 
 
-# Each group has its own servers: some mostly wait.
+# Each group has its own servers, because some groups mostly wait.
 GROUPS = {
     "people": at_one_server(coming_in, guessing),
     "owner": lambda table: owner_token.attempts(table, site),
@@ -65,7 +65,8 @@ GROUPS = {
 
 
 def begun():
-    """Starts all groups at once, because some mostly wait; returns the future tables."""
+    """Starts all groups at the same time, because some groups mostly wait. Returns the future
+    tables."""
     hands = concurrent.futures.ThreadPoolExecutor(len(GROUPS))
 
     def made(attempts):
@@ -97,7 +98,7 @@ def test_the_page_tells_what_was_answered(tables):
 
 
 def main():
-    """Writes the table to the page."""
+    """Compares the table with the page, or writes it."""
     if sys.argv[1:] != ["--update-docs"]:
         sys.exit("security_attempts_test.py --update-docs; as a test it is run by pytest")
     joined(begun()).write()

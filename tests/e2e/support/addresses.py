@@ -1,4 +1,4 @@
-"""Addresses with their parameters."""
+"""Makes addresses with their parameters."""
 import urllib.parse
 
 

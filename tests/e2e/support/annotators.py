@@ -1,7 +1,7 @@
-"""People who paint by script, each with a separate account, view and connection that is cut off at
-random.
+"""Users who paint by script. Each has a separate account, view and connection. The connection is
+cut off at random.
 
-They send each message under the same id until the server reports that it is durable."""
+A user sends each message with the same id until the server reports that it is durable."""
 import math
 import random
 import threading
@@ -12,8 +12,8 @@ from support.ledger import Change
 from support.live_client import AWAY, LiveClient, Refused
 from support.live_line import WAYS, Line
 
-MOST_WAITING = 16  # messages that one person has sent and that are not durable
-MOST_ATTEMPTS = 1000  # of a message that the server has no room for
+MOST_WAITING = 16  # messages that one user has sent and that are not durable
+MOST_ATTEMPTS = 1000  # for a message that the server has no space for
 TURNS_EVERY_S = 0.1
 VALUES = [1, 2, 3, 4, 5, 6, 255]
 
@@ -23,8 +23,8 @@ def new_id():
 
 
 class Annotator(threading.Thread):
-    """Paints until `site.stopping`, waits until all edits are durable (`drained`), then watches
-    until `site.leaving`."""
+    """Paints until `site.stopping` is set, waits until all edits are durable (`drained`), and
+    watches until `site.leaving` is set."""
 
     def __init__(self, site, number, browser, seed):
         super().__init__(daemon=True, name=f"painter{number}")
@@ -33,8 +33,8 @@ class Annotator(threading.Thread):
         self.turning = number < site.turning
         self.angle = 2 * math.pi * number / site.people
         self.line, self.lines, self.hanging = None, [], []
-        self.waiting, self.done = {}, []  # messages by id, in order: not durable; durable
-        self.again = False  # the server refused a message temporarily
+        self.waiting, self.done = {}, []  # messages by id, in order: not durable yet; durable
+        self.again = False  # whether the server refused a message temporarily
         self.cuts = dict.fromkeys(WAYS, 0)
         self.camera_seq, self.next_turn, self.cut_at, self.cut_way = 0, 0.0, 0.0, WAYS[0]
         self.drained = threading.Event()
@@ -97,7 +97,7 @@ class Annotator(threading.Thread):
         self.come_back()
 
     def come_back(self):
-        """Opens a new connection, and sends everything again that is not known to be durable."""
+        """Opens a new connection, and sends all messages again that are not known to be durable."""
         while True:
             if not self.line.given_up:
                 self.ledger.dropped.append(self.line.code)
@@ -113,8 +113,7 @@ class Annotator(threading.Thread):
                 pass
 
     def take_up(self, welcome):
-        """As a page does, does not send messages again that the server has, or sends only some of
-        them."""
+        """Like a page, omits messages that the server has. Sometimes sends some of them again."""
         saved_through = {stroke["stroke"]: stroke["n"] for stroke in welcome["strokes"]}
         with self.ledger.lock:
             self.ledger.claims += list(saved_through.items())
@@ -125,7 +124,7 @@ class Annotator(threading.Thread):
                     ):
                         change.promised = True
                         del self.waiting[change.id]
-        if self.done and self.random.random() < 0.4:  # as if their answers were lost
+        if self.done and self.random.random() < 0.4:  # simulates that their responses were lost
             for change in self.random.sample(self.done[-50:], min(3, len(self.done[-50:]))):
                 self.transmit_all([change])
         self.transmit_waiting()
@@ -182,7 +181,7 @@ class Annotator(threading.Thread):
                 or (change.begin and message["status"] in (404, 409))
             )
         ):
-            self.put_off(change)  # also a batch after a refused predecessor
+            self.put_off(change)  # also for a batch after a refused batch
         elif change and not change.answer and not change.begin and message["status"] in (409, 422):
             change.refused = message["title"]  # nothing to undo, or a fill outside the model
             with self.ledger.lock:
@@ -196,10 +195,10 @@ class Annotator(threading.Thread):
         if len(change.lines) > MOST_ATTEMPTS:
             raise AssertionError(f"{change.kind} {change.id} was put off {len(change.lines)} times")
 
-    # --- actions of a person
+    # --- actions of a user
 
     def pause(self, seconds):
-        """Waits while the camera turns; may cut off the connection."""
+        """Waits while the camera turns. May cut off the connection."""
         end = time.monotonic() + seconds
         while True:
             now = time.monotonic()
@@ -231,18 +230,18 @@ class Annotator(threading.Thread):
         if change.by_http:
             return self.post(change)
         try:
-            if time.monotonic() >= self.cut_at:  # so that no pause has cut it off
+            if time.monotonic() >= self.cut_at:  # no pause has cut off the connection yet
                 self.line.send_half(change.message)
                 return self.cut_off(self.cut_way)
             self.transmit(change)
             if self.random.random() < 0.03:
-                self.transmit(change)  # sends it twice at once
+                self.transmit(change)  # sends the message twice
         except AWAY:
             self.come_back()
         return None
 
     def post(self, change):
-        """Sends over HTTP until there is an answer; sometimes abandons the answer and sends
+        """Sends over HTTP until a response arrives. Sometimes ignores the response and sends
         everything again."""
         path = f"/models/{self.site.model['id']}/layers/{self.site.layer}/"
         path, body = (
@@ -254,7 +253,7 @@ class Annotator(threading.Thread):
         for _ in range(MOST_ATTEMPTS):
             change.lines.append(None)
             try:
-                # not an undo: its effect depends on its order
+                # an undo is not repeated, because its effect depends on its order
                 if body and self.random.random() < 0.2:
                     self.site.ask_and_go(self.browser, path, body, change.id)
                 answer = self.browser.request("POST", path, body, **{"Idempotency-Key": change.id})
@@ -265,7 +264,7 @@ class Annotator(threading.Thread):
                 self.settle(change)
                 if self.random.random() < 0.8:
                     return None
-                continue  # in spite of an answer
+                continue  # repeats the request in spite of a response
             if answer and answer.status not in (429, 503):
                 if change.saved_at:
                     self.ledger.fault(f"{change.message} was saved, and then got {answer}")
@@ -293,7 +292,7 @@ class Annotator(threading.Thread):
             else {"op": "edit", "edit": getattr(self, kind)()},
         )
         if kind == "undo" and self.random.random() < 0.4:
-            self.change("redo", {"op": "redo"})  # before a new stroke removes the redo
+            self.change("redo", {"op": "redo"})  # a new stroke would remove the redo
         return None
 
     def change(self, kind, message):
@@ -346,7 +345,7 @@ class Annotator(threading.Thread):
         }
 
     def recolour(self):
-        """Its effect depends on all edits before it."""
+        """The effect of this edit depends on all edits before it."""
         return {
             "op": "fill",
             "mode": "where",

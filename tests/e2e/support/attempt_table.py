@@ -1,8 +1,8 @@
-"""The attempts on a server and its answers as a table: printed, and kept in
+"""The attempts on a server and its responses as a table, which is printed and kept in
 docs/reference/security.md between two marks.
 
-An answer must be the same on every machine. Measured values (seconds, megabytes, numbers of calls)
-are listed, but not compared."""
+A response must be the same on every machine. Measured values (seconds, megabytes, numbers of calls)
+are listed but not compared."""
 import os
 import threading
 
@@ -16,7 +16,7 @@ HEAD = "| attempt | answer | measured | protection |\n|---|---|---|---|\n"
 
 
 def told(answer):
-    """Returns 401, or 401, 429 for several: each once."""
+    """Returns a text such as "401", or "401, 429" for several statuses."""
     if isinstance(answer, (set, list, tuple)):
         return ", ".join(str(each) for each in sorted(set(answer)))
     return str(answer)
@@ -27,7 +27,7 @@ class Section:
         self.title, self.rows = title, []
 
     def tried(self, attempt, answer, expected, keeps, measured=""):
-        """Fails if the answer differs from the expected one."""
+        """Adds a row. Fails if the result differs from the expected one."""
         assert told(answer) == told(
             expected
         ), f"{self.title}: {attempt}: {told(answer)}, not {told(expected)} {measured}"
@@ -45,7 +45,8 @@ class Section:
 
 
 class AttemptTable:
-    """Different threads may fill the sections; they keep the order in which they were requested."""
+    """Different threads may fill the sections, which keep the order in which they were
+    requested."""
 
     def __init__(self):
         self.sections, self.lock = [], threading.Lock()
@@ -64,7 +65,7 @@ class AttemptTable:
             file.write(page[0] + "\n" + self.markdown() + page[2])
 
     def check_page(self):
-        """Checks that the page has these answers."""
+        """Checks that the page contains these results."""
         kept, now = _compared(self._page()[1]), _compared(self.markdown())
         differing = [f"- {row}" for row in kept if row not in now] + [
             f"+ {row}" for row in now if row not in kept

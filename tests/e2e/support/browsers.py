@@ -1,11 +1,11 @@
-"""Browsers of people who sign in over HTTP: with a cookie, and with the origin of the page."""
+"""Browsers of users who sign in over HTTP, with a cookie and with the origin of the page."""
 import re
 
 PASSWORD = "seven blue herons at noon"
 
 
 class Browser:
-    """A person's browser: keeps the cookie, and sends the page's origin."""
+    """A user's browser. It stores the cookie, and sends the page's origin."""
 
     def __init__(self, server, agent="Mozilla/5.0 (X11; Linux) Firefox/128.0"):
         self.server, self.agent, self.cookie = server, agent, None
@@ -29,7 +29,7 @@ class Browser:
 
 
 def uncoloured(person):
-    """Returns the body without the person's color, which depends on their number."""
+    """Returns the body without the user's color, which depends on the user's number."""
     assert re.fullmatch("#[0-9a-f]{6}", person["color"]), person
     return {name: value for name, value in person.items() if name != "color"}
 

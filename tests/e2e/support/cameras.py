@@ -1,4 +1,4 @@
-"""Cameras of the tests: from the helper of scripts/, with their own window."""
+"""Cameras for the tests, made with the module of scripts/ in their own window."""
 import pathlib
 import sys
 

@@ -1,11 +1,11 @@
-"""Self-signed certificates, for servers with https."""
+"""Self-signed certificates for servers with https."""
 import os
 import ssl
 import subprocess
 
 
 def make_certificate(folder, name, key_type="ec"):
-    """Makes a self-signed certificate of 127.0.0.1: (chain, key)."""
+    """Makes a self-signed certificate for 127.0.0.1. Returns (chain, key)."""
     chain, key = os.path.join(folder, name + ".pem"), os.path.join(folder, name + ".key")
     kind = ["ec", "-pkeyopt", "ec_paramgen_curve:P-256"] if key_type == "ec" else ["rsa:2048"]
     subprocess.run(

@@ -1,5 +1,5 @@
-"""Checks the server's answers with its own contract (openapi.json): status, and the JSON of the
-body, member by member."""
+"""Checks the server's responses with its own contract (openapi.json): the status, and the JSON of
+the body, member by member."""
 import gzip
 import json
 import os
@@ -40,7 +40,7 @@ class Contract:
         return node
 
     def check(self, method, target, answer):
-        """Raises if the contract does not have the answer."""
+        """Raises an error if the contract does not contain the response."""
         path, method = target.split("?")[0], "GET" if method == "HEAD" else method
         operation = next(
             (
@@ -64,7 +64,7 @@ class Contract:
         media_type = (answer.headers.get("Content-Type") or "").split(";")[0]
         content = self._resolve(described).get("content", {})
         coding = answer.headers.get("Content-Encoding")
-        if not answer.body or not content or coding == "br":  # Python has no decoder for it
+        if not answer.body or not content or coding == "br":  # Python has no decoder for br
             return
         body = gzip.decompress(answer.body) if coding == "gzip" else answer.body
         assert (
@@ -79,7 +79,8 @@ class Contract:
             )
 
     def faults(self, schema, value, where):
-        """Returns the faults of the value by JSON Schema, as far as the contract uses it."""
+        """Returns the errors of the value against the JSON Schema. Supports only the keywords that
+        the contract uses."""
         schema = self._resolve(schema)
         for word, enough in (("oneOf", lambda n: n == 1), ("anyOf", lambda n: n >= 1)):
             if word in schema:

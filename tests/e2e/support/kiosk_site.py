@@ -1,5 +1,5 @@
-"""A site with a tour, the link of a kiosk that shows it, and attempts to use that link for more:
-every call of the contract."""
+"""A site with a tour, and the link of a kiosk that shows the tour. Attempts to use that link for
+more, with every operation of the contract."""
 import re
 
 from support.addresses import query
@@ -10,7 +10,7 @@ from support.pictures import png
 M = "/models/sheet"
 ALL = M + "/tours"
 PNG = png(8, 8, lambda x, y: (200, 100, 50))
-COLUMN, CELL, LAYER = "hoard-q8y", "gold-q9z", "tomb-q7x"  # secrets
+COLUMN, CELL, LAYER = "hoard-q8y", "gold-q9z", "tomb-q7x"  # hidden texts
 
 
 def told(answer, status, field=None):
@@ -62,7 +62,7 @@ def make_site(server):
     server.ok("POST", "/tables/finds/columns", {"name": "Hoard q8y", "visibility": "private"})
     server.ok("PATCH", "/tables/finds/records/1", {"values": {COLUMN: CELL}})
     server.ok("POST", M + "/layers", {"name": "Tomb q7x", "type": "f32", "visibility": "private"})
-    for name in ("Ledger", "Archive"):  # without a layer
+    for name in ("Ledger", "Archive"):  # tables without a layer
         server.ok(
             "POST", "/projects/default/tables", {"name": name, "columns": [{"name": "Price"}]}
         )
@@ -140,7 +140,7 @@ def make_kiosk(server, tour, name="Hall", **more):
 
 
 def is_open(path):
-    """Whether the contract lets a kiosk read this path of the model."""
+    """Returns whether the contract lets a kiosk read this path of the model."""
     return re.fullmatch(
         r"/api/v1/(kiosk|models/\{model\}(|/layers(|/\{layer\}(|/records/\{key\}(|/attachments)))|/looks(|/\{look\})|/views(|/\{view\}(|/picture))|/tours/\{tour\}(|/files/\{file\}))"
         r"|tables/\{table\}(|/columns|/terms|/records/\{key\}(|/attachments))|attachments/\{attachment\})",
@@ -149,8 +149,8 @@ def is_open(path):
 
 
 def sweep(server, secret, tour, files, thread):
-    """Makes every call of the contract: changes are refused, and reads return only content of the
-    one model. Returns how many operations were open, and how many closed."""
+    """Sends every request of the contract. Changes are refused, and reads return only content of
+    the one model. Returns the number of open operations and of closed ones."""
     shown = server.ok("POST", query(tour + "/files", name="west.png"), PNG).json()["id"]
     words = {
         "model": "sheet",
@@ -221,7 +221,7 @@ def sweep(server, secret, tour, files, thread):
 
 def others_closed(server, secret, files):
     """Checks that hidden content of the kiosk's model, and content of other models and outside
-    tours, does not exist."""
+    tours, does not exist for the kiosk."""
     for path, status in (
         ("/models/other", 404),
         ("/models/villa-wall", 404),

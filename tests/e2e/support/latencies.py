@@ -4,7 +4,7 @@ import bisect
 
 
 def summary(seconds):
-    """Returns nearest ranks, in milliseconds."""
+    """Returns percentiles by nearest rank, in milliseconds."""
     ordered = sorted(seconds)
     if not ordered:
         return {"count": 0}
@@ -19,8 +19,8 @@ def summary(seconds):
 
 
 def histogram(seconds, steps_a_doubling=4):
-    """Counts seconds in steps that grow evenly; returns their upper ends in milliseconds and their
-    counts."""
+    """Counts seconds in steps that grow evenly. Returns the steps' upper ends in milliseconds, and
+    their counts."""
     ends = [2 ** (step / steps_a_doubling) for step in range(15 * steps_a_doubling)]
     counts = [0] * len(ends)
     for each in seconds:
@@ -34,7 +34,7 @@ def histogram(seconds, steps_a_doubling=4):
 
 
 class Sight:
-    """The frames of one annotator, connection by connection."""
+    """The frames of one annotator, by connection."""
 
     def __init__(self, annotator):
         self.turning = annotator.turning
@@ -51,8 +51,8 @@ class Sight:
         self.starts = [line[0] for line in self.lines]
 
     def after(self, sent, sequence):
-        """Returns the seconds from `sent` to the first whole frame that shows the edit; None if
-        there was no view at that time, or the connection ended before."""
+        """Returns the seconds from `sent` to the first whole frame that shows the edit. Returns
+        None if there was no view at that time, or if the connection ended before the frame."""
         at = bisect.bisect_right(self.starts, sent) - 1
         if at < 0 or (self.lines[at][1] is not None and self.lines[at][1] < sent):
             return None
@@ -62,8 +62,8 @@ class Sight:
 
 
 def latencies(ledger, annotators):
-    """For batches of strokes that changed something and were sent once, on a connection that was
-    not cut."""
+    """Measures batches of strokes that changed texels and were sent once, on a connection that was
+    not cut off."""
     sights = {annotator.name: Sight(annotator) for annotator in annotators}
     found = {"applied": [], "saved": [], "still": [], "turning": [], "own": []}
     away = 0

@@ -1,9 +1,9 @@
-"""Records the changes that scripts request from a server, and its answers."""
+"""Records the changes that scripts request from a server, and its responses."""
 import threading
 
 
 class Change:
-    """One message with a change, and the server's answers to it."""
+    """A message with a change, and the server's responses to it."""
 
     def __init__(self, annotator, kind, message, begin=None, by_http=False):
         self.user, self.kind, self.message, self.begin, self.by_http = (
@@ -15,22 +15,23 @@ class Change:
         )
         self.id = message["id"]
         self.first_sent = self.applied_at = self.saved_at = None
-        self.lines = []  # numbers of the connections on which it was sent, for each time
+        self.lines = []  # the number of the connection for each time the message was sent
         self.answer = None  # (sequence, texels_changed, area_m2)
-        self.promised = False  # a welcome reported that it was saved
+        self.promised = False  # whether a welcome message reported the change as saved
         self.refused = None
 
 
 class Ledger:
-    """All changes and their answers. Any contradiction is a fault."""
+    """All changes and their responses. Every contradiction is a fault."""
 
     def __init__(self):
         self.lock = threading.RLock()
-        self.changes = {}  # id -> change
+        self.changes = {}  # change id -> change
         self.batches = {}  # (stroke, n) -> change
-        self.claims = []  # (stroke, n): a welcome reported that all up to n is saved
+        # (stroke, n): a welcome message reported that all batches up to n are saved
+        self.claims = []
         self.repeats = self.unsaved = self.put_off = 0
-        self.dropped = []  # codes of connections that the server ended
+        self.dropped = []  # codes of connections that the server closed
         self.faults = []
 
     def add(self, change):

@@ -1,5 +1,5 @@
-"""A small WebSocket client (RFC 6455) for strata.v1: text messages as dicts, binary ones as frame
-headers."""
+"""A small WebSocket client (RFC 6455) for strata.v1. Text messages are dicts, and binary messages
+are frame headers."""
 import base64
 import http.client
 import json
@@ -15,7 +15,7 @@ LAST_RECTANGLE = 4
 
 
 class Refused(Exception):
-    """The upgrade was refused; `status` is that of the answer."""
+    """The upgrade was refused. `status` is that of the response."""
 
     def __init__(self, status, body):
         super().__init__(f"{status} {body[:300]!r}")
@@ -30,7 +30,8 @@ class Closed(Exception):
         self.code = code
 
 
-AWAY = (OSError, http.client.HTTPException, Closed)  # the server or the connection is lost
+# exceptions after the loss of the server or the connection
+AWAY = (OSError, http.client.HTTPException, Closed)
 
 
 class LiveClient:
@@ -136,9 +137,9 @@ class LiveClient:
         self.send_raw(1, (message if isinstance(message, str) else json.dumps(message)).encode())
 
     def receive(self, end=None):
-        """Returns the next message: a dict, or for a frame {"op": "frame", …its header…}."""
+        """Returns the next message: a dict or, for a frame, {"op": "frame", …its header…}."""
         content = b""
-        kind = 0  # of the message whose first part arrived
+        kind = 0  # the kind of the message whose first part has arrived
         while True:
             if end and time.monotonic() > end:
                 raise AssertionError(f"waited {LONG_S} s for a message")
@@ -182,8 +183,8 @@ class LiveClient:
             }
 
     def receive_until(self, *ops):
-        """Returns the next message of these kinds; acknowledges frames that come before it."""
-        # because of the server's pings the socket's own limit never passes
+        """Returns the next message of these kinds. Acknowledges the frames before it."""
+        # the server's pings prevent the socket's own timeout
         end = time.monotonic() + LONG_S
         while True:
             message = self.receive(end)

@@ -14,7 +14,7 @@ WAYS = ("close", "reset", "half a message", "hang")
 
 
 class Line:
-    """A connection that a separate thread reads; acknowledges frames as a page does."""
+    """A connection that a separate thread reads. It acknowledges frames as a page does."""
 
     def __init__(self, live, hears, fault, number=0):
         self.live, self.hears, self.fault, self.number = live, hears, fault, number
@@ -60,12 +60,12 @@ class Line:
         self.send({"op": "ack", "view_id": frame["view_id"], "frame": frame["frame"]})
 
     def give_up(self, way):
-        """Ends it so that the server gets an end, a reset, or (hang) nothing."""
+        """Ends the connection so that the server receives an end, a reset, or (hang) nothing."""
         self.given_up = True
         try:
             self.live.socket.shutdown(socket.SHUT_RDWR if way == "close" else socket.SHUT_RD)
         except OSError:
-            pass  # the server was faster
+            pass  # the server has already closed the connection
         self.reader.join(LONG_S)
         if way in ("reset", "half a message"):
             self.live.socket.setsockopt(

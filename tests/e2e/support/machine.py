@@ -1,4 +1,4 @@
-"""A measurement's facts about the machine, and processor seconds from /proc."""
+"""Facts about the machine for a measurement, and processor seconds from /proc."""
 import collections
 import os
 import subprocess
@@ -20,7 +20,7 @@ def machine():
 
 
 def gl_renderer(binary):
-    """Returns the name that `strata doctor` prints."""
+    """Returns the name of the GL renderer that `strata doctor` prints."""
     said = subprocess.run([binary, "doctor"], capture_output=True, text=True, check=False).stdout
     return next(
         (
@@ -33,32 +33,34 @@ def gl_renderer(binary):
 
 
 def _stat(path):
-    """Returns the name and the fields after it: state, parent, … (proc(5), from the third on)."""
+    """Returns the name and the fields after it: state, parent, … (from the third field of
+    proc(5))."""
     with open(path, encoding="utf-8", errors="replace") as file:
         head, _, rest = file.read().rpartition(")")
     return head.partition("(")[2], rest.split()
 
 
 def processor_seconds(pid):
-    """Seconds of a process with all its threads, also ended ones."""
+    """Returns the processor seconds of a process, including its ended threads."""
     _, fields = _stat(f"/proc/{pid}/stat")
     return (int(fields[11]) + int(fields[12])) / _TICKS
 
 
 def thread_seconds(pid):
-    """Seconds of the current threads, by name."""
+    """Returns the processor seconds of the current threads, by name."""
     found = collections.Counter()
     for thread in os.listdir(f"/proc/{pid}/task"):
         try:
             name, fields = _stat(f"/proc/{pid}/task/{thread}/stat")
         except (FileNotFoundError, ProcessLookupError):
-            continue  # ended since the list was read
+            continue  # the thread has ended since the list was read
         found[name] += (int(fields[11]) + int(fields[12])) / _TICKS
     return found
 
 
 def family_seconds(pid):
-    """Seconds of a process and all that it started, also of ended ones."""
+    """Returns the processor seconds of a process and of all processes that it started, including
+    ended ones."""
     parents, seconds = {}, {}
     for each in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -72,7 +74,7 @@ def family_seconds(pid):
 
 
 def machine_seconds():
-    """Seconds of all processors, for any work."""
+    """Returns the seconds of all processors, for any work."""
     with open("/proc/stat", encoding="ascii") as file:
         user, nice, system, _, _, irq, soft, *_ = map(int, file.readline().split()[1:])
     return (user + nice + system + irq + soft) / _TICKS
@@ -99,7 +101,8 @@ class Watch:
         self.loads.append(os.getloadavg()[0])
 
     def end(self, people):
-        """Returns the cores in use, and those of the server and its PostgreSQL for each viewer."""
+        """Returns the number of cores in use, and the cores that the server and its PostgreSQL use
+        for each viewer."""
         used, seconds = self._now(), time.monotonic() - self.began
         spent = {
             name: used[name] - self.at_start[name]

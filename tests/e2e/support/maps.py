@@ -10,7 +10,7 @@ def square(x, y, size):
 
 
 def shp(polygons):
-    """Each polygon is a list of rings."""
+    """Returns a shapefile. Each polygon is a list of rings."""
     body = b""
     for number, rings in enumerate(polygons):
         points = [point for ring in rings for point in ring]
@@ -30,7 +30,7 @@ def shp(polygons):
 
 
 def dbf(fields):
-    """(name, type, width, values as text)"""
+    """Returns an attribute table. A field is (name, type, width, values as text)."""
     rows = len(fields[0][3])
     head = b"".join(
         name.encode()[:10].ljust(11, b"\0")
@@ -56,7 +56,7 @@ def dbf(fields):
 
 
 def packed(**files):
-    """Returns a zip; in names the last `_` is the dot."""
+    """Returns a zip file. The last `_` in a name stands for the dot."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
@@ -65,7 +65,7 @@ def packed(**files):
 
 
 def form(**files):
-    """Returns (body, headers) of a form with files; in names the last `_` is the dot."""
+    """Returns (body, headers) of a form with files. The last `_` in a name stands for the dot."""
     body = b"".join(
         b'--XyZ\r\nContent-Disposition: form-data; name="file"; filename="%s"\r\n\r\n%s\r\n'
         % (".".join(name.rsplit("_", 1)).encode(), content)
@@ -86,8 +86,8 @@ def tiff(
     epsg=None,
     deflated=False,
 ):
-    """Row by row from the top; `kind` is a struct letter, `value(x, y)` a number, or a number for
-    each sample."""
+    """Returns a TIFF, row by row from the top. `kind` is a struct letter. `value(x, y)` is a
+    number, or a number for each sample."""
     bits = 8 * struct.calcsize(kind)
     pixels = b""
     for y in range(height):

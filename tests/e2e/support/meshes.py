@@ -1,4 +1,4 @@
-"""Generated scans: PLY files, so that no test depends on a downloaded one."""
+"""Generated scans as PLY files, so no test depends on a downloaded scan."""
 import math
 import struct
 
@@ -25,7 +25,8 @@ def _grid_faces(rows, columns):
 
 
 def folded_grid(cells=20, size=100.0, fold=1.0):
-    """A sheet in folds that hide one another from the side; nearly flat with a small `fold`."""
+    """Returns a sheet with folds that hide one another from the side. With a small `fold` the sheet
+    is nearly flat."""
     step = size / cells
     vertices = [
         (j * step, i * step, fold * (12 * math.sin(j * 0.9) + 4 * math.cos(i * 0.7)))
@@ -36,7 +37,7 @@ def folded_grid(cells=20, size=100.0, fold=1.0):
 
 
 def bumpy_ball(rows=40, columns=80, radius=50.0):
-    """A closed ball with waves, faces outwards."""
+    """Returns a closed ball with waves, whose faces point outwards."""
     vertices = [(0.0, 0.0, radius)]
     for i in range(1, rows):
         for j in range(columns):

@@ -1,4 +1,4 @@
-"""Requirements of tests that this machine lacks."""
+"""Requirements of tests that this machine does not fulfill."""
 import os
 
 import pytest

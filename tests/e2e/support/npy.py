@@ -1,4 +1,4 @@
-"""Rasters of `texels.npy`, with the standard library only."""
+"""Reads rasters in the format of `texels.npy` with the standard library only."""
 import ast
 import hashlib
 import struct
@@ -20,7 +20,7 @@ class Raster:
         self.digest = hashlib.sha256(self.content).hexdigest()
 
     def differences(self, other):
-        """Returns (value, valid) of both, for every texel that differs."""
+        """Returns (value, valid) of both rasters for every texel that differs."""
         row_size = self.width * self.texel.size
         found = []
         for start in range(0, len(self.content), row_size):

@@ -1,4 +1,4 @@
-"""Painters that repeat each edit under the same id until the server reports that it is durable."""
+"""Painters that send each edit with the same id until the server reports that it is durable."""
 import random
 import threading
 import time
@@ -9,12 +9,13 @@ from support.strata_server import LONG_S
 
 
 class Book:
-    """The edits reported as saved: by sequence, the layer and the edit as an HTTP body."""
+    """The edits that were reported as saved: by sequence, the layer and the edit as an HTTP
+    body."""
 
     def __init__(self):
         self.lock = threading.Condition()
-        self.edits = {}  # sequence -> (layer slug, edit, answer)
-        self.repeats = []  # (method, path, body, key, answer): HTTP edits to send again
+        self.edits = {}  # sequence -> (layer slug, edit, response)
+        self.repeats = []  # (method, path, body, key, response): HTTP edits to send again
         self.faults = []
         self.stopping = threading.Event()
 
@@ -113,8 +114,8 @@ class HttpPainter(Painter):
 
 
 class LivePainter(Painter):
-    """Paints a stroke of several batches; after a lost connection begins it again and sends the
-    batches that were not saved."""
+    """Paints a stroke of several batches. After a lost connection, begins the stroke again and
+    sends the batches that were not saved."""
 
     def paint(self):
         layer, edit = self.stroke(2)
@@ -169,7 +170,7 @@ class LivePainter(Painter):
                         message["sequence"], layer, {**edit, "path": start + batches[n]}, message
                     )
             elif message["op"] == "unsaved":
-                return  # sent again on a new connection
+                return  # the batch is sent again on a new connection
             elif message["op"] == "problem":
                 if message.get("ref") in ids and message["status"] in (429, 503, 404, 409):
                     return

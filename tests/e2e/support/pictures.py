@@ -1,10 +1,10 @@
-"""PNG pictures, written and read; TGA and BMP pictures, written."""
+"""Writes and reads PNG images, and writes TGA and BMP images."""
 import struct
 import zlib
 
 
 def png(width, height, color):
-    """Returns a picture with the colors of `color(x, y)`: (r, g, b), (r, g, b, a) or (gray, a)."""
+    """Returns an image with the colors of `color(x, y)`: (r, g, b), (r, g, b, a) or (gray, a)."""
     kind = {2: 4, 3: 2, 4: 6}[len(color(0, 0))]
     rows = b"".join(
         b"\0" + b"".join(bytes(color(x, y)) for x in range(width)) for y in range(height)
@@ -25,7 +25,7 @@ def png(width, height, color):
 
 
 def tga(width, height, color, packed=False):
-    """With colors (r, g, b); `packed`: each pixel is a separate run."""
+    """Returns an image with colors (r, g, b). With `packed`, each pixel is a separate run."""
     kind = 10 if packed else 2
     body = b"".join(
         (b"\x80" if packed else b"") + bytes(reversed(color(x, y)))
@@ -36,7 +36,7 @@ def tga(width, height, color, packed=False):
 
 
 def bmp(width, height, color):
-    """With colors (r, g, b)."""
+    """Returns an image with colors (r, g, b)."""
     pad = bytes(-3 * width % 4)
     rows = b"".join(
         b"".join(bytes(reversed(color(x, y))) for x in range(width)) + pad

@@ -1,9 +1,9 @@
-"""Reads PLY files of the server as other programs do."""
+"""Reads the server's PLY files as other programs do."""
 import struct
 
 
 def read_ply(content):
-    """Returns vertices as dictionaries, and faces as triples."""
+    """Returns the vertices as dictionaries, and the faces as triples."""
     head, _, body = content.partition(b"end_header\n")
     lines = head.decode("ascii").split("\n")
     assert lines[0] == "ply" and lines[1] == "format binary_little_endian 1.0"

@@ -1,4 +1,4 @@
-"""Memory of a running server, in MB, and its activity."""
+"""The memory of a running server, in MB, and its activity."""
 import os
 import time
 
@@ -19,22 +19,22 @@ def _processor_s(server):
 
 
 def rests(server, over_s=1.0):
-    """Whether it uses less than a tenth of a processor over that time: no surface map is being
-    made."""
+    """Returns whether the server uses less than a tenth of a processor over that time. It is then
+    making no surface map."""
     first = _processor_s(server)
     time.sleep(over_s)
     return _processor_s(server) - first < over_s / 10
 
 
 class PeakGrowth:
-    """Measures the largest growth over the memory at the start: `mb`, known at the end."""
+    """Measures the largest growth over the memory at the start. `mb` is known at the end."""
 
     def __init__(self, server):
         self.server, self.mb = server, 0.0
 
     def __enter__(self):
         with open(f"/proc/{self.server.process.pid}/clear_refs", "w", encoding="ascii") as file:
-            file.write("5")  # restarts the measurement of the peak
+            file.write("5")  # resets the measurement of the peak
         self.first = resident_mb(self.server)
         return self
 
@@ -43,7 +43,7 @@ class PeakGrowth:
         self.after_mb = resident_mb(self.server) - self.first
 
     def checked(self, most_mb):
-        """Returns the comparison in words."""
+        """Checks the limit, and returns the comparison as a text."""
         assert self.mb <= most_mb, f"{self.mb:.0f} MB more, {most_mb} may be"
         return f"server at most {_rounded(self.mb)} MB larger (limit {most_mb})"
 

@@ -1,5 +1,5 @@
-"""Two projects with one thing of every kind each, and a guest's attempts to see one of them: every
-address of the contract."""
+"""Two projects with one object of every kind each, and a guest's attempts to see one of the
+projects, with every address of the contract."""
 import re
 import urllib.parse
 
@@ -12,7 +12,7 @@ OF_THE_SITE = ("user", "group", "session", "token", "tool")
 
 
 class Someone(Browser):
-    """A person who joined by an invitation."""
+    """A user who joined by an invitation."""
 
     def __init__(self, server, user, role):
         invitation = server.ok("POST", "/users", {"user": user, "role": role}).json()
@@ -30,7 +30,7 @@ class Someone(Browser):
 
 
 def make_sites(server):
-    """Makes two projects with one thing of every kind each."""
+    """Makes two projects with one object of every kind each."""
     sites = {}
     for name in ("Villa", "Forum"):
         slug = name.lower()
@@ -105,8 +105,8 @@ PNG = bytes.fromhex(
 
 
 def doors(server, site):
-    """Returns every operation of the contract in the project: method, address, and the same address
-    of a missing thing."""
+    """Yields every operation of the contract in the project: the method, the address, and the same
+    address for a missing object."""
     for path, operations in server.contract.document["paths"].items():
         place = next((name for name in IN_PROJECTS if "{" + name + "}" in path), None)
         if place is None or path.endswith("/live"):
@@ -127,7 +127,7 @@ def doors(server, site):
 
 
 def nothing_is_seen(server, guest, site):
-    """Things that the person cannot see get the same answer as missing ones."""
+    """Checks that invisible objects get the same response as missing ones."""
     count = 0
     for method, there, nowhere, ref, ghost in doors(server, site):
         body = {} if method in ("POST", "PUT", "PATCH") else None

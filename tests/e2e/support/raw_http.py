@@ -1,4 +1,4 @@
-"""Sends bytes without regard to a protocol."""
+"""Sends bytes without checking them against a protocol."""
 import socket
 
 

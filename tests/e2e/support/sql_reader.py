@@ -1,4 +1,4 @@
-"""psql, as an analyst uses it."""
+"""Runs psql as an analyst does."""
 import csv
 import io
 import os
@@ -13,7 +13,7 @@ def free_port():
 
 
 class Reader:
-    """A psql session, with the server's password for readers."""
+    """A psql session with the server's password for readers."""
 
     def __init__(self, server, port):
         with open(os.path.join(server.data, "sql-password"), encoding="ascii") as file:

@@ -1,7 +1,7 @@
 """A separate Strata server for a test: real PostgreSQL, real GL, any free port, a temporary data
 folder.
 
-Reads STRATA_BINARY. Functions here wait for conditions, up to LONG_S, never for a fixed time.
+Reads STRATA_BINARY. Functions here wait for conditions, up to LONG_S, and never for a fixed time.
 """
 import ctypes
 import http.client
@@ -21,16 +21,17 @@ from .contract import Contract
 
 LONG_S = 180
 IN_MEMORY = "/dev/shm"
-OFTEN = ["--recheck-every", "1"]  # so that tests do not wait for the default
-ROOM_BYTES = 8 << 30  # for several tests at once, of which one writes gigabytes
+OFTEN = ["--recheck-every", "1"]  # tests do not wait for the default interval
+ROOM_BYTES = 8 << 30  # enough for several concurrent tests, one of which writes gigabytes
 
-# Calls that are refused for tokens of scripts; the owner's token is one once an administrator has a
-# password.
+# Requests that the server refuses for tokens of scripts. The owner's token counts as such a token
+# once an administrator has a password.
 OF_ACCOUNTS = re.compile(r"/(users|groups|me/)|/projects/[^/]+/(members|groups)(/|$)|.*/kiosks$")
 
 
 def _place_of_data():
-    """In memory if there is room, because a disk is slow for a database; open to all."""
+    """Returns a folder in memory if there is space, because a disk is slow for a database. All
+    users can access the folder."""
     wanted = os.environ.get("STRATA_TEST_TMP")
     if wanted:
         return wanted
@@ -39,7 +40,7 @@ def _place_of_data():
 
 
 def wait_for(condition, what, limit_s=LONG_S, every_s=0.02):
-    """Returns the first true result of `condition`."""
+    """Waits for the first true result of `condition`, and returns it."""
     end = time.monotonic() + limit_s
     while True:
         found = condition()
@@ -51,12 +52,12 @@ def wait_for(condition, what, limit_s=LONG_S, every_s=0.02):
 
 
 def _end_with_parent():
-    """If a test is killed (by CTest's time limit), its server is killed, too."""
+    """Kills the server if the test is killed (by CTest's time limit)."""
     ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
 class Answer:
-    """One HTTP answer."""
+    """An HTTP response."""
 
     def __init__(self, status, headers, body):
         self.status, self.headers, self.body = status, headers, body
@@ -69,17 +70,18 @@ class Answer:
 
 
 class StrataServer:
-    running = []  # servers in a `with`; a failure shows their logs
+    running = []  # the servers in `with` blocks, whose logs a failure shows
 
     def __init__(self, demo=False, options=()):
         self.binary = os.environ["STRATA_BINARY"]
         self.token = secrets.token_hex(24)
-        self.options = list(options)  # of `serve`
-        # Open to all: PostgreSQL does not run as root, so its user must reach the folder.
+        self.options = list(options)  # options of `serve`
+        # The folder is open to all users. PostgreSQL does not run as root, so its user needs
+        # access.
         self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir=_place_of_data())
         os.chmod(self.data, 0o755)
         self.process = None
-        self.session = None  # the owner's session, for calls on accounts
+        self.session = None  # the owner's session, for requests about accounts
         self.tls = None  # an ssl.SSLContext if the server uses https
         self.contract = Contract()
         self.host, self.port, self.link = "127.0.0.1", None, None
@@ -89,13 +91,13 @@ class StrataServer:
 
     def _fill(self):
         """Copies the result of tests/support/prepare, or makes the data if that did not run. Keeps
-        files that a test has put into the folder."""
+        the files that a test has put into the folder."""
         if os.listdir(self.data):
             return
         prepared = os.environ.get("STRATA_TEST_PREPARED")
         if prepared:
             kind = "demo" if self.demo else "empty"
-            # With owners and modes: PostgreSQL requires both.
+            # copies owners and modes, because PostgreSQL requires both
             subprocess.run(["cp", "-a", os.path.join(prepared, kind, "."), self.data], check=True)
         elif self.demo:
             done = subprocess.run(
@@ -132,16 +134,16 @@ class StrataServer:
         return "\n".join(self.log[-200:])
 
     def remove(self):
-        # The kernel ends PostgreSQL with its server; until then it writes.
+        # The kernel ends PostgreSQL after its server has ended. Until then PostgreSQL may write.
         wait_for(lambda: self.postmaster() is None, "the private PostgreSQL to end")
         shutil.rmtree(self.data, ignore_errors=True)
 
     def environment(self):
-        # Pictures that are not refined have the same pixels at any moment of rest.
+        # Without refinement, frames at rest always have the same pixels.
         return {"STRATA_SAMPLES_AT_REST": "1", **os.environ, "STRATA_OWNER_TOKEN": self.token}
 
     def start(self):
-        """Starts it (again) and returns when it listens."""
+        """Starts the server, or starts it again, and returns when it listens."""
         self._fill()
         self.process = subprocess.Popen(
             [
@@ -193,7 +195,7 @@ class StrataServer:
         self.process.wait()
 
     def stop(self):
-        """Sends SIGTERM; returns the exit status."""
+        """Sends SIGTERM. Returns the exit status."""
         self.process.send_signal(signal.SIGTERM)
         return self.process.wait(LONG_S)
 
@@ -210,8 +212,8 @@ class StrataServer:
             return None
 
     def assert_clean_log(self, warnings=()):
-        """Checks that the log has no errors, and only warnings and lines of libraries that contain
-        one of the given words (about a fault that the test made)."""
+        """Checks that the log has no errors. Warnings and lines of libraries are allowed if they
+        contain one of the given words, about a fault that the test caused."""
         bad = []
         for line in self.log:
             level = line.split(" ")[1:2]
@@ -222,12 +224,12 @@ class StrataServer:
                 and level[0] not in ("I", "D", "W", "E")
                 and not any(word in line for word in warnings)
             ):
-                bad.append(line)  # not a line of the log: a crash, a sanitizer, a library
+                bad.append(line)  # not a line of the log, but of a crash, a sanitizer or a library
         assert not bad, "the log of the server is not clean:\n" + "\n".join(bad[:50])
 
     def sql(self, statement):
         """Runs SQL in the private database, for effects that the API does not offer. Returns the
-        result without names of columns."""
+        result without the column names."""
         with open(
             os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii"
         ) as file:
@@ -262,8 +264,8 @@ class StrataServer:
         return http.client.HTTPConnection(self.host, port, timeout=LONG_S)
 
     def owners_secret(self, path):
-        """Returns the headers of a call as the owner: the token, or for accounts a session, which
-        stays the owner's after anybody chooses a password."""
+        """Returns the secret for a request as the owner: the token or, for accounts, a session. The
+        session remains the owner's after a user sets a password."""
         if not OF_ACCOUNTS.match(path):
             return self.token
         if self.session is None:
@@ -275,8 +277,8 @@ class StrataServer:
         self.session = signed.headers["Set-Cookie"].split(";")[0].partition("=")[2]
 
     def request(self, method, path, body=None, headers=None, token=True, connection=None):
-        """Makes one request; the contract must have its answer. `path` follows /api/v1 unless it
-        starts with //; a dict or list as body is sent as JSON."""
+        """Sends a request. The contract must contain its response. `path` follows /api/v1 unless it
+        starts with //. A dict or list as body is sent as JSON."""
         target = path[1:] if path.startswith("//") else "/api/v1" + path
         sent = {}
         if token:
@@ -318,7 +320,7 @@ class StrataServer:
         )
 
     def add_person(self, user, role):
-        """Creates a person; returns a token for their scripts."""
+        """Creates a user. Returns a token for the user's scripts."""
         invitation = (
             self.ok("POST", "/users", {"user": user, "role": role}).json()["path"].partition("#")[2]
         )
@@ -336,7 +338,7 @@ class StrataServer:
         ).json()["secret"]
 
     def import_model(self, content, filename, **query):
-        """Imports and returns the model."""
+        """Imports a model and returns it."""
         asked = urllib.parse.urlencode({"filename": filename, **query})
         job = self.wait_for_job(self.ok("POST", "/models?" + asked, content).json()["id"])
         assert job["state"] == "done", job

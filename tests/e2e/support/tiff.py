@@ -1,5 +1,4 @@
-"""Reads TIFF pictures as the server writes them: RGB8 in strips, deflate, horizontal differences.
-"""
+"""Reads TIFF images in the server's format: RGB8 in strips, deflate, horizontal differences."""
 import struct
 import zlib
 
@@ -7,7 +6,7 @@ import numpy
 
 
 def read(content):
-    """Returns rows × columns × 3, and the tags by number."""
+    """Returns the pixels as rows × columns × 3, and the tags by number."""
     order = {b"II*\0": "<", b"MM\0*": ">"}[content[:4]]
     at = struct.unpack(order + "I", content[4:8])[0]
     count = struct.unpack(order + "H", content[at : at + 2])[0]

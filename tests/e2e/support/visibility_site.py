@@ -1,4 +1,4 @@
-"""A site with private content, and attempts to see it: every query and every address of the
+"""A site with private content, and attempts to see it with every query and every address of the
 contract."""
 import io
 import re
@@ -11,8 +11,8 @@ from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import png
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
-VALUE = 48611.5  # painted on the secret layer
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
+VALUE = 48611.5  # the value painted on the secret layer
 LAYER, KEYS, COLUMN, CELL, FILE, CRACK = (
     "tomb-q7x",
     "bones-q5v",
@@ -37,14 +37,14 @@ MARKS = [
         str(VALUE),
     )
 ] + [struct.pack("<f", VALUE)]
-# of the same length, since messages count characters
+# the texts have the same length, because messages count characters
 GHOSTS = {LAYER: "tomb-zzz", KEYS: "bones-zzz", COLUMN: "hoard-zzz"}
 PNG = png(8, 8, lambda x, y: (200, 100, 50))
 JSON_CHANGES = ("post", "put", "patch")
 
 
 def leaks(body):
-    """Returns the marks of secrets in an answer; also searches in workbooks."""
+    """Returns the secret texts in a response. Also searches in workbooks."""
     if body.startswith(b"PK"):
         with zipfile.ZipFile(io.BytesIO(body)) as book:
             body = b"".join(book.read(name) for name in book.namelist())
@@ -78,14 +78,14 @@ def make_site(server):
         "POST", query("/tables/finds/records/1/attachments", name="plan.png"), PNG
     ).json()["attachments"][0]
     for layer, value in (("cracks", 3), ("finds", 1)):
-        # small, because every texel is read again and again
+        # a small area, because the test reads every texel many times
         server.ok(
             "POST",
             f"{M}/layers/{layer}/edits",
             {"op": "fill", "mode": "where", "where": "x < 5", "value": value},
         )
     before = server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}).body
-    # Secret from the start.
+    # private from the start
     secret = {"visibility": "private"}
     server.ok("POST", M + "/layers", {"name": "Tomb q7x", "type": "f32", **secret})
     server.ok(
@@ -147,7 +147,7 @@ def make_site(server):
 
 
 def words(server, public):
-    """Values for the parameters of paths, only of public things."""
+    """Returns values for the parameters of paths, only of public objects."""
     job = server.get("/jobs").json()["jobs"][0]["id"]
     look = server.get(M + "/looks").json()["looks"]
     return {
@@ -191,7 +191,7 @@ def fillings(path, words_of):
 
 
 def queries(server, path, operation):
-    """No query, then each parameter with each value from the contract."""
+    """Yields no query first, then each parameter with each value from the contract."""
     parameters = [
         server.contract._resolve(each)
         for each in operation.get("parameters", [])
@@ -229,7 +229,7 @@ def queries(server, path, operation):
 
 
 def reading_bodies(camera):
-    """Queries with a body."""
+    """Queries that have a body."""
     line = {"places": [[5, 5, 0], [95, 95, 0]], "step_mm": 5}
     return {
         "positions": [{"points": [[50, 50, 0]]}],
@@ -258,11 +258,11 @@ def reading_bodies(camera):
 
 
 def sweep(server, token, words_of, camera):
-    """Makes every query of the contract about public content; returns how many were answered, and
-    which contained a secret."""
+    """Sends every query of the contract about public content. Returns the number of responses, and
+    the queries whose response contained a secret."""
     bodies, answered, told = reading_bodies(camera), 0, {}
     for path, operations in server.contract.document["paths"].items():
-        # without an end; events_test.py reads it
+        # these responses have no end; events_test.py reads them
         if not path.startswith("/api/v1") or path.endswith(("/live", "/events")):
             continue
         for method, operation in operations.items():
@@ -294,7 +294,7 @@ def sweep(server, token, words_of, camera):
 
 
 def same_answer(server, token, method, path, body, secret, ghost, headers=None):
-    """Things that the person cannot see get the same answer as missing ones."""
+    """Checks that objects that the user cannot see get the same response as missing ones."""
 
     def swapped(thing):
         return (
@@ -321,7 +321,7 @@ def same_answer(server, token, method, path, body, secret, ghost, headers=None):
 
 
 def doors_closed(server, token, words_of, hidden, thread):
-    """Returns every address of a secret, and those that also contain one."""
+    """Returns every address of a secret, and the addresses that also contain one."""
     count = 0
     for path, operations in server.contract.document["paths"].items():
         for name, secret, ghost in (
@@ -338,7 +338,7 @@ def doors_closed(server, token, words_of, hidden, thread):
                     if method not in ("get", "post", "put", "patch", "delete"):
                         continue
                     body = {} if method in JSON_CHANGES else None
-                    if secret.isdigit():  # the id as a whole
+                    if secret.isdigit():  # the id as a whole word
                         answers = [
                             server.request(
                                 method.upper(),
@@ -364,7 +364,7 @@ def doors_closed(server, token, words_of, hidden, thread):
 
 
 def names_unknown(server, token, camera):
-    """Names of secrets in expressions, filters and lists."""
+    """Uses the names of secrets in expressions, filters and lists."""
     asked = [
         (
             "GET",

@@ -1,5 +1,5 @@
-"""Reads an XLSX file with the standard library: the content that a spreadsheet would show, and that
-it would run."""
+"""Reads an XLSX file with the standard library: the content that a spreadsheet would show, and the
+content that it would run."""
 import datetime
 import io
 import re
@@ -25,7 +25,8 @@ class Workbook:
             int(f.get("numFmtId")): f.get("formatCode") for f in self.styles.iter(f"{_MAIN}numFmt")
         }
         self.formulas = list(self.sheet.iter(f"{_MAIN}f"))
-        self.width = len(next(self.sheet.iter(f"{_MAIN}row")))  # of the header, at most 26
+        # the width of the header, at most 26
+        self.width = len(next(self.sheet.iter(f"{_MAIN}row")))
         self.rows = [self._row(row) for row in self.sheet.iter(f"{_MAIN}row")]
 
     def _row(self, row):
@@ -38,7 +39,7 @@ class Workbook:
         kind = cell.get("t", "n")
         if kind == "inlineStr":
             written = "".join(t.text or "" for t in cell.iter(f"{_MAIN}t"))
-            # ST_Xstring
+            # the escapes of ST_Xstring
             return re.sub("_x([0-9A-Fa-f]{4})_", lambda escape: chr(int(escape[1], 16)), written)
         text = cell.find(f"{_MAIN}v").text
         if kind == "b":

@@ -1,6 +1,8 @@
-// Identifiers that this page gives to its messages and requests.
+// Identifiers of the page's messages and requests.
 
-/** A random UUID; also on plain-HTTP addresses, where `crypto.randomUUID` is absent. */
+/**
+ * Returns a random UUID. It also works over plain HTTP, where `crypto.randomUUID` is unavailable.
+ */
 export function newId(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(16));
   bytes[6] = (bytes[6]! & 0x0f) | 0x40;

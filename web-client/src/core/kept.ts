@@ -1,5 +1,5 @@
-// A value that this browser keeps for the page. Where the browser does not store it (its storage is
-// full or disabled), the value lives as long as the page.
+// A value that the browser stores for the page. If the browser cannot store it, because its storage
+// is full or disabled, the value lasts until the page is closed.
 
 export class Kept<T> {
   private _value: T;
@@ -14,7 +14,7 @@ export class Kept<T> {
       const text = _storage()?.getItem(_name);
       if (text) this._value = JSON.parse(text) as T;
     } catch {
-      // The stored text is not from this page or cannot be read: the default stays.
+      // The stored text is not from this page or cannot be read, so the default applies.
     }
   }
 
@@ -27,7 +27,7 @@ export class Kept<T> {
     try {
       this._storage()?.setItem(this._name, JSON.stringify(value));
     } catch {
-      // The value is kept in memory.
+      // The value remains in memory only.
     }
   }
 }

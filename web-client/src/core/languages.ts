@@ -1,9 +1,9 @@
-// Languages by their tags (BCP 47), and names of things in several languages.
+// Languages by their tags (BCP 47), and names of items in several languages.
 
 import { pageLocale } from "./locale";
 import type { Labels } from "./protocol.gen";
 
-/** The languages on offer; a user can enter any other tag. */
+/** The languages that the page offers. A user can enter any other tag. */
 export const kCommonLanguages: readonly string[] = [
   "ar",
   "bg",
@@ -54,23 +54,26 @@ export const kCommonLanguages: readonly string[] = [
   "zh-Hant",
 ];
 
-/** The tag in its usual form, "pt-BR"; null for an invalid tag. */
+/** Returns the tag in its usual form, such as "pt-BR", or null if the tag is invalid. */
 export function wellWrittenTag(tag: string): string | null {
   try {
     return Intl.getCanonicalLocales(tag)[0] ?? null;
   } catch {
-    return null; // a RangeError
+    return null; // RangeError: the tag is invalid
   }
 }
 
-/** The name of a language in that language: "español"; empty where it is unknown. */
+/** Returns the name of a language in that language, such as "español", or "" if it is unknown. */
 export function nameOfLanguage(tag: string): string {
   const locale = wellWrittenTag(tag);
   if (!locale) return "";
   return new Intl.DisplayNames([locale], { type: "language", fallback: "none" }).of(locale) ?? "";
 }
 
-/** The name of a language in the page's language: "Spanish"; the tag itself where it is unknown. */
+/**
+ * Returns the name of a language in the page's language, such as "Spanish". Returns the tag itself
+ * if the name is unknown.
+ */
 export const languageInWords = (tag: string): string => {
   const locale = wellWrittenTag(tag);
   return locale
@@ -81,12 +84,12 @@ export const languageInWords = (tag: string): string => {
 export interface LabelRow {
   language: string; // as the user entered it
   label: string;
-  description?: string; // where the field has room for a description
+  description?: string; // only in fields with descriptions
 }
 
 export type ReadLabels = { labels: Labels } | { row: number; wrong: "no_language" | "twice" };
 
-/** One row for each language, by tag. */
+/** Returns one row for each language, sorted by tag. */
 export const rowsOf = (labels: Labels, descriptions: Labels = {}): LabelRow[] =>
   [...new Set([...Object.keys(labels), ...Object.keys(descriptions)])].sort().map((language) => ({
     language,
@@ -95,8 +98,8 @@ export const rowsOf = (labels: Labels, descriptions: Labels = {}): LabelRow[] =>
   }));
 
 /**
- * Returns the labels in the rows; rows without a label and a description are skipped. The server
- * checks whether a tag is valid.
+ * Returns the labels in the rows. Rows with neither a label nor a description are skipped. The
+ * server validates the tags.
  */
 export function labelsOf(rows: readonly LabelRow[]): ReadLabels {
   const labels = new Map<string, string>();
@@ -112,7 +115,7 @@ export function labelsOf(rows: readonly LabelRow[]): ReadLabels {
   return { labels: Object.fromEntries(labels) };
 }
 
-/** The descriptions in rows that labelsOf() accepted. */
+/** Returns the descriptions in the rows that labelsOf() accepted. */
 export const descriptionsOf = (rows: readonly LabelRow[]): Labels =>
   Object.fromEntries(
     rows

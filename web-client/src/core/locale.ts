@@ -1,5 +1,5 @@
-// The language of the page, and the format of numbers, times and lists in it. Set once, before
-// anything is shown.
+// The language of the page, and its formats of numbers, times and lists. It is set once, before the
+// page shows any content.
 
 export const kPageLanguages = ["en", "de", "es"] as const;
 export type PageLanguage = (typeof kPageLanguages)[number];
@@ -13,7 +13,8 @@ const isPageLanguage = (language: string): language is PageLanguage =>
   (kPageLanguages as readonly string[]).includes(language);
 
 /**
- * The chosen language, else the first of the browser's languages that the page has, else English.
+ * Returns the chosen language. Without one, returns the first of the browser's languages that the
+ * page supports, or English.
  */
 export function pageLanguage(chosen: string | null, browser: readonly string[]): PageLanguage {
   return (
@@ -22,9 +23,9 @@ export function pageLanguage(chosen: string | null, browser: readonly string[]):
 }
 
 /**
- * Sets the language of numbers and times to `language`, in the browser's own variety of it if the
- * browser names one ("de-CH"). Data with names in several languages use the chosen language, or
- * else the browser's.
+ * Sets the language of numbers and times to `language`. If the browser names a regional variety of
+ * it, such as "de-CH", that variety applies. Data with names in several languages use the chosen
+ * language, or otherwise the browser's languages.
  */
 export function setLocale(
   language: PageLanguage,
@@ -44,17 +45,17 @@ export function setLocale(
       .find(({ type }) => type === "decimal")?.value ?? ".";
 }
 
-/** The tag that sets the rules for numbers, times and plurals: "en-GB". */
+/** Returns the tag that sets the rules for numbers, times and plurals, such as "en-GB". */
 export const pageLocale = (): string => locale;
-/** The languages that this person reads, the best first. */
+/** Returns the user's languages, the preferred one first. */
 export const personLanguages = (): readonly string[] => languages;
 
-/** A share of a whole in percent: "12 %", "0.4 %". */
+/** Formats a fraction as a percentage, such as "12 %" or "0.4 %". */
 export const formatPercent = (share: number): string =>
   `${(share * 100).toLocaleString(locale, { maximumSignificantDigits: share < 0.1 ? 2 : 3 })} %`;
 
 export const formatCount = (n: number): string => n.toLocaleString(locale);
-/** Formats with `decimals` decimals and without grouping: for coordinates. */
+/** Formats a number with `decimals` decimals and without grouping, for coordinates. */
 export const formatFixed = (value: number, decimals: number): string =>
   value.toLocaleString(locale, {
     minimumFractionDigits: decimals,
@@ -64,26 +65,28 @@ export const formatFixed = (value: number, decimals: number): string =>
 export const formatList = (items: readonly string[]): string =>
   new Intl.ListFormat(locale, { style: "short", type: "unit" }).format(items);
 /**
- * Joins numbers that belong together, such as the coordinates of a place, by a separator that is
- * not the decimal sign.
+ * Joins numbers that belong together, such as the coordinates of a point. The separator differs
+ * from the decimal sign.
  */
 export const formatPlace = (numbers: readonly string[]): string =>
   numbers.join(decimal === "," ? "; " : ", ");
 
-/** A number with all of its digits, in the form that users type. */
+/** Formats a number with all its digits, as users type it. */
 export const typedNumber = (value: number): string => withDecimalSign(String(value));
 /**
- * The separator of cells in CSV files, as spreadsheets of the language's countries expect it: a
- * semicolon where numbers contain a comma.
+ * Returns the separator of cells in CSV files that spreadsheets in this language expect. It is a
+ * semicolon if the decimal sign is a comma.
  */
 export const csvSeparator = (): "comma" | "semicolon" => (decimal === "," ? "semicolon" : "comma");
-/** Replaces the point of a number that JavaScript formatted by the decimal sign of the language. */
+/**
+ * Replaces the decimal point of a number that JavaScript formatted with the language's decimal
+ * sign.
+ */
 export const withDecimalSign = (plain: string): string => plain.replace(".", decimal);
 
 /**
- * Parses a typed number with the decimal sign of the language or a point. Returns NaN for anything
- * else and for ambiguous input: in languages with a decimal comma, "1.500" may be a grouped 1500.
- * Nothing is guessed.
+ * Parses a typed number with the decimal sign of the language or a point. Returns NaN for invalid
+ * and for ambiguous input. For example, in languages with a decimal comma, "1.500" could mean 1500.
  */
 export function readNumber(typed: string): number {
   const text = typed.trim();

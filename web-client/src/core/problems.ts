@@ -1,12 +1,12 @@
-// The page's own problem texts for failed calls without a problem from the server. Each language
-// provides the texts; core/ contains none.
+// The page's own problem texts, for failed calls without a problem from the server. The files of
+// each language provide these texts. core/ contains no texts.
 
-/** A title and the advice on what to do. */
+/** A title, and advice for the user. */
 type Told = readonly [title: string, detail: string];
 
 export interface OwnProblems {
   unreachable: Told;
-  /** For statuses of responses without a problem body, such as a proxy's. */
+  /** Texts for the statuses of responses without a problem body, such as those of a proxy. */
   statuses: Readonly<Record<string, Told>>;
   other_status(status: number): string;
   other_status_detail: string;

@@ -1,14 +1,14 @@
-// Search of names by the words of a text, in any order.
+// Searches names for the words of a text, in any order.
 
-/** Without accents and in small letters. */
+/** Removes accents and converts to lower case. */
 export const plainText = (text: string): string =>
   text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
 
 export const wordsOf = (text: string): string[] => plainText(text).split(/\s+/).filter(Boolean);
 
 /**
- * How well `title` fits the words: 0 is best. `also`: further text in which a word may occur. Null:
- * a word occurs in neither.
+ * Returns a rank of the match between `title` and the words. 0 is the best rank. `also` is further
+ * text to search. Returns null if a word occurs in neither text.
  */
 export function misfit(words: readonly string[], title: string, also = ""): number | null {
   const [name, rest] = [plainText(title), plainText(also)];
@@ -23,7 +23,7 @@ export function misfit(words: readonly string[], title: string, also = ""): numb
   return sum;
 }
 
-/** The entries that fit, best first; equal ones keep their order. */
+/** Returns the matching entries, the best first. Entries with the same rank keep their order. */
 export function searched<T>(
   text: string,
   all: readonly T[],

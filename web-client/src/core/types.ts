@@ -1,4 +1,4 @@
-// The generated types of the protocol, with additions that the page needs.
+// The generated types of the protocol, with the page's additions.
 
 import type * as wire from "./protocol.gen";
 
@@ -44,22 +44,22 @@ export interface Layer extends wire.Layer {
   palette: Palette;
 }
 
-/** A problem of RFC 9457, with the field that is wrong. */
+/** A problem according to RFC 9457, with the invalid field. */
 export interface ProblemBody {
   status: number;
   title: string;
   detail?: string;
   field?: string;
-  // in an expression, in characters (code points): the place of the mistake, the number of wrong
-  // characters, texts that would correct them, and the kind of mistake
+  // Members for a mistake in an expression: its position and length in characters (code points),
+  // possible corrections, and the kind of mistake.
   offset?: number;
   length?: number;
   suggestions?: string[];
   reason?: string;
-  rows?: wire.RecordsReport; // for requests with many records
+  rows?: wire.RecordsReport; // only for requests with many records
 }
 
-/** `min` and `max` default to the outer points. */
+/** Fills in absent members of a palette. `min` and `max` default to the outer points. */
 export function completePalette(palette: wire.Palette): Palette {
   const points = [...(palette.points ?? [])].sort((a, b) => a.at - b.at);
   return {
@@ -75,7 +75,7 @@ export const completeLayer = (layer: wire.Layer): Layer => ({
   palette: completePalette(layer.palette),
 });
 
-/** Each role includes the rights of those before it. */
+/** All roles. Each role includes the rights of the previous ones. */
 export const kRoles: readonly wire.Role[] = [
   "guest",
   "viewer",
@@ -84,10 +84,10 @@ export const kRoles: readonly wire.Role[] = [
   "administrator",
   "owner",
 ];
-/** Roles in one project, ascending. */
+/** The roles in a project, the lowest first. */
 export const kProjectRoles: readonly wire.ProjectRole[] = ["viewer", "annotator", "curator"];
 
-/** Whether the role may download a model's scan and files of the same quality. */
+/** Whether the role may download a model's scan and other files with the same quality. */
 export const mayDownload = (
   role: wire.Role,
   { source_download: sourceDownload }: Pick<wire.Model, "source_download">,
@@ -95,12 +95,12 @@ export const mayDownload = (
 /** Whether the role may change the values of layers. */
 export const mayPaint = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("annotator");
-/** Whether the role may create, delete and rename layers and models. */
+/** Whether the role may create, rename and delete layers and models. */
 export const mayCurate = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("curator");
 /**
- * Whether the layer's values are as computed: nobody can change them until a user unlocks the layer
- * for editing by hand.
+ * Whether the layer still has its computed values. They cannot be changed until a user unlocks the
+ * layer for manual editing.
  */
 export const isAsComputed = ({
   computed,
@@ -108,7 +108,7 @@ export const isAsComputed = ({
   edited_by_hand: editedByHand,
 }: Pick<wire.Layer, "computed" | "locked" | "edited_by_hand">): boolean =>
   computed !== undefined && locked && editedByHand !== true;
-/** Whether the role may invite people and set their roles. */
+/** Whether the role may invite users and set their roles. */
 export const mayAdminister = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("administrator");
 

@@ -1,7 +1,7 @@
-// The contract of the API as a page: Redoc, assembled from its parts. Redoc's own frame loads a
-// picture from another site and starts a search worker from a string. Our content security policy
-// forbids both, so the page has neither. The page has its own menu, because Redoc's menu items are
-// not in a menu.
+// Shows the contract of the API with the components of Redoc. Redoc's own page loads an image from
+// another site and starts a search worker from a string. The server's content security policy
+// forbids both, so this page omits them. It has its own menu, because Redoc's menu items are not
+// inside a menu element.
 import { autorun } from "mobx";
 import { type ComponentProps, createElement, useEffect, useState } from "react";
 import { createRoot } from "react-dom/client";
@@ -25,7 +25,7 @@ const kContract = "/api/v1/openapi.json";
 
 type Menu = AppStore["menu"];
 type Item = Menu["items"][number];
-type Contents = ComponentProps<typeof ContentItems>["items"]; // also the type of the menu's items
+type Contents = ComponentProps<typeof ContentItems>["items"]; // also the type of the menu items
 
 const isOperation = (item: Item): item is OperationModel => item.type === "operation";
 
@@ -38,7 +38,7 @@ function MenuLink({ item, active, menu }: { item: Item; active: boolean; menu: M
     {
       href: `#${item.id}`,
       "aria-current": active ? "location" : undefined,
-      onClick: () => menu.closeSidebar(), // in a small window, the menu covers the contents
+      onClick: () => menu.closeSidebar(), // in a small window, the menu covers the content
     },
     method,
     " ",
@@ -99,7 +99,7 @@ function Contract({ store }: { store: AppStore }) {
   );
 }
 
-/** Redoc's select boxes for a media type or an example have no accessible name. */
+/** Gives accessible names to Redoc's select boxes for media types and examples, which have none. */
 function nameChoices(place: Element): void {
   for (const choice of place.querySelectorAll("select:not([aria-label])"))
     choice.setAttribute(

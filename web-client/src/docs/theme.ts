@@ -1,5 +1,5 @@
-// Replaces Redoc's colors that have too little contrast (WCAG 2.2, 1.4.3). A response has one color
-// on the light page and one on the dark tabs of its samples.
+// Replaces the Redoc colors that have too little contrast (WCAG 2.2, 1.4.3). A response has one
+// color on the light page and another on the dark tabs of its samples.
 import type { AppStore } from "redoc";
 
 type Options = NonNullable<ConstructorParameters<typeof AppStore>[2]>;

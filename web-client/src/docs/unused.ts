@@ -1,5 +1,5 @@
-// Replaces the modules with which Redoc reads other kinds of contracts: several files, YAML,
-// Swagger 2. Our contract is one JSON file.
+// Replaces the Redoc modules that read other contract formats: several files, YAML and Swagger 2.
+// The contract of Strata is one JSON file.
 function unused(): never {
   throw new Error("Only one kind of contract is read here.");
 }

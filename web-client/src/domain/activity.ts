@@ -1,19 +1,19 @@
-// Lines of a project's activity, without the user interface.
+// Lines of a project's activity. This file has no user interface.
 
 import type { Activity } from "../core/protocol.gen";
 
-/** The known lines, the newest first, and the server's cursor for the next page. */
+/** The loaded lines, the newest first, and the server's cursor for the next page. */
 export interface ActivityLog {
   lines: readonly Activity[];
-  next: string | undefined; // undefined: the log is complete
+  next: string | undefined; // undefined if the log is complete
 }
 
 const isNewer = (a: Activity, b: Activity): number =>
   a.time < b.time ? 1 : a.time > b.time ? -1 : b.id - a.id;
 
 /**
- * Merges a newer first page. A line with new events has moved to the top. If the page does not
- * reach the known lines, the page replaces them.
+ * Merges a newer first page into the log. A line with new events has moved to the top. If no line
+ * of the page is in the log, the page replaces the log.
  */
 export function withFirstPage(log: ActivityLog, page: ActivityLog): ActivityLog {
   const ids = new Set(page.lines.map(({ id }) => id));
@@ -32,7 +32,7 @@ export function withNextPage(log: ActivityLog, page: ActivityLog): ActivityLog {
   return { lines: [...log.lines, ...page.lines.filter(({ id }) => !ids.has(id))], next: page.next };
 }
 
-/** Groups lines by the day of their last time, as `dayOf` names it. */
+/** Groups lines by day. `dayOf` returns the name of a line's day. */
 export function byDay(
   lines: readonly Activity[],
   dayOf: (iso: string) => string,

@@ -1,11 +1,11 @@
-// Values of records in the form in which people read and write them. The server validates values;
-// this file has only the rules that a field needs.
+// Converts values of records to text and back. The server validates values. This file contains only
+// the rules that a field needs.
 
 import { personLanguages, readNumber, typedNumber } from "../core/locale";
 import { isListOfMarks } from "./marks";
 import type { CellValue, Column, Labels, Table, TableRecord } from "../core/protocol.gen";
 
-/** The language and the more general ones, in lower case: "es-mx", "es". */
+/** Returns the language tag and its more general tags in lower case, such as "es-mx" and "es". */
 function kindsOfLanguage(language: string): string[] {
   const tags: string[] = [];
   for (
@@ -18,8 +18,8 @@ function kindsOfLanguage(language: string): string[] {
 }
 
 /**
- * The name in the first of the person's languages that has one: "es-MX" also matches a name in
- * "es".
+ * Returns the name in the first of the user's languages that has a name. The language "es-MX" also
+ * matches a name in "es".
  */
 export function labelOf(
   thing: { name: string; labels: Labels },
@@ -35,7 +35,7 @@ export function labelOf(
   return thing.name;
 }
 
-/** The same for the description. */
+/** Returns the description in the same way. */
 export const descriptionIn = (
   thing: { description: string; descriptions: Labels },
   languages?: readonly string[],
@@ -48,7 +48,7 @@ export const holdsFiles = (column: Column): boolean =>
 export const namesRecords = (column: Column): boolean =>
   column.kind === "term" || column.kind === "relation";
 
-/** Keys of the records that a term or a relation names. */
+/** Returns the keys of the records that a term or relation points to. */
 export function namedKeys(value: CellValue | undefined): number[] {
   if (isListOfMarks(value)) return [];
   if (Array.isArray(value)) return value;
@@ -56,8 +56,8 @@ export function namedKeys(value: CellValue | undefined): number[] {
 }
 
 /**
- * The value as typed and shown. Cells that name records show labels instead; for lines and points
- * the text is their number.
+ * Returns the value as text, for display and input. Cells that point to records show labels
+ * instead. For lines and points, the text is their count.
  */
 export function cellText(value: CellValue | undefined): string {
   if (value === null || value === undefined) return "";
@@ -71,7 +71,7 @@ export const sameValue = (a: CellValue | undefined, b: CellValue | undefined): b
 
 export type Parsed = { value: CellValue } | { wrong: "number" | "whole" };
 
-/** Parses the text that a user typed into a field of the column; an empty text is no value. */
+/** Parses the text that a user typed into a field of the column. An empty text means no value. */
 export function parseCell(column: Pick<Column, "kind">, text: string): Parsed {
   const typed = column.kind === "text" ? text : text.trim();
   if (typed === "") return { value: null };
@@ -98,7 +98,10 @@ export function parseCell(column: Pick<Column, "kind">, text: string): Parsed {
 }
 
 type Naming = Pick<Table, "columns" | "kind" | "title_column">;
-/** Returns the name of a record of another table; null: unknown, or not loaded yet. */
+/**
+ * Returns the name of a record in another table. Returns null if the name is unknown or not loaded
+ * yet.
+ */
 export type NameOfKey = (table: number, key: number) => string | null;
 
 /** Whether values of the column can be a record's name. */
@@ -111,8 +114,8 @@ export const canBeTitle = ({ kind }: Pick<Column, "kind">): boolean =>
   kind !== "boolean";
 
 /**
- * The column that distinguishes records for people: the chosen one, or the best one; null where no
- * column can.
+ * Returns the column whose values identify records for users: the chosen column, or otherwise the
+ * best one. Returns null if no column can.
  */
 export function labelColumn(table: Pick<Table, "columns" | "title_column">): Column | null {
   const chosen = table.columns.find(({ id }) => id === table.title_column);
@@ -133,8 +136,8 @@ function bestLabelColumn(table: Pick<Table, "columns">): Column | null {
 }
 
 /**
- * The columns that can name a record, the best first. For terms: labels in the person's languages,
- * then the label without a language, then the code.
+ * Returns the columns that can name a record, the best first. For terms, these are the labels in
+ * the user's languages, then the label without a language, then the code.
  */
 export function namingColumns(table: Naming, languages?: readonly string[]): Column[] {
   const last = [labelColumn(table) ?? [], bestLabelColumn(table) ?? []].flat();
@@ -149,8 +152,8 @@ export function namingColumns(table: Naming, languages?: readonly string[]): Col
 }
 
 /**
- * The name of the record; empty where it has none. `nameOf` returns the name of the term that a
- * cell points to; without it, another column provides the name.
+ * Returns the name of the record, or an empty text. `nameOf` returns the name of the term that a
+ * cell points to. Without `nameOf`, another column provides the name.
  */
 export function labelOfRecord(
   table: Naming,
@@ -171,7 +174,7 @@ export function labelOfRecord(
   return "";
 }
 
-/** The first picture of the record: the number of its file. */
+/** Returns the file number of the record's first image. */
 export function firstPicture(
   table: Pick<Table, "columns">,
   { values }: Pick<TableRecord, "values">,
@@ -183,9 +186,7 @@ export function firstPicture(
   );
 }
 
-/**
- * Columns that describe the record in words, without the one that names it and without pictures.
- */
+/** Returns the columns that describe the record in words, except the one that names it. */
 export function tellingColumns(table: Naming, { values }: Pick<TableRecord, "values">): Column[] {
   const [name] = namingColumns(table);
   return table.columns.filter(

@@ -1,6 +1,6 @@
-// The choices in the filter of one column, as a condition of the language that filters records
-// (CQL2 text), and back. The text is the only state: the functions recognize a condition in it that
-// they built, and keep all other conditions that a user typed.
+// Converts the choices in a column's filter to a condition in CQL2 text, the language that filters
+// records, and back. The text is the only state. The functions recognize the conditions that they
+// built, and keep all other conditions that a user typed.
 
 import { nameInText } from "./completion";
 import type { Column } from "../core/protocol.gen";
@@ -10,8 +10,8 @@ export type FilterValue = string | number | boolean;
 export type ColumnFilter =
   | { is: "one_of"; values: readonly FilterValue[]; empty: boolean }
   /**
-   * Both ends are included; an empty text leaves an end open. Numbers as JavaScript formats them,
-   * times as in the table.
+   * The range includes both ends. An empty text leaves an end open. Numbers are formatted as in
+   * JavaScript, times as in the table.
    */
   | { is: "range"; from: string; to: string }
   | { is: "contains"; text: string }
@@ -26,7 +26,7 @@ const isTime = ({ kind }: Pick<Column, "kind">): boolean =>
   kind === "date" || kind === "timestamp" || kind === "period";
 const isText = ({ kind }: Pick<Column, "kind">): boolean => kind === "text" || kind === "url";
 
-/** The kinds of filter for a column, the most common first. */
+/** Returns the kinds of filter for a column, the most common first. */
 export function filterKinds(column: Pick<Column, "kind">): FilterKind[] {
   const kinds: FilterKind[] = [];
   if (isNumber(column) || isTime(column)) kinds.push("range");
@@ -43,7 +43,10 @@ const literal = (value: FilterValue): string =>
   typeof value === "string" ? quoted(value) : String(value);
 const patternOf = (text: string): string => quoted(`%${text.replaceAll(/[\\%_]/g, "\\$&")}%`);
 
-/** Returns an empty text for a filter without a condition: all records remain. */
+/**
+ * Returns the filter's condition. Returns an empty text for a filter without a condition, which
+ * matches all records.
+ */
 export function conditionOf(column: Pick<Column, "slug" | "kind">, filter: ColumnFilter): string {
   const name = nameInText(column.slug);
   switch (filter.is) {
@@ -88,7 +91,7 @@ const valuesIn = (list: string): FilterValue[] =>
   (list.match(new RegExp(kLiteral, "g")) ?? []).map(valueFor);
 
 /**
- * Returns the filter of the column that a condition of conditionOf() expresses; null for all other
+ * Converts a condition from conditionOf() back to the column's filter. Returns null for all other
  * conditions.
  */
 export function filterOf(
@@ -135,7 +138,7 @@ export function filterOf(
 // ── the text ─────────────────────────────────────────────────────────────────────────────────────
 
 /**
- * Splits a filter at its top-level "and". A condition joined by "or" is one condition, in
+ * Splits a filter at each top-level "and". Conditions joined by "or" count as one condition, in
  * parentheses.
  */
 export function conditionsOf(filter: string): string[] {
@@ -144,7 +147,7 @@ export function conditionsOf(filter: string): string[] {
   const parts: string[] = [];
   let depth = 0;
   let begun = 0;
-  let between = false; // its "and" does not join conditions
+  let between = false; // the "and" of "between" does not join conditions
   for (const { 0: token, index } of text.matchAll(
     /'(?:[^']|'')*'|"[^"]*"|[()]|[\p{L}_][\p{L}\p{N}_.-]*/gu,
   )) {
@@ -165,8 +168,8 @@ export function conditionsOf(filter: string): string[] {
 }
 
 /**
- * The part of the filter that was chosen for the column; conditions that were typed in another form
- * are not included.
+ * Returns the column's choice in the filter. Conditions that a user typed in another form are
+ * ignored.
  */
 export const chosenIn = (
   filter: string,
@@ -176,7 +179,7 @@ export const chosenIn = (
     .map((part) => filterOf(column, part))
     .find((found) => found !== null) ?? null;
 
-/** Returns the filter with another choice for the column, or without one. */
+/** Returns the filter with a new choice for the column, or without a choice if `choice` is null. */
 export function withChoice(
   filter: string,
   column: Pick<Column, "slug" | "kind">,
@@ -188,7 +191,7 @@ export function withChoice(
   return [...others, own].filter((part) => part !== "").join(" and ");
 }
 
-/** For a condition that is the only one again. */
+/** Removes the parentheses of a condition that is the only one again. */
 function withoutParentheses(condition: string): string {
   const inner = condition.startsWith("(") && condition.endsWith(")") ? condition.slice(1, -1) : "";
   return inner !== "" && conditionsOf(inner)[0] === condition ? inner : condition;

@@ -1,21 +1,21 @@
-// Threads of comments and the parts of their texts, without the user interface.
+// Threads of comments and the parts of their texts. This file has no user interface.
 
 import type { Comment, Point3 } from "../core/protocol.gen";
 
-/** The first comment of a thread, which has a place. */
+/** The first comment of a thread, which has a position. */
 export type FirstComment = Comment & { position: Point3; normal: Point3 };
 
 export interface Thread {
   first: FirstComment;
-  replies: Comment[]; // by id
-  newest: number; // id
+  replies: Comment[]; // sorted by id
+  newest: number; // id of the newest comment
 }
 
 export type ThreadState = "open" | "resolved" | "all";
 
 export interface ThreadFilter {
   state: ThreadState;
-  /** If set, only threads in which this person wrote or was mentioned. */
+  /** If set, only threads that this user wrote in or that mention this user. */
   of: string | null;
   words: string;
 }
@@ -23,7 +23,7 @@ export interface ThreadFilter {
 const isFirst = (comment: Comment): comment is FirstComment =>
   comment.thread === undefined && comment.position !== undefined && comment.normal !== undefined;
 
-/** Sorts by the newest comment, descending. */
+/** Groups comments into threads, the thread with the newest comment first. */
 export function threadsOf(comments: Iterable<Comment>): Thread[] {
   const threads = new Map<number, Thread>();
   const all = [...comments].sort((a, b) => a.id - b.id);
@@ -42,8 +42,8 @@ export function threadsOf(comments: Iterable<Comment>): Thread[] {
 export const commentsIn = ({ first, replies }: Thread): Comment[] => [first, ...replies];
 
 /**
- * Finds threads by words: each word must be the start of a word of a text or author name in the
- * thread, ignoring case.
+ * Finds threads by words. Each word must occur in a text or an author's name of the thread,
+ * ignoring case.
  */
 export function findThreads(
   threads: readonly Thread[],
@@ -74,7 +74,7 @@ export type TextPart =
 
 const kParts = /\bhttps?:\/\/[^\s<>"]+|(?<![A-Za-z0-9._@-])@[A-Za-z0-9][A-Za-z0-9._@-]*/giu;
 
-/** Splits a text into plain text, addresses and the @names of `people`. */
+/** Splits a text into plain text, web addresses and the @names of `people`. */
 export function textParts(text: string, people: ReadonlySet<string>): TextPart[] {
   const known = new Set([...people].map((name) => name.toLowerCase()));
   const parts: TextPart[] = [];
@@ -100,7 +100,10 @@ export function textParts(text: string, people: ReadonlySet<string>): TextPart[]
 export const mentions = (text: string, name: string): boolean =>
   textParts(text, new Set([name])).some(({ kind }) => kind === "mention");
 
-/** A name may end with punctuation. Returns the longest known name; empty if no person has it. */
+/**
+ * Returns the longest known name at the start of `found`, because punctuation may follow a name.
+ * Returns an empty text if no user has the name.
+ */
 function mentionIn(found: string, known: ReadonlySet<string>): string {
   for (let whole = found; whole.length > 1; whole = whole.slice(0, -1)) {
     if (known.has(whole.slice(1).toLowerCase())) return whole;
@@ -109,7 +112,10 @@ function mentionIn(found: string, known: ReadonlySet<string>): string {
   return "";
 }
 
-/** Removes punctuation that belongs to the sentence. Empty: not an address. */
+/**
+ * Removes punctuation that belongs to the sentence. Returns an empty text if `found` is not a web
+ * address.
+ */
 function linkIn(found: string): string {
   let whole = found;
   for (;;) {
@@ -127,13 +133,13 @@ function linkIn(found: string): string {
   }
 }
 
-/** Which comments a person has read: all up to `upto`, and more by thread. */
+/** The comments that a user has read: all up to `upto`, and further ones by thread. */
 export interface ReadMarks {
   upto: number;
   threads: Record<string, number>;
 }
 
-/** Whether another person has written there since. */
+/** Whether the thread has an unread comment by another user. */
 export function isUnread(thread: Thread, { upto, threads }: ReadMarks, me: string): boolean {
   const seen = Math.max(upto, threads[thread.first.id] ?? 0);
   return commentsIn(thread).some(({ id, user, deleted }) => id > seen && user !== me && !deleted);

@@ -1,9 +1,9 @@
-// Completion of names in an expression (docs/reference/conditions.md): the candidates for the word
-// before the caret.
+// Completes names in an expression (docs/reference/conditions.md). It suggests candidates for the
+// word before the caret.
 
 export interface Suggestion {
-  text: string; // replaces the word
-  hint: string; // a description for people
+  text: string; // the text that replaces the word
+  hint: string; // a description for the user
 }
 
 export interface Completion {
@@ -31,13 +31,13 @@ const kWords = new Set([
 ]);
 const kMostSuggestions = 8;
 
-/** A layer's or column's slug as an expression names it. */
+/** Returns the slug of a layer or column as it is written in an expression. */
 export const nameInText = (slug: string): string =>
   /^[a-z_]/.test(slug) && !kWords.has(slug) ? slug : `"${slug}"`;
 
 /**
- * Returns suggestions that start with the word before the caret, then those of which a part does;
- * none without a word, or within a quoted text.
+ * Returns the suggestions that start with the word before the caret, then those with a part that
+ * starts with it. Returns no suggestions without a word, or inside a quoted text.
  */
 export function complete(text: string, caret: number, all: readonly Suggestion[]): Completion {
   const before = text.slice(0, caret);
@@ -55,8 +55,8 @@ export function complete(text: string, caret: number, all: readonly Suggestion[]
 }
 
 /**
- * Splits the text into three parts around the wrong characters (Unicode code points); at the end of
- * the text the middle part is a space.
+ * Splits the text into the parts before, at and after the wrong characters (Unicode code points).
+ * At the end of the text, the middle part is a space.
  */
 export function markedAt(text: string, offset: number, length = 1): [string, string, string] {
   const characters = [...text];
@@ -67,29 +67,29 @@ export function markedAt(text: string, offset: number, length = 1): [string, str
   ];
 }
 
-/** The place of a mistake in a text, in code points, and what would correct it. */
+/** The position of a mistake in a text, in code points, and suggested corrections. */
 export interface Mistake {
   offset: number;
   length?: number | undefined;
   suggestions?: readonly string[] | undefined;
 }
 
-/** The text with a suggestion in place of the wrong characters. */
+/** Replaces the wrong characters by a suggestion. */
 export function corrected(text: string, { offset, length = 0 }: Mistake, by: string): string {
   const characters = [...text];
   return [...characters.slice(0, offset), by, ...characters.slice(offset + length)].join("");
 }
 
-/** A class that a condition can name only by its number. */
+/** A class of a layer. A condition can refer to a class only by its number. */
 export interface NamedClass {
-  layer: string; // as the text names it
+  layer: string; // as written in the text
   value: number;
   label: string;
 }
 
 /**
- * For a class's name that is compared with its layer, as in damage = 'Flaking': the numbers of the
- * classes with that name, or else with a name that begins alike.
+ * Finds the classes for a quoted name that a condition compares with a layer, as in damage =
+ * 'Flaking'. Returns the classes with that name, or otherwise those with a similar beginning.
  */
 export function classNumbers(
   text: string,

@@ -1,5 +1,5 @@
-// Measured figures: the options of a figure and the request to the server. The content of the
-// figure is that of a named view, or of this person's view.
+// Figures to scale: the options of a figure and the request to the server. A figure shows a saved
+// view or the user's current view.
 
 import { readNumber, typedNumber } from "../core/locale";
 import type {
@@ -22,47 +22,47 @@ export const kDirections: readonly FigureDirection[] = [
 export const kFormats: readonly FigureFormat[] = ["pdf", "svg", "png", "tiff"];
 export const kPapers = ["a5", "a4", "a3"] as const;
 export const kOrientations = ["portrait", "landscape"] as const;
-/** 5 means 1 : 5. */
+/** The offered scales. 5 means 1 : 5. */
 export const kScales: readonly number[] = [1, 2, 2.5, 5, 10, 20, 25, 50, 100, 200, 250, 500];
 export const kResolutions: readonly number[] = [150, 300, 600];
 export const kScaleRange = { least: 0.01, most: 1_000_000 };
 export const kDpiRange = { least: 50, most: 600 };
-/** Dots per inch at which a sheet is about 700 pixels wide, enough for a preview. */
+/** The resolution in dots per inch at which a sheet is about 700 pixels wide, for the preview. */
 const kPreviewDpi = { a5: 100, a4: 80, a3: 60 };
 
 export type Paper = (typeof kPapers)[number];
 export type Orientation = (typeof kOrientations)[number];
 /**
- * The camera of the person or of the named view, a direction along an axis, or perpendicular to a
+ * The direction of a figure: the camera of the current or saved view, an axis, or the normal of a
  * picked face.
  */
 export type FigureFrom = "camera" | FigureDirection | "face";
 
-/** Options that persist from one figure to the next. */
+/** Options that are kept from one figure to the next. */
 export interface FigureChoices {
   from: FigureFrom;
-  scale: number | null; // null: the largest scale at which the whole content fits the sheet
+  scale: number | null; // null for the largest scale that fits the sheet
   paper: Paper;
-  orientation: Orientation | null; // null: the orientation with room for the larger scale
+  orientation: Orientation | null; // null for the one with the larger scale
   dpi: number;
   format: FigureFormat;
   legend: boolean;
 }
 
-/** Texts on the sheet; empty: the server's default. */
+/** Texts on the sheet. If a text is empty, the server uses its default. */
 export interface FigureWords {
   title: string;
   caption: string;
   credit: string;
 }
 
-/** A place on the surface that the figure shows from the front, in world coordinates. */
+/** A point on the surface that the figure shows from the front, in world coordinates. */
 export interface Face {
   center: Point3;
   normal: Point3;
 }
 
-/** Camera, layers, surface images and light, or a named view with them. */
+/** The camera, layers, surface images and light, or a saved view with them. */
 export type FigureShown = ViewContent | { view: string };
 
 export const usualFigure = (): FigureChoices => ({
@@ -83,8 +83,8 @@ export const isDpi = (value: unknown): value is number =>
   (value as number) <= kDpiRange.most;
 
 /**
- * Reads the choices from the browser's storage, which may be from another version of the page or
- * invalid. An invalid choice becomes the default.
+ * Reads choices from the browser's storage. They may be invalid or from another version of the
+ * page. The default replaces an invalid choice.
  */
 export function figureChoices(kept: unknown): FigureChoices {
   const usual = usualFigure();
@@ -102,7 +102,7 @@ export function figureChoices(kept: unknown): FigureChoices {
   };
 }
 
-/** Builds the request; null: the person has yet to pick a face. */
+/** Builds the request. Returns null if the user has not picked the required face yet. */
 export function figureRequest(
   shown: FigureShown,
   { from, scale, orientation, ...choices }: FigureChoices,
@@ -126,14 +126,14 @@ export function figureRequest(
   };
 }
 
-/** The same sheet as a small picture. */
+/** Requests the same sheet as a small image. */
 export const previewRequest = (request: FigureRequest): FigureRequest => ({
   ...request,
   format: "png",
   dpi: kPreviewDpi[request.paper ?? "a4"],
 });
 
-/** Parses a scale in usual forms, "1 : 40", "2:1" or only 40; NaN for anything else. */
+/** Parses a scale such as "1 : 40", "2:1" or 40. Returns NaN for any other text. */
 export function readScale(typed: string): number {
   const parts = typed.split(":").map(readNumber);
   const [onPaper, inWorld] = parts.length === 1 ? [1, parts[0]!] : [parts[0]!, parts[1]!];
@@ -141,7 +141,7 @@ export function readScale(typed: string): number {
   return isScale(scale) ? scale : Number.NaN;
 }
 
-/** "1 : 40", "2 : 1". */
+/** Formats a scale, such as "1 : 40" or "2 : 1". */
 export function scaleText(scale: number): string {
   const number = (value: number): string => typedNumber(Number(value.toPrecision(6)));
   return scale < 1 ? `${number(1 / scale)} : 1` : `1 : ${number(scale)}`;

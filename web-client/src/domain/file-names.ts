@@ -1,6 +1,8 @@
-// Names derived from the names of files.
+// Derives names from file names.
 
-/** A model's name from its file's: "statue_nefertiti_70k.ply" → "statue nefertiti 70k". */
+/**
+ * Derives a model's name from its file name: "statue_nefertiti_70k.ply" → "statue nefertiti 70k".
+ */
 export function nameOfFile(filename: string): string {
   const stem = filename
     .replace(/\.[a-z0-9]{1,5}$/i, "")

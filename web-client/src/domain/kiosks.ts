@@ -1,10 +1,11 @@
-// The state of a kiosk's link, as far as the page can determine it.
+// Determines the state of a kiosk's link.
 
 import type { Kiosk } from "../core/protocol.gen";
 
 /**
- * A kiosk reports every half minute, and the server keeps the time of its last report to the
- * minute. A kiosk without a report for this time shows nothing, or has no network.
+ * The time after the last report from which a kiosk counts as silent. A kiosk sends a report every
+ * half minute. The server stores the time of the last report to the minute. A silent kiosk shows
+ * nothing, or has no network.
  */
 export const kSilentMs = 3 * 60_000;
 

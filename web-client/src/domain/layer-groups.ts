@@ -1,5 +1,5 @@
-// Groups of layers in the list of layers. A group is shown where its topmost layer is, also if
-// other layers are drawn between its own.
+// Groups of layers in the list of layers. The list shows a group at the position of its topmost
+// layer, even if other layers are drawn between the group's layers.
 
 import { plainText } from "../core/search";
 
@@ -9,12 +9,12 @@ interface Grouped {
 }
 
 export interface LayerGroup<L extends Grouped> {
-  /** Null: layers without a group. */
+  /** Null for layers without a group. */
   name: string | null;
   layers: L[];
 }
 
-/** `layers`: top to bottom. */
+/** Groups layers, which are ordered from top to bottom. */
 export function groupsOf<L extends Grouped>(layers: readonly L[]): LayerGroup<L>[] {
   const groups: LayerGroup<L>[] = [];
   for (const layer of layers) {
@@ -26,20 +26,23 @@ export function groupsOf<L extends Grouped>(layers: readonly L[]): LayerGroup<L>
   return groups;
 }
 
-/** The names of all groups, in alphabetical order. */
+/** Returns the names of all groups, in alphabetical order. */
 export const groupNames = (layers: readonly Grouped[]): string[] =>
   [...new Set(layers.flatMap(({ group }) => group ?? []))].sort((a, b) => a.localeCompare(b));
 
-/** The group that has this name in other letters or accents, else the name without blanks. */
+/**
+ * Returns the group whose name matches the text, ignoring case and accents. If no group matches,
+ * returns the trimmed text.
+ */
 export function groupCalled(text: string, layers: readonly Grouped[]): string {
   const wanted = text.trim();
   return groupNames(layers).find((name) => plainText(name) === plainText(wanted)) ?? wanted;
 }
 
 /**
- * The layers from top to bottom after `layer` moved to `index` of the list without it. Only this
- * layer changes its place among the others: it follows a layer of its group that is listed above,
- * else it precedes the one that is listed below.
+ * Returns the layers from top to bottom after `layer` was moved to `index` in the list without it.
+ * The order of the other layers does not change. The layer follows the layer listed above it if
+ * both are in the same group. Otherwise it precedes the layer listed below it.
  */
 export function withMoved<L extends Grouped>(top: readonly L[], layer: L, index: number): L[] {
   const listed = groupsOf(top)
@@ -54,7 +57,7 @@ export function withMoved<L extends Grouped>(top: readonly L[], layer: L, index:
   let at = others.length;
   if (above && isWith(above)) at = others.indexOf(above) + 1;
   else if (below) at = others.indexOf(below);
-  // At the top of its group it stays where the group is listed.
+  // If the layer becomes the top of its group, the group keeps its position in the list.
   if (layer.group && !isWith(above) && isWith(below) && isWith(top[before]))
     at = Math.min(at, before);
   others.splice(at, 0, layer);
@@ -62,8 +65,9 @@ export function withMoved<L extends Grouped>(top: readonly L[], layer: L, index:
 }
 
 /**
- * The place of a layer one step up (-1) or down (1) in the list without it. It stays in its group;
- * a layer without a group passes over whole groups. Null: it is the first or last one.
+ * Returns the index of a layer after one step up (-1) or down (1), in the list without the layer. A
+ * layer stays in its group. A layer without a group moves past whole groups. Returns null if no
+ * step in this direction is possible.
  */
 export function placeAfterStep<L extends Grouped>(
   groups: readonly LayerGroup<L>[],

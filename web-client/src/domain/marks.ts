@@ -1,4 +1,4 @@
-// Lines and points of records on models, as cells of columns of these kinds store them.
+// Lines and points of records on models. Cells of line and point columns store them.
 
 import { formatPlace, typedNumber } from "../core/locale";
 import { formatLength, metresPer } from "./measure";
@@ -16,11 +16,11 @@ export const markColumns = (table: Pick<Table, "columns">, kind: MarkKind): Colu
 export const isListOfMarks = (value: CellValue | undefined): value is Mark[] =>
   Array.isArray(value) && typeof value[0] === "object";
 
-/** The marks of a cell; none for values of other kinds. */
+/** Returns the marks in a cell. Values of other kinds have no marks. */
 export const marksOf = (value: CellValue | undefined): Mark[] =>
   isListOfMarks(value) ? value : [];
 
-/** The length from place to place, in the unit of the model that it lies on. */
+/** Returns the length of a mark along its points, in the unit of its model. */
 export function markLength({ coordinates }: Pick<Mark, "coordinates">): number {
   return coordinates
     .slice(1)
@@ -28,9 +28,9 @@ export function markLength({ coordinates }: Pick<Mark, "coordinates">): number {
 }
 
 export interface MarkSummary {
-  here: number; // on the model
-  elsewhere: number; // on others
-  metres: number; // of lines on the model
+  here: number; // number of marks on the model
+  elsewhere: number; // number of marks on other models
+  metres: number; // length of the lines on the model
 }
 
 export function summaryOf(
@@ -47,21 +47,21 @@ export function summaryOf(
   };
 }
 
-/** "1.24 m" for a line; "12.1, 4.25, 30" in the model's unit for a point. */
+/** Describes a mark: "1.24 m" for a line, or "12.1, 4.25, 30" in the model's unit for a point. */
 export function describeMark(mark: Mark, kind: MarkKind, model: Pick<Model, "unit">): string {
   if (kind === "line") return formatLength(markLength(mark) * metresPer(model.unit));
   return `${formatPlace(mark.coordinates[0]!.map((number) => typedNumber(Number(number.toPrecision(5)))))} ${model.unit}`;
 }
 
-// multiple of the distance between two neighboring pixels where the surface faces the camera:
-// reached where the angle to the surface is at most 1.5°
+// The longest step, as a multiple of the distance between neighboring pixels on a surface that
+// faces the camera. Steps are longer only at viewing angles of at most 1.5° to the surface.
 const kLongestStep = 40;
 
 /**
- * Splits a line on a surface, given as the results at its steps, into parts. A part ends where a
- * step hit nothing, and where the next place lies far in front of or behind the last one, as at the
- * edge of a handle. `stepAt`: the distance of two steps at a place where the surface faces the
- * camera, which is the length of a pixel there.
+ * Splits a line on a surface, given as the result at each step, into parts. A part ends at a step
+ * without a hit. It also ends if the next point lies far in front of or behind the last one, as at
+ * the edge of a handle. `stepAt` returns the length of a pixel at a point of a surface that faces
+ * the camera. This is the distance between two steps there.
  */
 export function partsOfLine<T>(
   found: readonly (T | null)[],
@@ -82,8 +82,8 @@ export function partsOfLine<T>(
 }
 
 /**
- * Removes places that are no farther from the remaining line than the tolerance there (Ramer 1972,
- * Douglas and Peucker 1973).
+ * Removes points whose distance from the remaining line is at most the tolerance at the point
+ * (Ramer 1972, Douglas and Peucker 1973).
  */
 export function simplifyLine(
   places: readonly MarkPlace[],

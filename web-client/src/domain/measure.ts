@@ -1,11 +1,11 @@
-// Lengths, areas and numbers in readable form, and the smallest detail that a layer can hold.
+// Formats lengths, areas and numbers, and computes the smallest detail that a layer can store.
 
 import { formatCount, pageLocale, withDecimalSign } from "../core/locale";
 import type { Atlas, Model, Unit } from "../core/types";
 
 export const metresPer = (unit: Unit): number => ({ mm: 0.001, cm: 0.01, m: 1 })[unit];
 
-/** About three significant digits, without an exponent for everyday sizes. */
+/** Formats a number with about three significant digits. Common magnitudes have no exponent. */
 export function formatNumber(value: number, digits = 3): string {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
@@ -15,7 +15,7 @@ export function formatNumber(value: number, digits = 3): string {
   return value.toLocaleString(pageLocale(), { maximumFractionDigits: Math.min(decimals, 20) });
 }
 
-/** The unit that suits a length, and the number of these units in a meter. */
+/** Returns a suitable unit for a length, and the number of these units in a meter. */
 export function lengthUnit(metres: number): { unit: string; perMetre: number } {
   const size = Math.abs(metres);
   if (size > 0 && size < 1e-5) return { unit: "µm", perMetre: 1e6 };
@@ -37,18 +37,18 @@ function areaText(squareMetres: number, digits: number): string {
   return `${formatNumber(squareMetres, digits)} m²`;
 }
 
-/** A length in meters with the unit that suits its size: "0.8 mm", "12.4 cm", "3.1 m". */
+/** Formats a length in meters with a suitable unit, such as "0.8 mm", "12.4 cm" or "3.1 m". */
 export const formatLength = (metres: number): string =>
   lengthText(metres, Math.abs(metres) < 0.01 ? 2 : 3);
 export const formatArea = (squareMetres: number): string => areaText(squareMetres, 3);
 
 export const kMeasuredDigits = 4;
-/** A measured length: "12.43 cm". */
+/** Formats a measured length, such as "12.43 cm". */
 export const measuredLength = (metres: number): string => lengthText(metres, kMeasuredDigits);
 export const measuredArea = (squareMetres: number): string =>
   areaText(squareMetres, kMeasuredDigits);
 
-/** Three sides with one unit, for "105 × 99 × 91 mm". */
+/** Formats the lengths of three sides with one unit, such as "105 × 99 × 91 mm". */
 export function formatSize(sidesInMetres: readonly number[]): string {
   const largest = Math.max(...sidesInMetres);
   const [factor, unit] = largest < 1 ? [1000, "mm"] : largest < 10 ? [100, "cm"] : [1, "m"];
@@ -60,8 +60,8 @@ export function formatSize(sidesInMetres: readonly number[]): string {
 }
 
 /**
- * The unit and up axis that the page suggests: while they are unconfirmed, the server's proposal
- * for each one that the importer did not set.
+ * Returns the unit and up axis that the page suggests. Until a user confirms them, the server's
+ * proposal applies to each value that was not set at the import.
  */
 export function likelyScale(
   model: Pick<Model, "unit" | "unit_assumed" | "scale_verified" | "up" | "proposal">,
@@ -73,7 +73,7 @@ export function likelyScale(
     up: model.up === kUpWithoutProposal ? proposal.up : model.up,
   };
 }
-// of models whose importer set no up axis and requested no proposal
+// The up axis of models for which the import set no up axis and requested no proposal.
 const kUpWithoutProposal = "z";
 
 export function formatBytes(bytes: number): string {
@@ -84,10 +84,10 @@ export function formatBytes(bytes: number): string {
 
 export interface DetailChoice {
   resolution: number;
-  detailM: number; // side of the smallest spot that is paintable everywhere on the surface
+  detailM: number; // side of the smallest area that can be painted everywhere
 }
 
-/** The choices for "smallest detail" of a new layer, coarsest first. */
+/** Returns the choices for the "smallest detail" of a new layer, the coarsest first. */
 export function detailChoices(
   atlas: Pick<Atlas, "lowest_resolution" | "texel_area_max_m2" | "texel_sizes">,
 ): DetailChoice[] {
@@ -108,7 +108,7 @@ export function detailChoices(
   return choices;
 }
 
-/** A round length (1, 2 or 5 × 10ⁿ meters) of at most `maxPx` pixels. */
+/** Returns a round length (1, 2 or 5 × 10ⁿ meters) of at most `maxPx` pixels. */
 export function scaleBar(
   metresPerPx: number,
   maxPx: number,
@@ -120,7 +120,7 @@ export function scaleBar(
   return { metres, px: metres / metresPerPx, label: formatLength(metres) };
 }
 
-/** Round numbers between the limits, at most `most` of them. */
+/** Returns at most `most` round numbers between the limits. */
 export function ticks(min: number, max: number, most = 5): number[] {
   const span = max - min;
   if (!(span > 0)) return [min];

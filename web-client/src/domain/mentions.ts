@@ -1,4 +1,4 @@
-// Completion of names after an @ in a comment.
+// Completes names after an @ in a comment.
 
 import { plainText } from "../core/search";
 import type { ProjectPerson } from "../core/protocol.gen";
@@ -12,15 +12,17 @@ export interface MentionBegun {
 const kBegun = /(?<![A-Za-z0-9._@-])@([A-Za-z0-9._@-]*)$/;
 const kMostPeople = 6;
 
-/** Null: the caret is not in a mention; the @ of a mail address is not one. */
+/**
+ * Returns the mention at the caret, or null. The @ of an email address does not start a mention.
+ */
 export function mentionBegun(text: string, caret: number): MentionBegun | null {
   const found = kBegun.exec(text.slice(0, caret));
   return found ? { at: found.index, word: found[1]! } : null;
 }
 
 /**
- * Finds people whose user name starts with the word, then those with a part of the user or full
- * name that does, ignoring case and accents.
+ * Finds users whose user name starts with the word. They are followed by users whose user name or
+ * full name contains a part that starts with it. Ignores case and accents.
  */
 export function peopleLike(people: readonly ProjectPerson[], word: string): ProjectPerson[] {
   const wanted = plainText(word);

@@ -7,7 +7,7 @@ export interface Rgba {
   r: number;
   g: number;
   b: number;
-  a: number; // 0…255, like the others
+  a: number; // 0…255, like r, g and b
 }
 
 export function parseColor(text: string): Rgba {
@@ -21,10 +21,10 @@ export const cssColor = (text: string): string => {
   return `rgb(${r} ${g} ${b} / ${(a / 255).toFixed(3)})`;
 };
 
-/** #rrggbb for an <input type="color">, which has no opacity. */
+/** Returns #rrggbb for an <input type="color">, which has no opacity. */
 export const opaqueColor = (text: string): string => text.slice(0, 7);
 
-/** A CSS gradient of a linear or stepped palette from its lower to its upper limit. */
+/** Returns the CSS gradient of a linear or stepped palette, from its lower to its upper limit. */
 export function cssGradient(palette: Palette, direction = "to right"): string {
   const span = palette.max - palette.min || 1;
   const points = [...palette.points].sort((a, b) => a.at - b.at);
@@ -45,7 +45,9 @@ export function pointOf(palette: Palette, value: number): PalettePoint | undefin
   return palette.points.find((point) => point.at === value);
 }
 
-/** The color of a class that the palette does not list, the same as on the server. */
+/**
+ * Returns the color of a class that the palette does not list. The server computes the same color.
+ */
 export function generatedColor(key: number): string {
   const hash = Math.imul(key, 2654435761) >>> 0;
   const hue = ((hash >>> 8) / 16777216) * 6;
@@ -60,19 +62,19 @@ export function generatedColor(key: number): string {
   return `#${channel(5)}${channel(3)}${channel(1)}ff`;
 }
 
-// for records without a value in the coloring column, as the server draws them
+// The server's color of records without a value in the coloring column.
 export const kNoValueColor = "#9a9a9a80";
 
 /**
- * The color of a value; null for a palette without colors, and where the color depends on the
- * record behind the key.
+ * Returns the color of a value. Returns null if the palette has no colors, or if the color depends
+ * on the record with this key.
  */
 export function colorOf(palette: Palette, value: number): string | null {
   if (palette.column) return null;
   return colorOfNumber(palette, value);
 }
 
-/** The color of a record, by the coloring column or by its key. */
+/** Returns the color of a record, from the coloring column or from its key. */
 export function recordColor(
   palette: Palette,
   record: { key: number; values: Record<string, CellValue> },
@@ -119,14 +121,14 @@ export const kTypeOfPurpose: Readonly<Record<LayerPurpose, ValueType>> = {
   records: "u32",
 };
 
-/** The purpose of a layer, as the create-layer dialog names it. */
+/** Returns the purpose of a layer, as named in the dialog that creates layers. */
 export function purposeOf(layer: Pick<Layer, "kind" | "palette">): LayerPurpose {
   if (layer.kind === "database") return "records";
   if (layer.palette.mode !== "categorical") return "measurement";
   return layer.palette.points.length === 1 ? "presence" : "classes";
 }
 
-// Colors of Okabe and Ito and two more, distinguishable for color-blind people.
+// The colors of Okabe and Ito and two others. Users with color blindness can distinguish them.
 export const kClassColors = [
   "#e69f00ff",
   "#56b4e9ff",
@@ -146,10 +148,10 @@ export const presencePalette = (label: string, color: string): Palette => ({
   points: [{ at: 1, color, label }],
 });
 
-/** A palette without points: each key has the color that is generated from it. */
+/** Returns a palette without points. The color of each key is generated from the key. */
 export const recordPalette = (): Palette => ({ mode: "categorical", min: 0, max: 1, points: [] });
 
-/** All members of a point, with defaults for absent ones. */
+/** Returns all members of a point, with defaults for absent members. */
 const told = ({
   at,
   color,
@@ -169,7 +171,7 @@ export function samePalette(a: Palette, b: Palette): boolean {
   );
 }
 
-/** The same colors for another range. */
+/** Returns the palette with the same colors and another range. */
 export function withRange(palette: Palette, min: number, max: number): Palette {
   const span = palette.max - palette.min || 1;
   const points = palette.points.map((point) => ({
@@ -179,7 +181,7 @@ export function withRange(palette: Palette, min: number, max: number): Palette {
   return { ...palette, min, max, points };
 }
 
-/** The color with its opacity multiplied by `share`. */
+/** Multiplies the opacity of a color by `share`. */
 function withShare(color: string, share: number): string {
   const { a } = parseColor(color);
   return `${opaqueColor(color)}${Math.round(a * share)
@@ -187,7 +189,10 @@ function withShare(color: string, share: number): string {
     .padStart(2, "0")}`;
 }
 
-/** A square of a legend, filled as on the surface. Measures as in shaders/shared/shade.h. */
+/**
+ * Returns the style of a legend's square, which is filled as on the surface. The measures are those
+ * of shaders/shared/shade.h.
+ */
 export function swatchStyle({
   color,
   pattern = "solid",
@@ -212,7 +217,7 @@ export function swatchStyle({
   return { background: shown };
 }
 
-/** Points for values of a column, in the order of the colors. */
+/** Returns a palette for the values of a column, in the order of `classes`. */
 export function categoryPalette(
   column: string,
   classes: { value: string; label: string; color: string }[],
@@ -231,7 +236,7 @@ export function categoryPalette(
   };
 }
 
-/** Classes of numbers, by their lower limits. */
+/** Returns a palette for classes of numbers, given by their lower limits. */
 export function graduatedPalette(
   column: string,
   classes: { from: number; to: number }[],
@@ -251,8 +256,8 @@ export function graduatedPalette(
 }
 
 /**
- * From low to high, distinguishable with every color vision and in grayscale: viridis, and two
- * ramps for one increasing quantity.
+ * Color ramps from low to high: viridis, and two ramps for one increasing quantity. Their colors
+ * can be distinguished with any color vision and in grayscale.
  */
 export const kRamps = {
   viridis: [
@@ -291,7 +296,7 @@ export const kRamps = {
 } as const;
 export type Ramp = keyof typeof kRamps;
 
-/** `count` colors, evenly spaced on the ramp. */
+/** Returns `count` colors that are evenly spaced on the ramp. */
 export function rampColors(ramp: Ramp, count: number): string[] {
   const stops = kRamps[ramp];
   const scale: Palette = {

@@ -1,23 +1,23 @@
-// Participants of the model: groups connections by person, in the order and with the colors that
-// the page shows.
+// Groups the connections to the open model by user, in the order and with the colors that the page
+// shows.
 
 import type { PresenceUser } from "../core/protocol.gen";
 import type { Vec3 } from "../math/vector";
 
-/** A person, with all windows in which they have the model open. */
+/** A user, with all windows in which this user has the model open. */
 export interface PersonHere {
   user: string;
-  full_name: string; // empty: the account has none
+  full_name: string; // empty if the account has no full name
   color: string;
   own: boolean;
-  /** A connection from another window than this one, which can be followed; null: none. */
+  /** A connection from another window, which can be followed. Null if there is no other window. */
   viewer: PresenceUser | null;
   leading: boolean;
-  /** Sessions that the person follows in any of their windows. */
+  /** The sessions that the user follows in any window. */
   following: string[];
 }
 
-/** Each person once: first the person at this window, then by time of joining. */
+/** Returns each user once: first the user of this window, then the others by time of joining. */
 export function peopleHere(viewers: readonly PresenceUser[], ownSession: string): PersonHere[] {
   const own = viewers.find(({ session }) => session === ownSession)?.name;
   const byName = new Map<string, PresenceUser[]>();
@@ -42,11 +42,14 @@ export function peopleHere(viewers: readonly PresenceUser[], ownSession: string)
   return people.sort((a, b) => Number(b.own) - Number(a.own));
 }
 
-/** Other people who follow one of these sessions. */
+/** Returns the users who follow this session. */
 export const followersOf = (people: readonly PersonHere[], session: string): PersonHere[] =>
   people.filter(({ following }) => following.includes(session));
 
-/** Whether following `session` would create a cycle to this window, which the server refuses. */
+/**
+ * Whether following `session` would create a cycle that includes this window. The server refuses
+ * cycles.
+ */
 export function leadsBack(
   viewers: readonly PresenceUser[],
   session: string,
@@ -65,8 +68,8 @@ const kDarkInk = "#20292a";
 const kLightInk = "#ffffff";
 
 /**
- * The ink that is most readable on a color (#rrggbb): the one with the larger contrast ratio of
- * WCAG 2.
+ * Returns the text color that is most readable on a color (#rrggbb): the one with the larger
+ * contrast ratio according to WCAG 2.
  */
 export const inkOn = (color: string): string =>
   contrast(color, kLightInk) >= contrast(color, kDarkInk) ? kLightInk : kDarkInk;

@@ -3,21 +3,18 @@
 import type { Me, MemberGroup, Person, ProjectRole, Role } from "../core/protocol.gen";
 import { kProjectRoles, kRoles } from "../core/types";
 
-export const kLeastPasswordLength = 10; // characters, as the server counts them
+export const kLeastPasswordLength = 10; // in characters, as counted by the server
 
-/**
- * A person as answers of the server describe them: user name, full name and the color of their
- * account.
- */
+/** A user as in the server's responses: the user name, full name and color of the account. */
 export interface Named {
   user: string;
   full_name?: string;
   color?: string;
 }
 
-/** One or two letters for a person. */
+/** Returns one or two letters for a user. */
 export function initials({ user, full_name: fullName = "" }: Named): string {
-  // "(recorded)" is no name
+  // "(recorded)" is not a name
   const named = fullName.split(/\s+/).filter((word) => /^[\p{L}\p{N}]/u.test(word));
   const words =
     named.length > 0 ? named : user.split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
@@ -30,30 +27,34 @@ export function initials({ user, full_name: fullName = "" }: Named): string {
 }
 
 /**
- * The accessible name of a control, for screen readers and voice control: it contains the visible
- * text (WCAG 2.5.3).
+ * Returns the accessible name of a control, for screen readers and voice control. It contains the
+ * visible text (WCAG 2.5.3).
  */
 export function nameWith(name: string, seen: string): string {
   const said = seen.trim();
   return name.toLocaleLowerCase().includes(said.toLocaleLowerCase()) ? name : `${name} (${said})`;
 }
 
-/** The name of a person that other people see. */
+/** Returns the displayed name of a user. */
 export const called = ({ user, full_name: fullName = "" }: Named): string =>
   fullName.trim() || user;
 
 /**
- * Roles that a person with the role `own` can assign, the lowest first: nobody can assign owner.
+ * Returns the roles that a user with the role `own` can assign, the lowest first. No user can
+ * assign the role owner.
  */
 export const rolesToGive = (own: Role): Role[] =>
   kRoles.slice(0, Math.min(kRoles.indexOf(own), kRoles.indexOf("administrator")) + 1);
 /**
- * Roles that a token of this person can have, the lowest first. The server decides on a guest's
- * rights in projects.
+ * Returns the roles that a token of this user can have, the lowest first. The server decides on a
+ * guest's rights in projects.
  */
 export const rolesOfTokens = (own: Role): Role[] =>
   own === "guest" ? [...kProjectRoles] : kRoles.slice(1, kRoles.indexOf(own) + 1);
-/** The same for a token of one project, in which the person has this role. */
+/**
+ * Returns the same for a token that is limited to one project. `own` is the user's role in that
+ * project.
+ */
 export const rolesOfTokensIn = (own: Role): Role[] =>
   kProjectRoles.filter((role) => kRoles.indexOf(role) <= kRoles.indexOf(own));
 
@@ -62,7 +63,7 @@ export type PasswordMistake = {
   kind: "too_short" | "is_the_name" | "differs";
 };
 
-/** Checks a new password for the server's rules and for typing mistakes. */
+/** Checks whether a new password follows the server's rules and has no typing mistakes. */
 export function passwordMistake(
   user: string,
   password: string,
@@ -74,7 +75,8 @@ export function passwordMistake(
   return password === repeat ? null : { field: "repeat", kind: "differs" };
 }
 
-// The first match counts: a browser also names its ancestors.
+// The first match applies, because the user agent of a browser also contains the names of older
+// browsers.
 const kBrowsers: [RegExp, string][] = [
   [/\bEdg(?:e|A|iOS)?\//, "Edge"],
   [/\b(?:OPR|Opera)\//, "Opera"],
@@ -95,8 +97,8 @@ const kSystems: [RegExp, string][] = [
 ];
 
 /**
- * Parses a user agent: the browser's common name and its operating system; each is empty where it
- * is unknown.
+ * Parses a user agent. Returns the common name of the browser and its operating system. An unknown
+ * name is empty.
  */
 export function browserOf(agent: string): { browser: string; system: string } {
   const named = (list: [RegExp, string][]): string =>
@@ -110,8 +112,8 @@ export function browserOf(agent: string): { browser: string; system: string } {
 }
 
 /**
- * Whether `me` may change the account: nobody can change their own account here, an equal or higher
- * role, or the owner.
+ * Whether `me` may change the account. Users cannot change their own account here, accounts with
+ * the same or a higher role, or the owner's account.
  */
 export const mayChange = (
   me: Pick<Me, "user" | "role">,
@@ -122,8 +124,8 @@ export const mayChange = (
   kRoles.indexOf(person.role) < kRoles.indexOf(me.role);
 
 /**
- * The highest role that these groups give a person in a project, and the groups that give it; null:
- * the person is in none of them.
+ * Returns the highest role that these groups give a user in a project, and the groups that give it.
+ * Returns null if the user is in none of these groups.
  */
 export function roleByGroups(
   given: readonly MemberGroup[],
@@ -139,7 +141,7 @@ export function roleByGroups(
 }
 
 /**
- * Finds people by words: each word must be the start of a word in the name, or in the texts that
+ * Finds users by words. Each word must be the start of a word in the name or in the text that
  * `alsoOf` returns, ignoring case.
  */
 export function findPeople(

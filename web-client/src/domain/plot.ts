@@ -1,29 +1,29 @@
-// Layout of a curve and its axes in a plot: round ticks, units, and one scale for both axes on
-// request. Independent of how the plot is drawn.
+// Computes the layout of a curve and its axes in a plot: round ticks, units, and optionally one
+// scale for both axes. Other code draws the plot.
 
 import { formatFixed } from "../core/locale";
 import { formatNumber, lengthUnit, ticks } from "./measure";
 
 export interface PlotPoint {
   x: number;
-  /** Null: unknown; the curve has a gap there. */
+  /** Null if unknown. The curve has a gap at this point. */
   y: number | null;
 }
 
 export interface PlotOf {
-  /** Parts of the curve, sorted by x; the curve is broken between them. */
+  /** The parts of the curve, sorted by x. The curve has breaks between them. */
   parts: readonly (readonly PlotPoint[])[];
-  /** The unit of y; null: x and y are both lengths in meters. */
+  /** The unit of y. Null if x and y are both lengths in meters. */
   yUnit: string | null;
-  /** Equal scale on both axes, for lengths: slopes keep their angle. */
+  /** Whether both axes have the same scale, if y is a length. Slopes then keep their angles. */
   equal: boolean;
-  /** Size of the whole plot in pixels. */
+  /** The size of the whole plot in pixels. */
   width: number;
   height: number;
 }
 
 export interface PlotTick {
-  at: number; // pixel
+  at: number; // position in pixels
   label: string;
 }
 
@@ -41,25 +41,28 @@ export interface Plot {
   bottom: number;
   x: PlotAxis;
   y: PlotAxis;
-  /** SVG path data of each run without a gap. */
+  /** The SVG path data of each continuous run of points. */
   curves: readonly string[];
-  /** Positions of breaks in the curve without a gap between the parts, in pixels. */
+  /** The positions in pixels at which parts of the curve meet without a gap between them. */
   breaks: readonly number[];
   xAt(x: number): number;
   yAt(y: number): number;
-  /** The x at a pixel of the plot's width. */
+  /** Returns the x value at a horizontal pixel position. */
   xOf(pixel: number): number;
 }
 
 const kCharacterPx = 6.4; // width of a character in a tick label
 const kTickSpacePx = { x: 48, y: 22 };
 const kTopPx = 24; // room for the label of the y axis
-const kBottomPx = 38; // for ticks and the label of the x axis
+const kBottomPx = 38; // room for the ticks and the label of the x axis
 const kRightPx = 14;
-// range of heights divided by distance: anything flatter is noise and is not magnified into relief
+// The range of heights divided by the distance. A flatter curve is noise and is not magnified.
 const kLeastSlope = 1e-5;
 
-/** Round numbers between the limits, all with the number of decimals that they need. */
+/**
+ * Formats the numbers of ticks. All labels have the same number of decimals, as many as the numbers
+ * need.
+ */
 export function tickLabels(numbers: readonly number[]): string[] {
   const [first, second] = numbers;
   if (first === undefined) return [];
@@ -97,14 +100,15 @@ export function makePlot({ parts, yUnit, equal, width, height }: PlotOf): Plot {
   };
   const limitsOf = (left: number): { x: number; y: readonly [number, number] } => {
     if (!asHigh) return { x: xMax, y: [low, high] };
-    const scale = Math.min((right - left) / xMax, (bottom - top) / (high - low)); // px per meter
+    // pixels per meter
+    const scale = Math.min((right - left) / xMax, (bottom - top) / (high - low));
     const [middle, half] = [(low + high) / 2, (bottom - top) / scale / 2];
     return { x: (right - left) / scale, y: [middle - half, middle + half] };
   };
   let left = leftOf([low, high]);
   let limits = limitsOf(left);
   if (leftOf(limits.y) !== left) {
-    left = leftOf(limits.y); // the labels of the wider range may be longer
+    left = leftOf(limits.y); // the labels of a wider range may be longer
     limits = limitsOf(left);
   }
   const [yMin, yMax] = limits.y;
@@ -151,8 +155,8 @@ export function makePlot({ parts, yUnit, equal, width, height }: PlotOf): Plot {
 }
 
 /**
- * A range slightly larger than that of the numbers. Where they differ by less than `noise`, the
- * range is so large that the curve looks flat.
+ * Returns a range that is slightly larger than that of the numbers. If the numbers differ by less
+ * than `noise`, the range is so large that the curve looks flat.
  */
 function rangeOf(numbers: readonly number[], noise: number | null): [number, number] {
   let [min, max] = [Infinity, -Infinity];
@@ -179,7 +183,9 @@ function runsOf(part: readonly PlotPoint[]): { x: number; y: number }[][] {
   return runs;
 }
 
-/** A single point is visible as well, since its line has round ends. */
+/**
+ * Returns the path of a run. A run of one point is visible too, because its line has round ends.
+ */
 function pathOf(
   run: readonly { x: number; y: number }[],
   xAt: (x: number) => number,
@@ -189,7 +195,7 @@ function pathOf(
   return `M${points.join("L")}${points.length === 1 ? "h0.01" : ""}`;
 }
 
-/** The index of the nearest place; `xs` ascends. */
+/** Returns the index of the value in `xs` nearest to `x`. `xs` is in ascending order. */
 export function nearestIndex(xs: readonly number[], x: number): number {
   let [low, high] = [0, xs.length - 1];
   while (low < high) {

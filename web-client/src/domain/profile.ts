@@ -1,23 +1,26 @@
-// The surface along a line: prepares the server's answer for text and plot, with the distance along
-// the surface, the gaps in it, and a layer's values.
+// Prepares the server's profile of the surface along a line for text and plot. It computes the
+// distance along the surface, the gaps, and a layer's values.
 
 import { partsOfLine, simplifyLine } from "./marks";
 import type { ProfileSample } from "../core/protocol.gen";
 import { length, subtract, type Vec3 } from "../math/vector";
 
-/** A place on the surface. Lengths in the model's unit. */
+/** A point on the surface. Lengths are in the model's unit. */
 export interface ProfilePlace {
   along: number;
   place: Vec3;
   normal: Vec3 | null;
-  /** The value of the requested layer; null where it has none. */
+  /** The value of the requested layer at the point. Null if it has no value there. */
   value: number | null;
 }
 
-/** Continuous parts of a line on the surface, each with at least one place. */
+/** Continuous parts of a line on the surface, each with at least one point. */
 export type ProfileParts = readonly (readonly ProfilePlace[])[];
 
-/** A gap between two parts (see `partsOfLine`) adds nothing to the distances. */
+/**
+ * Splits samples of a line into parts. A gap between two parts (see `partsOfLine`) does not count
+ * towards the distance.
+ */
 export function profileParts(
   samples: readonly ProfileSample[],
   stepAt: (place: Vec3) => number,
@@ -44,11 +47,11 @@ export function profileParts(
   return parts;
 }
 
-/** The length along the surface, without the gaps. */
+/** Returns the length along the surface, without the gaps. */
 export const lengthOf = (parts: ProfileParts): number =>
   parts[parts.length - 1]?.at(-1)?.along ?? 0;
 
-/** Whether the line passes each of the places within the distance `reachAt`. */
+/** Whether the line passes each of these points within the distance that `reachAt` returns. */
 export const passesThrough = (
   parts: ProfileParts,
   places: readonly Vec3[],
@@ -61,8 +64,8 @@ export const passesThrough = (
   );
 
 /**
- * Keeps only the places that the plot needs: a removed place is no farther from the line than the
- * tolerance there.
+ * Keeps only the points that the plot needs. The distance of a removed point from the line is at
+ * most the tolerance at that point.
  */
 export function simplifyProfile(
   parts: ProfileParts,

@@ -1,5 +1,4 @@
-// Converts a picture to the shape of a brush. The server has the final result; this code previews
-// it.
+// Converts an image to a brush shape, for a preview. The server makes the final shape.
 
 export const kShapeSide = 256;
 
@@ -15,8 +14,8 @@ const luma = (data: Uint8ClampedArray, at: number): number =>
   0.2126 * data[at]! + 0.7152 * data[at + 1]! + 0.0722 * data[at + 2]!;
 
 /**
- * The most likely part: the opaque pixels; else a light shape on a dark background, or a dark shape
- * on a light one.
+ * Returns the most likely shape in the image. If some pixels are transparent, this is the opaque
+ * part. Otherwise it is the light part on a dark background, or the dark part on a light one.
  */
 export function likelyPart({ width, height, data }: Pixels): ShapePart {
   for (let at = 3; at < data.length; at += 4) if (data[at] !== 255) return "opaque";
@@ -33,8 +32,8 @@ export function likelyPart({ width, height, data }: Pixels): ShapePart {
 }
 
 /**
- * In place: opaque black in the shape, transparent elsewhere. Returns whether the shape has any
- * pixel.
+ * Overwrites the pixels: opaque black inside the shape, transparent outside. Returns whether the
+ * shape has any pixels.
  */
 export function toShape({ data }: Pixels, part: ShapePart): boolean {
   let any = false;
@@ -51,7 +50,7 @@ export function toShape({ data }: Pixels, part: ShapePart): boolean {
   return any;
 }
 
-/** The position of a picture in the square around it. */
+/** Returns the position of an image in the square around it. */
 export function inSquare(
   width: number,
   height: number,

@@ -1,9 +1,12 @@
-// Where the snapshots of a model are on the slider of its history.
+// The positions of a model's snapshots on the slider of its history.
 
 import type { Snapshot, Timeline } from "../core/protocol.gen";
 import { placeOfTime } from "./timeline";
 
-/** A mark of the slider: from its place it has room until the next one, as a share of the width. */
+/**
+ * A mark on the slider. `place` and `room` are fractions of the slider's width. `room` is the free
+ * width for the mark's name.
+ */
 export interface SnapshotMark {
   snapshot: Snapshot;
   place: number;
@@ -11,9 +14,12 @@ export interface SnapshotMark {
 }
 
 const kLeastRoom = 0.03;
-const kToLeft = 0.8; // names of later marks are at their left
+const kToLeft = 0.8; // later marks have their name on the left
 
-/** Marks of the snapshots whose state is in the shown time; where many are near, the first ones. */
+/**
+ * Returns the marks of the snapshots in the displayed time. Of marks that are too close together,
+ * only the first is returned.
+ */
 export function marksOf(timeline: Timeline, snapshots: readonly Snapshot[]): SnapshotMark[] {
   const { from, to } = timeline;
   if (from === undefined || to === undefined) return [];
@@ -31,7 +37,8 @@ export function marksOf(timeline: Timeline, snapshots: readonly Snapshot[]): Sna
     const isLeft = mark.place > kToLeft;
     const before = apart[index - 1];
     const after = apart[index + 1];
-    // A mark whose name is at its left shares the room with a name at the right of the one before.
+    // A mark with its name on the left shares the room with the previous mark if that has its name
+    // on the right.
     const share = before && before.place <= kToLeft ? 2 : 1;
     const room = isLeft
       ? (mark.place - (before?.place ?? 0)) / share

@@ -1,7 +1,7 @@
-// Projects a line that was drawn over the picture onto the surface where it began. The server
-// returns the place that each pixel of the drawing shows (`Step`). Where the drawing left the
-// surface for a short distance, as next to an edge, the line continues along the surface instead of
-// jumping to the background; where it cannot, it is cut.
+// Projects a line that a user drew over the frame onto the surface where it began. The server
+// returns the surface point at each pixel of the drawing (`Step`). The drawing may leave the
+// surface for a short distance, for example next to an edge. The line then continues along the
+// surface and does not jump to the background. If it cannot continue, it is cut.
 
 import type { Point } from "../net/stroke";
 import { markLength, simplifyLine } from "./marks";
@@ -9,8 +9,8 @@ import type { MarkPlace, ProfileSample } from "../core/protocol.gen";
 import { dot, length, subtract, type Vec3 } from "../math/vector";
 
 export interface Step {
-  at: Point; // in the picture
-  place: MarkPlace | null; // null: no surface
+  at: Point; // in the frame
+  place: MarkPlace | null; // null off the surface
   normal: Vec3 | null;
 }
 type Found = Step & { place: MarkPlace };
@@ -18,35 +18,37 @@ type Found = Step & { place: MarkPlace };
 type Run = Found[];
 
 /**
- * Lengths of a drawing: `pixelAt`: of a pixel at a place of the surface, in the model's unit;
- * `scale`: pixels of the picture per pixel of the screen.
+ * Lengths of a drawing. `pixelAt` returns the length of a pixel at a point of the surface, in the
+ * model's unit. `scale` is the number of frame pixels per screen pixel.
  */
 export interface Measures {
   pixelAt(place: MarkPlace): number;
   scale: number;
 }
 
-/** The nearest places of the surface along a straight line, in equal steps, including both ends. */
+/**
+ * Returns the nearest surface points along a straight line, in equal steps, including both ends.
+ */
 export type NearestAlong = (
   from: MarkPlace,
   to: MarkPlace,
   step: number,
 ) => Promise<readonly (MarkPlace | null)[]>;
 
-// In pixels of the picture, or in lengths of a pixel at the place.
+// In pixels of the frame, or in lengths of a pixel at the point.
 const kRelief = 6; // a step that is always accepted
-const kLongestStep = 80; // where the surface is seen at an angle of 0.7°
-const kDeepest = 40; // a jump that may be a part of the surface that another part hides
-const kSlope = 2; // slope of the surface across a gap, relative to the picture plane
-const kOffSurface = 0.2; // share of a step that may leave the surface at either end
+const kLongestStep = 80; // reached at a viewing angle of 0.7° to the surface
+const kDeepest = 40; // a jump that may be a hidden part of the surface
+const kSlope = 2; // slope of the surface across a gap, relative to the image plane
+const kOffSurface = 0.2; // fraction of a step that may be off the surface at either end
 // In pixels of the screen: the largest distance of the drawing from the edge that it follows, and
 // the longest gap without any surface.
 const kStrayPx = 16;
 const kSmallGapPx = 24;
 
 /**
- * The result at each pixel of a path, with its position: between two points the server takes equal
- * steps of at most one pixel.
+ * Returns the server's result at each pixel of a path, with its position. Between two points, the
+ * server makes equal steps of at most one pixel.
  */
 export function stepsAlong(path: readonly Point[], samples: readonly ProfileSample[]): Step[] {
   const at: Point[] = [path[0]!];
@@ -69,8 +71,8 @@ const apart = (a: Found, b: Found): number => length(subtract(a.place, b.place))
 const lastOf = <T>(list: readonly T[]): T => list[list.length - 1]!;
 
 /**
- * Whether the surface continues from one step to the next: they are near each other, or the surface
- * is seen at so flat an angle that both lie along it.
+ * Whether the surface continues from one step to the next. This is true if their points are close
+ * together. It is also true if both points are on a surface that is seen at a very flat angle.
  */
 function goesOn(from: Found, to: Found, pixel: number): boolean {
   const step = subtract(to.place, from.place);
@@ -96,14 +98,14 @@ function runsOf(steps: readonly Step[], { pixelAt }: Measures): Run[] {
   return runs;
 }
 
-/** Whether the surface may reach from `end` to a step after a gap of the drawing. */
+/** Whether the surface may continue from `end` to a step after a gap in the drawing. */
 function isBack(end: Found, step: Found, { pixelAt }: Measures): boolean {
   return apart(end, step) <= (kRelief + kSlope * screenDistance(end, step)) * pixelAt(end.place);
 }
 
 /**
- * The length of the runs on the screen, from the point where the line left the surface to the point
- * where it returned.
+ * Returns the length of the runs on the screen. It includes the way to them from `end`, and the way
+ * back to the surface at `back`.
  */
 function drawnLength(end: Found, aside: readonly Run[], back: Found | null): number {
   const way = [end, ...aside.flat(), ...(back ? [back] : [])];
@@ -127,8 +129,8 @@ function strayOf(end: Found, aside: readonly Run[], back: Found): number {
 }
 
 /**
- * Returns the runs without those off the surface: a run is off while its jump in depth is larger
- * than half the length drawn on the screen, until the line returns.
+ * Returns the runs that are on the surface. A run is off the surface if its jump in depth is larger
+ * than half the length that is drawn until the line returns.
  */
 function keptRuns(runs: readonly Run[], measures: Measures): Run[] {
   const kept: Run[] = runs.slice(0, 1);
@@ -147,7 +149,7 @@ function keptRuns(runs: readonly Run[], measures: Measures): Run[] {
     });
     if (back < 0) {
       const rest = drawnLength(end, runs.slice(at), null);
-      // the hand slipped off the edge at the end
+      // the pointer slipped off the edge at the end of the line
       if (rest <= kSmallGapPx * measures.scale && leadsAside(rest)) break;
     }
     at = back < 0 ? at : back;
@@ -157,7 +159,10 @@ function keptRuns(runs: readonly Run[], measures: Measures): Run[] {
   return kept;
 }
 
-/** The path over the surface between two runs, without its ends; null: none exists. */
+/**
+ * Returns the path over the surface between two runs, without its ends. Returns null if no such
+ * path exists.
+ */
 async function joint(
   end: Found,
   begin: Found,
@@ -181,8 +186,8 @@ async function joint(
 }
 
 /**
- * The line on the surface where the drawing began, in one piece, or in several where it crossed an
- * edge and could not continue.
+ * Returns the line on the surface where the drawing began. The line has several pieces if it
+ * crossed an edge and could not continue.
  */
 export async function lineOnSurface(
   steps: readonly Step[],
@@ -203,7 +208,10 @@ export async function lineOnSurface(
     .filter((each) => markLength({ coordinates: each }) > 0);
 }
 
-/** The length of the line during drawing; the parts between two runs count as straight. */
+/**
+ * Returns the length of the line during drawing. The parts between two runs count as straight
+ * lines.
+ */
 export function lengthSeen(steps: readonly Step[], measures: Measures): number {
   let sum = 0;
   let end: Found | null = null;

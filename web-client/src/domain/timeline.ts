@@ -1,14 +1,14 @@
-// The edits of a model over time, as the slider of the history shows them.
+// The edits of a model over time, for the slider of the history.
 
 import type { Timeline, TimelineInterval, TimelineStep } from "../core/protocol.gen";
 
-/** The last one that fits; null: none. */
+/** Returns the last item that fits, or null. */
 export function lastWhere<T>(all: readonly T[], fits: (one: T) => boolean): T | null {
   for (let i = all.length - 1; i >= 0; --i) if (fits(all[i]!)) return all[i]!;
   return null;
 }
 
-/** Where a moment of the timeline is, from 0 (begin) to 1 (end). */
+/** Returns the position of a time on the timeline, from 0 (begin) to 1 (end). */
 export function placeOfTime({ from, to }: Timeline, iso: string): number {
   if (from === undefined || to === undefined) return 1;
   const begin = Date.parse(from);
@@ -16,7 +16,7 @@ export function placeOfTime({ from, to }: Timeline, iso: string): number {
   return length > 0 ? Math.min(1, Math.max(0, (Date.parse(iso) - begin) / length)) : 1;
 }
 
-/** The time at a place from 0 to 1. */
+/** Returns the time at a position from 0 to 1. */
 export function timeAtPlace({ from, to }: Timeline, place: number): string | null {
   if (from === undefined || to === undefined) return null;
   const begin = Date.parse(from);
@@ -24,8 +24,8 @@ export function timeAtPlace({ from, to }: Timeline, place: number): string | nul
 }
 
 /**
- * The interval whose end the place shows: the last one that had ended by then. Null: before the
- * first one.
+ * Returns the last interval that ended at or before the position. Returns null before the end of
+ * the first interval.
  */
 export function intervalAtPlace(timeline: Timeline, place: number): TimelineInterval | null {
   const { intervals } = timeline;
@@ -35,14 +35,14 @@ export function intervalAtPlace(timeline: Timeline, place: number): TimelineInte
   return found;
 }
 
-/** The interval with the edit, or the last one before it. */
+/** Returns the interval that contains the edit, or the last interval before it. */
 export function intervalOf(timeline: Timeline, sequence: number): TimelineInterval | null {
   let found: TimelineInterval | null = null;
   for (const interval of timeline.intervals) if (interval.first <= sequence) found = interval;
   return found;
 }
 
-/** The next interval before or after a state; null: none. */
+/** Returns the next interval before or after a state, or null. */
 export function nextInterval(
   timeline: Timeline,
   sequence: number,
@@ -54,7 +54,7 @@ export function nextInterval(
     : lastWhere(intervals, ({ last }) => last < sequence);
 }
 
-/** Steps of both lists, each once, ascending. */
+/** Merges both lists without duplicates, in ascending order. */
 export function joinSteps(
   known: readonly TimelineStep[],
   more: readonly TimelineStep[],
@@ -64,7 +64,7 @@ export function joinSteps(
   return [...all.values()].sort((a, b) => a.last - b.last);
 }
 
-/** The step that made the state: the last one up to it. */
+/** Returns the step that led to the state: the last step up to it. */
 export const stepOf = (steps: readonly TimelineStep[], sequence: number): TimelineStep | null =>
   lastWhere(steps, ({ last }) => last <= sequence);
 
@@ -74,7 +74,7 @@ export interface Authors {
   edits: number;
 }
 
-/** Who changed what in these steps; people and layers with the most steps first. */
+/** Returns the authors and layers of these steps, those with the most steps first. */
 export function authorsOf(steps: readonly TimelineStep[]): Authors {
   const people = new Map<string, { user: string; full_name?: string; steps: number }>();
   const layers = new Map<number, number>();
@@ -97,7 +97,10 @@ export function authorsOf(steps: readonly TimelineStep[]): Authors {
   };
 }
 
-/** The time that is shown around a place, closer or farther by a factor, within the whole. */
+/**
+ * Returns the displayed time range, scaled by `factor` around a time and limited to the whole
+ * timeline. Returns null for the whole timeline.
+ */
 export function zoomed(
   whole: Timeline,
   shown: Timeline,

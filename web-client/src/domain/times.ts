@@ -1,4 +1,4 @@
-// Times from the server in readable form, in the time zone of this browser.
+// Formats times from the server, in the time zone of the browser.
 
 import { pageLocale } from "../core/locale";
 
@@ -9,23 +9,26 @@ const dayOf = (days: number): string =>
 const dateOf = (at: Date): string =>
   at.toLocaleDateString(pageLocale(), { day: "numeric", month: "short", year: "numeric" });
 
-/** "today", "yesterday" or "4 May 2026". */
+/** Formats a day: "today", "yesterday" or "4 May 2026". */
 export function toldDay(iso: string, now = new Date()): string {
   const date = dateOf(new Date(iso));
   const yesterday = new Date(now.getFullYear(), now.getMonth(), now.getDate() - 1);
   return date === dateOf(now) ? dayOf(0) : date === dateOf(yesterday) ? dayOf(-1) : date;
 }
 
-/** "today, 14:05", "yesterday, 9:30" or "4 May 2026, 14:05". */
+/** Formats a day and time: "today, 14:05", "yesterday, 9:30" or "4 May 2026, 14:05". */
 export const toldTime = (iso: string, now = new Date()): string =>
   `${toldDay(iso, now)}, ${timeOf(new Date(iso))}`;
 
 const kAgo = [
   ["minute", 60],
   ["hour", 24],
-] as const; // each with the number that makes one of the next
+] as const; // with the number of units in the next larger unit
 
-/** "2 minutes ago", "3 hours ago"; after a day as toldTime(). */
+/**
+ * Formats a time as "2 minutes ago" or "3 hours ago". After a day, the format is that of
+ * toldTime().
+ */
 export function toldAgo(iso: string, now = new Date()): string {
   let ago = Math.max(0, now.getTime() - new Date(iso).getTime()) / 60_000;
   for (const [unit, most] of kAgo) {
@@ -39,8 +42,8 @@ export function toldAgo(iso: string, now = new Date()): string {
   return toldTime(iso, now);
 }
 
-/** "14:05". */
+/** Formats a time of day, such as "14:05". */
 export const toldClock = (iso: string): string => timeOf(new Date(iso));
 
-/** "4 May 2026". */
+/** Formats a date, such as "4 May 2026". */
 export const toldDate = (iso: string): string => dateOf(new Date(iso));

@@ -1,5 +1,6 @@
-// The design of a tour's kiosks: two colors, from which all others follow, and the checks that make
-// them readable. The server checks the same (server/net/serialization/tour_theme.cpp).
+// The design of a tour's kiosks: two colors, from which all other colors are derived, and checks
+// that ensure readable text. The server makes the same checks
+// (server/net/serialization/tour_theme.cpp).
 
 import type { Background, TourMode, TourTheme } from "../core/protocol.gen";
 
@@ -8,24 +9,24 @@ interface ModeColors {
   background: string;
   accent: string;
 }
-/** Of the modes, where a theme has no own colors; `#rrggbb`. */
+/** The default colors of each mode, as `#rrggbb`. */
 export const kModeColors: Record<TourMode, ModeColors> = {
   light: { ink: "#20292a", background: "#dedad3", accent: "#2c6a63" },
   dark: { ink: "#ebe6da", background: "#14181a", accent: "#7fc0b5" },
 };
-export const kLeastTextContrast = 7; // text of kiosks is read from a distance
+export const kLeastTextContrast = 7; // visitors read the text from a distance
 export const kLeastAccentContrast = 3;
 
-/** How much lighter the upper end of the background is. */
+/** The fraction of white in the upper end of the background. */
 const kLighterTop: Record<TourMode, number> = { light: 0.45, dark: 0.07 };
 
-/** And how much lighter the sheet with the texts is. */
+/** The fraction of white in the panel with the texts. */
 const kLighterSurface: Record<TourMode, number> = { light: 0.78, dark: 0.08 };
 
 const channels = (color: string): number[] =>
   [1, 3, 5].map((at) => Number.parseInt(color.slice(at, at + 2), 16));
 
-/** The contrast of two colors, 1 to 21 (WCAG 2.2). */
+/** Returns the contrast ratio of two colors, 1 to 21 (WCAG 2.2). */
 export function contrast(a: string, b: string): number {
   const luminance = (color: string): number => {
     const [r, g, blue] = channels(color).map((value) => {
@@ -53,13 +54,13 @@ function colorsOf(theme: TourTheme | undefined): ModeColors {
   return { ink, background: theme?.background ?? background, accent: theme?.accent ?? accent };
 }
 
-/** The background of the object, which the server draws. */
+/** Returns the background of the object, which the server draws. */
 export function roomOf(theme: TourTheme | undefined): Background {
   const { background } = colorsOf(theme);
   return { top: mixed(background, "#ffffff", kLighterTop[modeOf(theme)]), bottom: background };
 }
 
-/** Custom properties of the kiosk page. */
+/** Returns the custom CSS properties of the kiosk page. */
 export function propertiesOf(theme: TourTheme | undefined): Record<string, string> {
   const { ink, accent } = colorsOf(theme);
   const { top, bottom } = roomOf(theme);
@@ -81,7 +82,7 @@ export interface ThemeProblem {
   needed: number;
 }
 
-/** The first pair of colors with too little contrast. */
+/** Returns the first problem with too little contrast, or null. */
 export function problemOfTheme(theme: TourTheme | undefined): ThemeProblem | null {
   const { ink, background, accent } = colorsOf(theme);
   const text = contrast(ink, background);

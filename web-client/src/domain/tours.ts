@@ -1,5 +1,5 @@
-// A draft of a tour: the contents of its fields, checks for missing ones, and the field that a
-// refusal of the server concerns.
+// A draft of a tour: the content of its fields, checks for missing content, and the field that a
+// server error refers to.
 
 import { readNumber, typedNumber } from "../core/locale";
 import { problemOfTheme } from "./tour-theme";
@@ -21,27 +21,30 @@ export const kMostLanguages = 20;
 export const kMostLayers = 20;
 export const kMostRecordTables = 10;
 export const kMostKeys = 100;
-export const kMostMedia = 12; // of a stop
+export const kMostMedia = 12; // per stop
 export const kSeconds = { idle: [30, 3600], attract: [1, 600], transition: [0, 30] } as const;
 
-/** Texts by language; they may be empty during editing. */
+/** Texts by language. They may be empty during editing. */
 export type Words = Readonly<Record<string, string>>;
 
 export interface MediumDraft {
   readonly file: number;
   readonly alt: Words;
   readonly caption: Words;
-  readonly subtitles: Readonly<Record<string, number>>; // files, by language
+  readonly subtitles: Readonly<Record<string, number>>; // ids of files, by language
 }
 
 export interface StopDraft {
-  /** Only for the page: it stays the same when the stop moves. */
+  /** An id that only the page uses. It does not change when the stop moves. */
   readonly id: number;
-  /** Slug; empty: the view was deleted, and the user must choose another. */
+  /**
+   * The slug of the view. It is empty if the view was deleted. The user must then choose another
+   * view.
+   */
   readonly view: string;
   readonly title: Words;
   readonly text: Words;
-  /** As typed. */
+  /** The seconds as typed. */
   readonly attract_s: string;
   readonly transition: TourTransition;
   readonly transition_s: string;
@@ -58,7 +61,7 @@ export interface TourDraft {
   readonly stops: readonly StopDraft[];
   readonly theme: TourTheme;
   readonly classes: readonly TourClasses[];
-  /** The known files: those that the tour uses, and the new ones. */
+  /** The files of the tour and newly uploaded files. */
   readonly files: readonly TourFile[];
 }
 
@@ -127,7 +130,7 @@ export const draftOf = ({
   files,
 });
 
-/** Returns a copy with the item at `from` moved to the index `to` of the result. */
+/** Returns a copy in which the item at index `from` is at index `to`. */
 export function moved<T>(all: readonly T[], from: number, to: number): T[] {
   const rest = all.filter((_, index) => index !== from);
   rest.splice(Math.max(0, Math.min(to, rest.length)), 0, all[from]!);
@@ -140,7 +143,7 @@ const without = <T>(words: Readonly<Record<string, T>>, language: string): Recor
   Object.fromEntries(Object.entries(words).filter(([tag]) => tag !== language));
 
 /**
- * Also removes the texts in the language: the server accepts texts only in the tour's languages.
+ * Removes a language and its texts, because the server accepts texts only in the tour's languages.
  */
 export function withoutLanguage(draft: TourDraft, language: string): TourDraft {
   return {
@@ -173,7 +176,7 @@ export function withoutLanguage(draft: TourDraft, language: string): TourDraft {
 
 const says = (words: Words, language: string): boolean => (words[language] ?? "").trim() !== "";
 
-/** Whether any text in the language exists. */
+/** Whether the draft has any text in the language. */
 export const writesIn = ({ stops, classes }: TourDraft, language: string): boolean =>
   classes.some((layer) => layer.classes.some(({ names }) => says(names, language))) ||
   stops.some(
@@ -187,7 +190,10 @@ export const writesIn = ({ stops, classes }: TourDraft, language: string): boole
       records.some(({ columns }) => columns.some(({ labels }) => says(labels ?? {}, language))),
   );
 
-/** Languages in which the stop has no title, or no text although the first language has one. */
+/**
+ * Returns the languages in which the stop has no title, or no text although the first language has
+ * a text.
+ */
 export const untranslated = ({ title, text }: StopDraft, languages: readonly string[]): string[] =>
   languages.filter(
     (language) =>
@@ -206,16 +212,16 @@ export type Wrong =
   | "contrast";
 
 export interface DraftProblem {
-  /** The server's name of the field: `stops[2].title.fr`. */
+  /** The server's name of the field, such as `stops[2].title.fr`. */
   field: string;
   wrong: Wrong;
-  /** For seconds: minimum and maximum. */
+  /** The minimum and maximum, for fields in seconds. */
   range?: readonly [number, number];
 }
 
 /**
- * The first problem for which the server would refuse the draft; checks that only the server can do
- * are not included.
+ * Returns the first problem for which the server would refuse the draft. Some checks are possible
+ * only on the server and are not included.
  */
 export function problemOf(draft: TourDraft): DraftProblem | null {
   const [first] = draft.languages;
@@ -250,7 +256,7 @@ export function problemOf(draft: TourDraft): DraftProblem | null {
   return null;
 }
 
-/** By tag, without blank texts. */
+/** Returns the texts without blank ones, sorted by language tag. */
 const written = (words: Words): Record<string, string> =>
   Object.fromEntries(
     Object.entries(words)
@@ -270,7 +276,7 @@ function bodyOfMedium({ file, alt, caption, subtitles }: MediumDraft): TourMediu
   };
 }
 
-/** Without layers and classes that have no names. */
+/** Returns the layers and classes that have names. */
 const bodyOfClasses = (all: readonly TourClasses[]): TourClasses[] =>
   all
     .map(({ layer, classes }) => ({
@@ -282,7 +288,7 @@ const bodyOfClasses = (all: readonly TourClasses[]): TourClasses[] =>
     .filter(({ classes }) => classes.length > 0);
 
 function bodyOfStop(stop: StopDraft): TourStopCreate {
-  // for a cut, the duration is unused and may have any value
+  // A cut does not use the duration, which may then have any value.
   const heldS = readNumber(stop.transition_s);
   return {
     view: stop.view,
@@ -308,7 +314,7 @@ function bodyOfStop(stop: StopDraft): TourStopCreate {
   };
 }
 
-/** For a draft without problemOf(). */
+/** Builds the request body. The draft must have no problem in problemOf(). */
 export const bodyOf = ({
   name,
   text,
@@ -336,20 +342,20 @@ export const differs = (a: TourDraft, b: TourDraft): boolean =>
   JSON.stringify(bodyOf(a)) !== JSON.stringify(bodyOf(b));
 
 /**
- * Parses a field name of the server: the stop and the field within it. Null: a field of the tour
- * itself.
+ * Parses a field name from the server into the stop and the field within the stop. The stop is null
+ * for a field of the tour itself.
  */
 export function placeOf(field: string): { stop: number | null; within: string } {
   const found = /^stops\[(\d+)\]\.?(.*)$/.exec(field);
   return found ? { stop: Number(found[1]), within: found[2]! } : { stop: null, within: field };
 }
 
-/** Whether a refusal of `within` concerns `field` or a part of it. */
+/** Whether a problem with the field `within` concerns `field` or a part of it. */
 export const isAbout = (within: string, field: string): boolean =>
   within === field || within.startsWith(`${field}.`) || within.startsWith(`${field}[`);
 
 /**
- * The language of a field name: for `title.fr`, `text.fr`, `media[0].alt.fr` and
+ * Returns the language in a field name, such as `title.fr`, `text.fr`, `media[0].alt.fr` or
  * `records[0].columns[1].labels.fr`.
  */
 export const languageOfField = (within: string): string | null =>

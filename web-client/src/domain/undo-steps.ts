@@ -1,13 +1,14 @@
-// The person's own steps that undo and redo would change, as a list to go back and forward in.
+// The user's own steps that undo and redo change, as a list in which the user can move back and
+// forward.
 
 import type { UndoStep, UndoSteps } from "../core/protocol.gen";
 
 export interface ListedStep extends UndoStep {
-  /** Undo took it back; redo brings it back. */
+  /** The step was undone. Redo restores it. */
   isUndone: boolean;
 }
 
-/** Newest first. */
+/** Returns all steps as one list, the newest first. */
 export function listOf({ done, undone }: UndoSteps): ListedStep[] {
   return [
     ...done.map((step) => ({ ...step, isUndone: false })),
@@ -15,13 +16,13 @@ export function listOf({ done, undone }: UndoSteps): ListedStep[] {
   ].sort((a, b) => b.last - a.last);
 }
 
-/** The steps of layers that the person can change. */
+/** Returns the steps on layers that the user can change. */
 export function onLayers(steps: UndoSteps, may: (layer: number) => boolean): UndoSteps {
   const fits = ({ layer }: UndoStep): boolean => may(layer);
   return { ...steps, done: steps.done.filter(fits), undone: steps.undone.filter(fits) };
 }
 
-/** The newest step in force; null: none. */
+/** Returns the newest step that is not undone, or null. */
 export const currentOf = (steps: readonly ListedStep[]): ListedStep | null =>
   steps.find(({ isUndone }) => !isUndone) ?? null;
 
@@ -31,9 +32,9 @@ export interface Turn {
 }
 
 /**
- * The undos and redos, in their order, after which `target` is the newest step in force; null: none
- * of the steps is. Undo and redo have an order for each layer: a redo after an undo of the same
- * layer would only bring back what that undo took.
+ * Returns the undos and redos, in order, after which `target` is the newest step that is not
+ * undone. If `target` is null, all steps are undone. A layer gets either undos or redos, because a
+ * redo after an undo on the same layer would only restore the undone step.
  */
 export function turnsTo({ done, undone }: UndoSteps, target: UndoStep | null): Turn[] {
   const last = target?.last ?? 0;

@@ -5,21 +5,23 @@ import type { CellValue, RecordList } from "../core/protocol.gen";
 import type { RecordQuery } from "../net/records";
 
 const kPage = 1000; // the server's limit for one request
-const kMostCounted = 20_000; // more would make the user wait
+const kMostCounted = 20_000; // a larger count would take too long
 
 export interface ValueCounts {
   ofValue: Map<FilterValue, number>;
   /** The number of records without a value. */
   empty: number;
-  /** For numbers and texts, in their order. */
+  /** The smallest and largest value, for numbers and texts. */
   least: FilterValue | null;
   greatest: FilterValue | null;
-  /** The number of records that were read, out of `total`. */
+  /** The number of records that were read, of `total` records. */
   counted: number;
   total: number;
 }
 
-/** For a cell with several records, each is a separate value. */
+/**
+ * Returns the values of a cell. In a cell with several records, each record is a separate value.
+ */
 const valuesInCell = (value: CellValue | undefined): FilterValue[] =>
   value === null || value === undefined
     ? []

@@ -1,5 +1,5 @@
-// Named views: the settings that they keep and apply. They refer to layers and surface images by
-// id. A view's name and text are not part of this file.
+// The settings that saved views store and apply. They refer to layers and surface images by id.
+// This file does not include the name and text of a view.
 
 import { samePalette } from "./palette";
 import type {
@@ -12,12 +12,10 @@ import type {
 } from "../core/protocol.gen";
 import { completePalette, type Layer, type Palette } from "../core/types";
 
-/**
- * The camera and all display settings: enough to show the same again even if the defaults change.
- */
+/** The camera and all display settings. They reproduce the view even if the defaults change. */
 export type ViewContent = Required<Pick<View, "camera" | "layers" | "looks" | "light">>;
 
-/** A person's settings for a layer. An absent member has the layer's default. */
+/** A user's settings for a layer. If a member is absent, the layer's default applies. */
 export interface LayerShown {
   visible?: boolean;
   opacity?: number;
@@ -26,15 +24,16 @@ export interface LayerShown {
   highlight?: Highlight;
 }
 
-/** A person's settings for a surface image. An absent member has the image's default. */
+/** A user's settings for a surface image. If a member is absent, the image's default applies. */
 export interface LookSettings {
   visible?: boolean;
   opacity?: number;
 }
 
 /**
- * The settings of layers that a view keeps: visibility and opacity of each layer, since the
- * defaults may change; palette, order and highlight only where this person has changed them.
+ * Returns the layer settings that a view stores. They always include visibility and opacity,
+ * because the defaults may change. They include palette, order and highlight only if the user has
+ * changed them.
  */
 export const layersToKeep = (
   layers: readonly Layer[],
@@ -61,7 +60,8 @@ export const layersToKeep = (
   });
 
 /**
- * The settings of a layer that differ from the defaults; null: none. Highlights belong to views.
+ * Returns the settings of a layer that differ from the defaults, or null. Highlights are not
+ * included, because they belong to views.
  */
 export function ownPart(
   layer: Layer,
@@ -76,7 +76,7 @@ export function ownPart(
   return Object.keys(own).length > 0 ? own : null;
 }
 
-/** The settings of the existing layers in a view, by id. */
+/** Returns the settings of a view's existing layers, by id. */
 export function layersOfView(
   { layers }: Pick<View, "layers"> | PersonalView,
   known: readonly Layer[],
@@ -93,8 +93,8 @@ export function layersOfView(
 }
 
 /**
- * The settings of the existing surface images in a view, by id, and the stack of the visible ones,
- * bottom to top. A view without `looks` shows the defaults.
+ * Returns the settings of a view's existing surface images, by id, and the stack of visible images
+ * from bottom to top. A view without `looks` shows the defaults.
  */
 export function looksOfView(
   { looks }: { looks?: LookShown[] },

@@ -1,6 +1,6 @@
-// Tables saved as a spreadsheet.
+// Parameters of requests that save tables as spreadsheets.
 
-/** `lang`: the language of terms. */
+/** Query parameters. `lang` is the language of terms. */
 export interface WorkbookQuery {
   f: "csv" | "xlsx";
   lang: string;

@@ -1,7 +1,8 @@
-// The automatic loop of a tour: shows one stop after the other, each for its time. Uses one timer.
+// The automatic loop of a tour. It shows the stops one after the other, each for its duration, with
+// a single timer.
 
 export interface AttractHost {
-  /** For the current stop: the duration of the transition, and of the display after it. */
+  /** Returns the durations of the transition to the current stop and of the display after it. */
   times(): { transition_s: number; attract_s: number } | null;
   next(): void;
 }

@@ -1,5 +1,5 @@
-// Contents of a record's card: the columns that the tour lists, or else those of its table, in the
-// visitor's language, and its pictures.
+// The content of a record's card: the values of its columns in the visitor's language, and its
+// images. The tour lists the columns. Without a list, the card shows the table's columns.
 
 import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
@@ -46,13 +46,16 @@ export interface CardAsked {
   key: number;
   stop: TourStop;
   language: string;
-  languages: readonly string[]; // of the tour
+  languages: readonly string[]; // the tour's languages
 }
 
-const kMostLines = 8; // for a table without columns in the tour
+const kMostLines = 8; // for a table whose columns the tour does not list
 const kMostPictures = 12;
 
-/** Null: the record does not exist or is not public. Other failures are ApiErrors. */
+/**
+ * Returns the card, or null if the record does not exist or is not public. Throws an ApiError for
+ * other failures.
+ */
 export async function cardOf(api: Api, asked: CardAsked): Promise<Card | null> {
   try {
     return await readCard(api, asked);
@@ -81,7 +84,7 @@ async function readCard(api: Api, asked: CardAsked): Promise<Card> {
   for (const { column, chosen } of shown) {
     if (holdsFiles(column)) continue;
     const text = await textOf(api, asked, column, record.values[column.slug] ?? null);
-    // The card's heading is not repeated, unless the tour lists its column.
+    // The card does not repeat its heading, unless the tour lists the heading's column.
     if (text === "" || (!chosen && text === title) || (!chosen && lines.length >= kMostLines))
       continue;
     lines.push({ label: labelOnCard(column, chosen, asked), text });
@@ -100,8 +103,8 @@ async function readCard(api: Api, asked: CardAsked): Promise<Card> {
 }
 
 /**
- * The label from the tour or the table in the visitor's language; else the tour's label in its
- * first language, or the column's name in whichever language.
+ * Returns the label from the tour or the table in the visitor's language. Without one, returns the
+ * tour's label in its first language, or the column's name in any language.
  */
 function labelOnCard(
   column: Column,
@@ -147,7 +150,7 @@ async function textOf(
   return column.unit ? `${text} ${column.unit}` : text;
 }
 
-/** Names of the public records among the keys. */
+/** Returns the names of the public records with these keys. */
 async function namesOf(
   api: Api,
   { language }: CardAsked,
@@ -168,8 +171,8 @@ async function namesOf(
 }
 
 /**
- * The pictures of the shown columns, in their order, in the two formats that browsers display and
- * that the server makes thumbnails of.
+ * Returns the images in the displayed columns, in their order. Only the two formats for which the
+ * server makes thumbnails and which browsers can display are included.
  */
 function picturesOf(
   columns: readonly Column[],

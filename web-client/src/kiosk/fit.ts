@@ -1,16 +1,18 @@
-// The camera of a stop in a kiosk's window. The saved view has another shape than most screens of
-// kiosks, and room around the object. The kiosk needs only what is there to see: the object's part
-// inside the saved window, in the middle of the own one.
+// The camera of a stop in the kiosk's window. A saved view has a different aspect ratio than most
+// kiosk screens, and room around the object. The kiosk shows only the part of the object inside the
+// saved window, in the middle of its own window.
 
 import type { Bounds, CameraMessage, OrbitCamera, Place } from "../math/camera";
 import { kHalfFieldTangent } from "../math/camera";
 import { placeLike } from "../math/fit-to-window";
 import { add, length, scale, transform, type Vec3 } from "../math/vector";
 
-const kMargin = 1.02; // the box around the object has some room already
-const kRounds = 4; // until the middle is found
+const kMargin = 1.02; // the bounding box already leaves some room around the object
+const kRounds = 4; // sufficient to find the middle
 
-/** The place of `theirs` for `own`, with the object as large as fits. */
+/**
+ * Converts the camera `theirs` to a position of `own` that shows the object as large as possible.
+ */
 export function placeOfObject(
   theirs: Pick<CameraMessage, "view" | "projection">,
   own: OrbitCamera,
@@ -21,10 +23,11 @@ export function placeOfObject(
   const depth = perspective ? place.distance : 1;
   const [across, along] = [1 / Math.abs(projection[0]!), 1 / Math.abs(projection[5]!)];
   const corners = cornersOf(view, own.bounds);
-  if (perspective && corners.some(([, , back]) => back >= 0)) return place; // it is around the eye
-  let [aside, above] = [0, 0]; // of the eye
+  // the eye is inside the box
+  if (perspective && corners.some(([, , back]) => back >= 0)) return place;
+  let [aside, above] = [0, 0]; // offset of the eye
   let [halfWidth, halfHeight] = [0, 0];
-  // A moved eye sees near corners move further than far ones.
+  // If the eye moves, near corners shift more than far corners, so several rounds are necessary.
   for (let round = 0; round < kRounds; ++round) {
     const xs = corners.map(([x, , back]) => (x - aside) / (perspective ? -back : 1));
     const ys = corners.map(([, y, back]) => (y - above) / (perspective ? -back : 1));
@@ -51,7 +54,7 @@ export function placeOfObject(
     : { ...place, target, distance: half / kHalfFieldTangent };
 }
 
-/** Corners of the box in the axes of the view: to the right, up, and back to the eye. */
+/** Returns the corners of the box in the axes of the view: right, up, and back to the eye. */
 function cornersOf(view: readonly number[], { min, max }: Bounds): Vec3[] {
   const enlarged = Math.hypot(view[2]!, view[6]!, view[10]!);
   return Array.from({ length: 8 }, (_, corner): Vec3 => {

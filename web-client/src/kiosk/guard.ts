@@ -1,6 +1,6 @@
 // Keeps visitors on the page: no context menu, selection, dragging, page zoom, printing or history.
-// Full screen, which needs a touch, hides the browser's toolbars; only the browser's own kiosk mode
-// disables its keys.
+// Full screen, which requires a touch, hides the browser's toolbars. Only the browser's own kiosk
+// mode disables the browser's keys.
 
 const refuse = (event: Event): void => event.preventDefault();
 
@@ -10,7 +10,7 @@ export function keepOnPage(): void {
   document.addEventListener("wheel", (event) => event.ctrlKey && event.preventDefault(), {
     passive: false,
   });
-  // Safari zooms with two fingers regardless of the page's viewport; the stage's own gestures use
+  // Safari zooms with two fingers regardless of the page's viewport. The stage's own gestures use
   // pointer events.
   document.addEventListener(
     "touchmove",
@@ -27,8 +27,8 @@ export function keepOnPage(): void {
 }
 
 /**
- * Requests full screen, unless the browser's own kiosk mode provides it. Browsers grant it only on
- * a touch; browsers of visitors' own devices may refuse or end it.
+ * Requests full screen, unless the browser's own kiosk mode provides it. Browsers grant it only
+ * after a touch. The browsers of visitors' own devices may refuse or end it.
  */
 export function fillScreen(): void {
   const hasIt =
@@ -38,11 +38,11 @@ export function fillScreen(): void {
     document.documentElement.requestFullscreen({ navigationUI: "hide" }).catch(() => {});
 }
 
-/** Keeps the screen on if the browser permits. */
+/** Keeps the screen on if the browser permits it. */
 export async function stayAwake(): Promise<void> {
   try {
     if (document.visibilityState === "visible") await navigator.wakeLock?.request("screen");
   } catch {
-    // Low battery, or no permission: the system's settings apply.
+    // With a low battery or without permission, the system's settings apply.
   }
 }

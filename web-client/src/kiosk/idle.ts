@@ -1,15 +1,15 @@
-// Detects whether a visitor uses the screen. After the tour's idle time without a touch it shows a
-// question with a countdown. Without an answer the tour restarts and plays automatically until the
-// next touch. Uses at most one timer, regardless of the number of touches.
+// Detects whether a visitor uses the screen. After the tour's idle time without a touch, the page
+// asks a question with a countdown. If the visitor does not respond, the tour restarts and plays
+// automatically until the next touch. Uses at most one timer, regardless of the number of touches.
 
 /**
- * alone: no visitor. visited: a visitor is present. asked: no touch for the idle time; the visitor
- * has `leftS` seconds to answer.
+ * alone: no visitor is present. visited: a visitor is present. asked: the idle time has passed
+ * without a touch, and the visitor has `leftS` seconds to respond.
  */
 export type Presence = { is: "alone" } | { is: "visited" } | { is: "asked"; leftS: number };
 
 export interface IdleHost {
-  /** Seconds without a touch before the question. */
+  /** The number of seconds without a touch before the question. */
   idleS(): number;
   /** A visitor has arrived. */
   came(): void;
@@ -19,7 +19,7 @@ export interface IdleHost {
 }
 
 export const kAskedS = 10;
-const kLeastS = 30; // minimum for all tours, since readers do not touch the screen
+const kLeastS = 30; // minimum for all tours, since visitors who read do not touch the screen
 
 export class IdleWatch {
   presence: Presence = { is: "alone" };
@@ -28,11 +28,11 @@ export class IdleWatch {
 
   constructor(private readonly _host: IdleHost) {}
 
-  /** Call this for each action of a person. */
+  /** Call this for each action of a visitor. */
   touched(): void {
     this._touchedMs = performance.now();
     const { is } = this.presence;
-    if (is === "visited") return; // the timer detects this when it fires
+    if (is === "visited") return; // the timer reads `_touchedMs` when it fires
     this.enter({ is: "visited" }, this._host.idleS());
     if (is === "alone") this._host.came();
   }

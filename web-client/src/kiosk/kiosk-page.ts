@@ -1,5 +1,5 @@
-// <strata-kiosk>: the whole screen: the object, and below or next to it the texts of the stop and
-// the controls.
+// <strata-kiosk>: the whole screen. It shows the object, and the texts of the stop and the controls
+// below or next to the object.
 
 import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -21,9 +21,9 @@ import { followSwipes } from "./swipe";
 import { textsIn } from "./texts";
 
 const kMostDots = 12;
-const kMostInvitations = 3; // languages in the invitation
+const kMostInvitations = 3; // number of languages in the invitation
 
-/** Capitalizes the name: many languages write it in lower case. */
+/** Returns the capitalized name of a language. Many languages write these names in lower case. */
 function nameOnButton(tag: string): string {
   const name = nameOfLanguage(tag) || tag;
   return name.charAt(0).toLocaleUpperCase(tag) + name.slice(1);
@@ -61,11 +61,11 @@ export class StrataKiosk extends LitElement {
   }
 
   /**
-   * Any event counts as activity. Only the start button begins the tour, so that the same touch
-   * does nothing else.
+   * Any event counts as activity. Only the start button begins the tour, so the first touch has no
+   * other effect.
    */
   private readonly touched = (event: Event): void => {
-    // a table may shake
+    // without a button, a mouse may move because its table shakes
     const restsAMouse = event.type === "pointermove" && (event as PointerEvent).buttons === 0;
     if (!restsAMouse && this.session.idle.presence.is === "visited") this.session.touched();
   };
@@ -150,7 +150,7 @@ export class StrataKiosk extends LitElement {
     `;
   }
 
-  /** Next to the finger, above it where there is room. */
+  /** Shows a text next to the tapped point, above it if there is room. */
   private place({
     title,
     about,
@@ -225,7 +225,7 @@ export class StrataKiosk extends LitElement {
       </div>`;
   }
 
-  /** What a stop has next to its texts: pictures as such, sounds and videos as buttons. */
+  /** Shows the media of a stop: images as thumbnails, sounds and videos as buttons. */
   private media(): TemplateResult | typeof nothing {
     const { session } = this;
     const { words, media } = session;
@@ -319,7 +319,7 @@ export class StrataKiosk extends LitElement {
     </section>`;
   }
 
-  /** In the first languages of the tour that the page's texts exist in. */
+  /** Shows the invitation in the first languages of the tour for which the page has texts. */
   private invitation(): TemplateResult {
     const { session } = this;
     const { languages } = session;

@@ -1,5 +1,6 @@
 // The state of a kiosk: its tour, the current stop and language, the open card, and the presence of
-// a visitor. Elements subscribe and render its state; they change it only through its methods.
+// a visitor. Elements subscribe to the state and render it. They change it only through the
+// session's methods.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -40,28 +41,28 @@ export interface SessionOptions {
   store: Pick<KioskStore, "lastTold" | "keep" | "forget">;
   reload: () => void;
   makeSocket?: (url: string, protocol: string) => SocketLike;
-  /** A visitor's phone begins where the screen was. */
+  /** The initial position on a visitor's phone, which is the position of the screen. */
   phone?: PhonePlace | null;
 }
 
 export class KioskSession {
   self: KioskSelf | null = null;
-  /** The link is not valid. */
+  /** Whether the link is invalid. */
   worthless = false;
   stops: Stop[] = [];
-  /** The views are loaded, and `stops` is complete. */
+  /** Whether the views are loaded and `stops` is complete. */
   ready = false;
   index = 0;
   language = "en";
   choices: LayerChoice[] = [];
   choice: LayerChoice = null;
-  /** The records of the stop, with their names. */
+  /** The records of the stop with their names. */
   named: NamedRecord[] = [];
   card: Card | null = null;
   enlarged: Card["pictures"][number] | null = null;
-  /** Id of the open medium of the stop. */
+  /** The id of the stop's open medium. */
   private _medium: number | null = null;
-  /** The tapped place, until the picture moves. */
+  /** The tapped point, until the camera moves. */
   private _place: TappedPlace | null = null;
   show: KioskShow | null = null;
 
@@ -69,8 +70,8 @@ export class KioskSession {
   private readonly _attract: AttractLoop;
   private readonly _link: KioskLink;
   private readonly _listeners = new Set<() => void>();
-  private _views = new Map<string, View>(); // by slug
-  private _reading = 0; // only the latest read of views or records counts
+  private _views = new Map<string, View>(); // views by slug
+  private _reading = 0; // only the results of the latest read of views or records are used
   private _naming = 0;
   private _askedCard = 0;
 
@@ -109,7 +110,7 @@ export class KioskSession {
     this.show?.close();
     this._listeners.clear();
   }
-  /** Call this after the network or the page has returned. */
+  /** Call this when the network is available again, or the page is visible again. */
   lookAgain(): void {
     this._link.ask();
     this.show?.checkConnection();
@@ -135,17 +136,17 @@ export class KioskSession {
   get text(): string {
     return wordsIn(this.stop?.stop.text, this.language, this.languages);
   }
-  /** Pictures, sounds and videos of the stop. */
+  /** The images, sounds and videos of the stop. */
   get media(): ShownMedium[] {
     return this.self && this.stop ? mediaOf(this.self, this.stop.stop, this.language) : [];
   }
-  /** The one that covers the screen. */
+  /** The medium that covers the screen. */
   get medium(): ShownMedium | null {
     return this._medium === null
       ? null
       : (this.media.find(({ id }) => id === this._medium) ?? null);
   }
-  /** The name of the tapped place and its position on the stage; null: none. */
+  /** The name of the tapped point and its position on the stage, or null. */
   get place(): { title: string; about: string; x: number; y: number } | null {
     const { _place: place, show } = this;
     const layer = place && show?.layers.find(({ id }) => id === place.layer);
@@ -160,7 +161,7 @@ export class KioskSession {
   private classNames(layer: string): readonly TourClassName[] {
     return this.tour?.classes?.find((each) => each.layer === layer)?.classes ?? [];
   }
-  /** No visitor: the tour plays automatically. */
+  /** Whether no visitor is present and the tour plays automatically. */
   get resting(): boolean {
     return this.idle.presence.is === "alone";
   }
@@ -188,7 +189,7 @@ export class KioskSession {
     this.show?.showLayers(this.overrides());
     this.changed();
   }
-  /** Shows the next layer, if there is one. Not below a card. */
+  /** Shows the next layer, if there is one. Has no effect while a card is open. */
   swipe(by: 1 | -1): void {
     if (this.card) return;
     const next = this.choices[this.choices.indexOf(this.choice) + by];
@@ -210,7 +211,7 @@ export class KioskSession {
       this.card = card;
       this.changed();
     } catch (error) {
-      // the server is unreachable and the record is not stored: no card
+      // Without the server and a stored record, no card opens.
       if (!(error instanceof ApiError)) throw error;
     }
   }
@@ -244,11 +245,14 @@ export class KioskSession {
 
   private beginAt({ stop, language }: PhonePlace): void {
     this.language = this.languages.includes(language) ? language : (this.languages[0] ?? "en");
-    this.idle.touched(); // begins at the first stop
+    this.idle.touched(); // starts at the first stop
     this.goTo(Math.min(stop, Math.max(0, this.stops.length - 1)));
   }
 
-  /** The initial state: the first stop in the first language; then the tour plays automatically. */
+  /**
+   * Restores the initial state: the first stop in the first language. The tour then plays
+   * automatically.
+   */
   private rest(): void {
     this.language = this.languages[0] ?? "en";
     this.goTo(0);
@@ -273,13 +277,13 @@ export class KioskSession {
     return stop && show ? layersShown(stop, show.layers, this.choices, this.choice) : [];
   }
 
-  /** Loads the names of the stop's records; deleted records are omitted. */
+  /** Loads the names of the stop's records. Deleted records are omitted. */
   private async nameRecords(): Promise<void> {
     const naming = ++this._naming;
     const { stop, language, languages } = this;
     const wanted =
       stop?.stop.records.flatMap(({ table, keys }) => keys.map((key) => ({ table, key }))) ?? [];
-    if (wanted.length === 0 || this.resting) this.named = []; // not visible in this state
+    if (wanted.length === 0 || this.resting) this.named = []; // their names are not visible now
     if (!stop || wanted.length === 0 || this.resting) return;
     const cards = await Promise.all(
       wanted.map((each) =>
@@ -295,7 +299,7 @@ export class KioskSession {
     this.changed();
   }
 
-  /** Opens the card of a record; for a class or number, shows its name at the place. */
+  /** Opens the card of a record. For a class or a number, shows its name at the tapped point. */
   private onTapped(picked: Picked, { x, y }: { x: number; y: number }): void {
     const { show } = this;
     if (!show || this.resting) return;
@@ -316,12 +320,12 @@ export class KioskSession {
     this.self = self;
     if (!before || before.tour.version !== self.tour.version || before.tour.id !== self.tour.id)
       await this.takeTour();
-    else if (this.show?.drawn) this.keep(); // the picture has priority
+    else if (this.show?.drawn) this.keep(); // the first frame has priority
     if (!this.ready) await this.readViews();
     this.changed();
   }
 
-  /** If the server is unreachable at the start: continues with the last stored answer. */
+  /** If the server is unreachable at the start, continues with the last stored response. */
   private async onMissed(): Promise<void> {
     if (this.self && !this.ready) await this.readViews();
     if (this.self) return;
@@ -364,7 +368,7 @@ export class KioskSession {
         tapped: (picked, at) => this.onTapped(picked, at),
         moved: () => this.forgetPlace(),
         changed: () => this.changed(),
-        lost: () => this._link.ask(), // finds out the reason
+        lost: () => this._link.ask(), // determines the reason
       },
       this._options.makeSocket,
     );
@@ -377,7 +381,7 @@ export class KioskSession {
     const slugs = [...new Set(self.tour.stops.flatMap(({ view }) => view ?? []))];
     const views = await Promise.all(slugs.map((slug) => this.readView(self.model, slug)));
     if (reading !== this._reading || this.worthless) return;
-    if (!this.ready && views.includes(undefined)) return; // repeated when the server is reachable
+    if (!this.ready && views.includes(undefined)) return; // retried when the server is reachable
     this._views = new Map(
       slugs.flatMap((slug, place): [string, View][] =>
         [views[place] ?? []].flat().map((view) => [slug, view]),
@@ -393,7 +397,10 @@ export class KioskSession {
     else this.showAgain();
   }
 
-  /** Null: deleted. If the server is unreachable: the known view, or undefined. */
+  /**
+   * Returns null if the view was deleted. If the server is unreachable, returns the known view or
+   * undefined.
+   */
   private async readView(model: string, slug: string): Promise<View | null | undefined> {
     try {
       return await this._options.api.json("GET /models/{model}/views/{view}", {

@@ -1,6 +1,6 @@
-// Styles of the kiosk: large and calm, with all controls in the lower half. Targets are at least 15
-// mm (57 CSS pixels), and larger on touch-only and large screens. Upright screens have the object
-// above the texts, wide screens next to them. Text is for readers at a distance of 2 m.
+// Styles of the kiosk. All controls are in the lower half. Touch targets are at least 15 mm (57 CSS
+// pixels), and larger on touch-only and large screens. Portrait screens show the object above the
+// texts, wide screens next to them. The text is readable at a distance of 2 m.
 
 import { css } from "lit";
 
@@ -10,7 +10,7 @@ export const kioskStyles = css`
     --gap: clamp(10px, 1.3vmin, 28px);
     --rim: clamp(16px, 2.8vmin, 64px);
     --round: clamp(22px, 2.6vmin, 56px);
-    --room: #dedad3; /* around the object: the colors that the server draws behind it */
+    --room: #dedad3; /* background of the object, as drawn by the server */
     --room-top: #edebe7;
     --surface: color-mix(in srgb, var(--room) 22%, #fff);
     --raised: #fff;
@@ -26,9 +26,9 @@ export const kioskStyles = css`
     position: fixed;
     inset: 0;
     display: grid;
-    --words: 38; /* largest share of the height for texts, in percent */
+    --words: 38; /* largest part of the height for texts, in percent */
     grid-template: minmax(0, 1fr) auto / minmax(0, 1fr);
-    background: var(--room); /* the lower end of the stage: no edge between the two */
+    background: var(--room); /* as at the lower end of the stage, so no edge is visible */
     color: var(--ink);
     font: clamp(17px, 1.75vmin + 8px, 48px) / 1.45 var(--sans);
     overflow: hidden;
@@ -162,7 +162,7 @@ export const kioskStyles = css`
     pointer-events: none;
   }
   .phone ~ .sign {
-    justify-self: start; /* the code is at the end */
+    justify-self: start; /* the QR code is at the end */
     max-width: calc(100% - clamp(96px, 12vmin, 240px) - 4 * var(--rim));
     border-radius: var(--round);
   }
@@ -176,7 +176,7 @@ export const kioskStyles = css`
     overflow: hidden;
     pointer-events: none;
   }
-  /* a dot at the tapped place, and the text above it, inside the stage */
+  /* A dot at the tapped point, with the text above it, inside the stage. */
   .place-of-tap::before {
     content: "";
     position: absolute;
@@ -214,7 +214,7 @@ export const kioskStyles = css`
   .panel {
     grid-area: 2 / 1;
     position: relative;
-    max-height: calc(var(--words) * 1dvh); /* as tall as its text; a longer text scrolls */
+    max-height: calc(var(--words) * 1dvh); /* as tall as its text; longer text scrolls */
     display: flex;
     flex-direction: column;
     gap: var(--gap);
@@ -327,7 +327,7 @@ export const kioskStyles = css`
     position: absolute;
     inset: auto 0 0;
     z-index: 2;
-    height: max(100%, calc(var(--words) * 1dvh)); /* over the bottom of the fixed picture */
+    height: max(100%, calc(var(--words) * 1dvh)); /* over the lower part of the fixed image */
     display: flex;
     flex-direction: column;
     gap: var(--gap);
@@ -470,10 +470,12 @@ export const kioskStyles = css`
       animation: none;
     }
   }
-  /* Nobody is there: the object and its title on the room's own color, for people who pass by. */
+  /* Without a visitor, the screen shows the object and its title on the background color, for
+     passers-by. */
   .panel.resting {
     padding-top: 0;
-    padding-bottom: calc(2.2 * var(--rim) + 1.25 * var(--target) + 2em); /* for the invitation */
+    /* room for the invitation */
+    padding-bottom: calc(2.2 * var(--rim) + 1.25 * var(--target) + 2em);
     background: none;
     box-shadow: none;
     text-align: center;
@@ -494,7 +496,7 @@ export const kioskStyles = css`
     -webkit-box-orient: vertical;
     -webkit-line-clamp: 3;
     line-clamp: 3;
-    white-space: normal; /* no empty lines */
+    white-space: normal; /* without empty lines */
   }
   .words .tour {
     margin: 0 0 0.3em;

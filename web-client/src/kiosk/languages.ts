@@ -1,8 +1,11 @@
-// The languages of a tour: the choice of a text's language, and the direction of writing.
+// Chooses the language of a tour's text, and its writing direction.
 
 import type { TourWords } from "../core/protocol.gen";
 
-/** The text in that language, or else in the first of the tour's languages that has it. */
+/**
+ * Returns the text in the language. Without one, returns the text in the first of the tour's
+ * languages that has a text.
+ */
 export function wordsIn(
   words: TourWords | undefined,
   language: string,

@@ -1,7 +1,8 @@
-// The kiosk's link to its server: signs in with the link's secret, then asks at intervals whether
-// the link is valid, whether the tour has changed, and whether to reload the page. If the server is
-// unreachable, the kiosk asks again without end, at increasing intervals. If the server does not
-// accept the link, it asks again every five minutes, since the tour may be restored from the trash.
+// The kiosk's link to its server. It signs in with the link's secret. At intervals, it then checks
+// whether the link is valid, whether the tour has changed, and whether to reload the page. If the
+// server is unreachable, the kiosk retries without limit, at increasing intervals. If the server
+// does not accept the link, the kiosk retries every five minutes, because the tour may be restored
+// from the trash.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -13,11 +14,11 @@ const kWorthlessS = 300;
 
 export interface LinkHost {
   told(self: KioskSelf): void;
-  /** No answer, or not a valid one. */
+  /** The server sent no response, or an invalid one. */
   missed(): void;
   /**
-   * The link was revoked, has expired, or its tour is in the trash. Called after each such answer.
-   * If the link becomes valid again, the page is reloaded.
+   * The link was revoked, has expired, or its tour is in the trash. Called after each such
+   * response. If the link becomes valid again, the page is reloaded.
    */
   worthless(): void;
   reload(): void;
@@ -37,7 +38,7 @@ export class KioskLink {
     private readonly _host: LinkHost,
   ) {}
 
-  /** Asks now, before the next interval. */
+  /** Sends the next request immediately. */
   ask(): void {
     if (this._ended || this._asking) return;
     if (this._timer) clearTimeout(this._timer);
@@ -80,7 +81,10 @@ export class KioskLink {
     } else this.take(self ?? (await this.signIn()));
   }
 
-  /** Null: the server does not recognize this browser, which may only have lost its cookie. */
+  /**
+   * Returns null if the server does not recognize this browser, for example because the cookie was
+   * lost.
+   */
   private async unlessForgotten(asked: Promise<KioskSelf>): Promise<KioskSelf | null> {
     try {
       return await asked;
@@ -97,7 +101,7 @@ export class KioskLink {
       this._signedIn = true;
       return self;
     } catch (error) {
-      // 404: its tour was deleted. 422: the secret has no valid form.
+      // 404: the tour was deleted. 422: the format of the secret is invalid.
       if (!(error instanceof ApiError) || ![401, 404, 422].includes(error.status)) throw error;
       return null;
     }

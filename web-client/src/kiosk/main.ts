@@ -1,4 +1,4 @@
-// The page at /kiosk/{secret}. The site's main.ts starts it and loads nothing else.
+// The page at /kiosk/{secret}. The main.ts of the site starts this page and loads no other code.
 
 import { Api } from "../net/api";
 import { sayOwnProblemsIn } from "../core/problems";
@@ -9,7 +9,7 @@ import { KioskSession } from "./kiosk-session";
 import { phonePlaceOf } from "./phone";
 import { KioskStore, openBrowserCache, startWorker } from "./store";
 
-/** The part after /kiosk/; null: none. */
+/** Returns the part of the path after /kiosk/, or null. */
 export const secretOf = (path: string): string | null =>
   /^\/kiosk\/([^/]{1,200})\/?$/.exec(path)?.[1] ?? null;
 
@@ -35,7 +35,7 @@ export function startKiosk(): void {
   const page = document.createElement("strata-kiosk");
   page.session = session;
   document.querySelector("strata-app")?.replaceWith(page);
-  if (!phone) keepOnPage(); // on their own phones visitors may leave
+  if (!phone) keepOnPage(); // visitors may leave the page on their own phones
   void stayAwake();
   void startWorker();
   document.addEventListener("visibilitychange", () => {

@@ -1,4 +1,4 @@
-// Pictures, sounds and videos of a stop, in the visitor's language.
+// The images, sounds and videos of a stop, in the visitor's language.
 
 import type { KioskSelf, TourFile, TourStop } from "../core/protocol.gen";
 import { asKiosk } from "./as-kiosk";
@@ -8,15 +8,15 @@ export interface ShownMedium {
   id: number;
   kind: "picture" | "sound" | "video";
   url: string;
-  /** Of pictures. */
+  /** The address of the thumbnail, for images. */
   thumbnail: string;
-  /** For people who cannot see it; the caption, or the file's name, where it is missing. */
+  /** The text alternative. If it is missing, this is the caption or the file name. */
   alt: string;
   caption: string;
   subtitles: { language: string; url: string }[];
 }
 
-/** The address of a file of the tour. */
+/** Returns the address of a file of the tour. */
 export const addressOfFile = (
   { model, tour }: Pick<KioskSelf, "model" | "tour">,
   id: number,
@@ -24,7 +24,7 @@ export const addressOfFile = (
 export const thumbnailOfFile = (self: Pick<KioskSelf, "model" | "tour">, id: number): string =>
   `${addressOfFile(self, id)}&thumbnail=512`;
 
-/** The media of the stop whose files exist. */
+/** Returns the media of the stop whose files exist. */
 export function mediaOf(
   self: KioskSelf,
   { media = [] }: TourStop,

@@ -1,12 +1,15 @@
-// The same tour on a visitor's phone: the address in the QR code of the screen, and what the phone
-// takes from it.
+// The same tour on a visitor's phone: the address in the screen's QR code, and the data that the
+// phone reads from it.
 
 import { svg, type TemplateResult } from "lit";
 import { encode } from "uqr";
 
-/** Where the screen is at the moment. The part after # is never sent to the server. */
+/**
+ * The current position of the screen. It is in the address after #, which browsers never send to
+ * the server.
+ */
 export interface PhonePlace {
-  stop: number; // index
+  stop: number; // index of the stop
   language: string;
 }
 
@@ -16,7 +19,7 @@ export const phoneAddress = (
   { stop, language }: PhonePlace,
 ): string => `${origin}${path}#stop=${stop + 1}&language=${encodeURIComponent(language)}`;
 
-/** Null: the address is not from a QR code. */
+/** Returns the position in an address, or null if the address is not from a QR code. */
 export function phonePlaceOf(hash: string): PhonePlace | null {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const stop = Number(given.get("stop"));
@@ -25,7 +28,7 @@ export function phonePlaceOf(hash: string): PhonePlace | null {
     : null;
 }
 
-/** The code as one path of squares, with the empty rim that readers need. */
+/** Draws the QR code as one path of squares, with the empty margin that scanners need. */
 export function codeOf(text: string): TemplateResult {
   const { data, size } = encode(text, { ecc: "M", border: 3 });
   const squares = data.flatMap((row, y) =>

@@ -1,5 +1,5 @@
-// The place that a visitor tapped: for a record the kiosk opens its card; for a class or a measured
-// value it shows the name at the place.
+// The point that a visitor tapped. For a record, the kiosk opens the record's card. For a class or
+// a measured value, the kiosk shows its name at the point.
 
 import { labelOf } from "../domain/cells";
 import { formatNumber } from "../domain/measure";
@@ -7,7 +7,7 @@ import type { Picked, TourClassName } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 
 export interface TappedPlace {
-  /** CSS pixels of the stage. */
+  /** The position on the stage in CSS pixels. */
   x: number;
   y: number;
   layer: number;
@@ -15,8 +15,8 @@ export interface TappedPlace {
 }
 
 /**
- * The topmost layer with a record there, or else the topmost with any value. Null: no layer is
- * painted there.
+ * Returns the topmost layer with a record at the point, or otherwise the topmost layer with any
+ * value. Returns null if no layer has a value at the point.
  */
 export function layerThere(
   seen: readonly Layer[],
@@ -29,16 +29,16 @@ export function layerThere(
   return painted.find(({ layer }) => layer.table !== undefined) ?? painted[0] ?? null;
 }
 
-/** The name of a layer in the visitor's language, or its original name. */
+/** Returns the name of a layer in the visitor's language, or its original name. */
 export const nameOfLayer = (layer: Pick<Layer, "name" | "labels">, language: string): string =>
   labelOf(layer, [language]);
 
-/** Describes the place: the class, or a number with its unit, and the layer's name. */
+/** Describes the point: the class, or the number with its unit, and the name of the layer. */
 export function wordsOfPlace(
   layer: Layer,
   value: number,
   language: string,
-  names: readonly TourClassName[] = [], // of the tour
+  names: readonly TourClassName[] = [], // from the tour
 ): { title: string; about: string } {
   const about = nameOfLayer(layer, language);
   const { mode, points } = layer.palette;

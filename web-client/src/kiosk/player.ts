@@ -1,5 +1,6 @@
-// <strata-kiosk-player>: a picture, sound or video of a stop over the whole screen, with large
-// controls in the lower half. The visitor's tap that opened it starts it; nothing plays by itself.
+// <strata-kiosk-player>: an image, sound or video of a stop over the whole screen, with large
+// controls in the lower half. The tap that opens a sound or video also starts it. Nothing plays
+// without a tap.
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -71,7 +72,7 @@ export class StrataKioskPlayer extends LitElement {
       overflow-wrap: anywhere;
     }
     .title {
-      font: 600 1.9em/1.4 var(--heading); /* a lower line would scroll */
+      font: 600 1.9em/1.4 var(--heading); /* with a smaller line height, the text would scroll */
     }
     .controls {
       flex: none;
@@ -111,7 +112,7 @@ export class StrataKioskPlayer extends LitElement {
     .time {
       font-variant-numeric: tabular-nums;
     }
-    /* as high as a finger; the line is only its middle */
+    /* As high as a finger. The visible line is only the middle of the control. */
     input {
       flex: 1 1 12em;
       min-width: 8em;
@@ -162,16 +163,16 @@ export class StrataKioskPlayer extends LitElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this._media?.pause(); // a removed element may play for another moment
+    this._media?.pause(); // a removed element may continue to play for a moment
   }
 
-  /** Focuses the control that is used first. */
+  /** Focuses the first control. */
   override focus(): void {
     this.renderRoot.querySelector<HTMLElement>("button")?.focus({ preventScroll: true });
   }
 
   override firstUpdated(): void {
-    // Browsers permit sound after a touch. Where one does not, the visitor presses Play.
+    // Browsers permit sound after a touch. If a browser does not, the visitor presses Play.
     void this._media?.play().catch(() => (this._playing = false));
   }
 
@@ -238,7 +239,7 @@ export class StrataKioskPlayer extends LitElement {
     if (!media) return;
     this._atS = media.currentTime;
     this._lengthS = Number.isFinite(media.duration) ? media.duration : 0;
-    // Who watches does not touch: the question may come after the end.
+    // Visitors who watch do not touch the screen, so playing counts as activity.
     if (!media.paused) this.session.touched();
   };
   private readonly onFailed = (): void => void (this._failed = true);

@@ -22,22 +22,25 @@ import { looksOfView } from "../domain/views";
 import { OrbitTool } from "../tools/navigate";
 import { asKiosk } from "./as-kiosk";
 
-const kAwayMs = 3000; // shorter losses of the connection are not shown
-const kTapReachCss = 14; // reach of a finger
+const kAwayMs = 3000; // shorter interruptions are not shown
+const kTapReachCss = 14; // tolerance for a finger
 
 export interface ShowHost {
   /**
-   * The model, its layers or a named view were loaded or changed; `views`: the tour's views need a
-   * new read.
+   * The model, its layers or a saved view were loaded or changed. For `views`, the tour's views
+   * must be read again.
    */
   learned(what: "model" | "views"): void;
-  /** A tap, with the values there and its position on the stage in CSS pixels. */
+  /**
+   * The visitor tapped. The arguments are the values at the point and its position on the stage in
+   * CSS pixels.
+   */
   tapped(picked: Picked, at: { x: number; y: number }): void;
-  /** The picture has moved from the tapped place. */
+  /** The camera has moved, so the tapped point is at another position. */
   moved(): void;
-  /** Live pictures have started or ended. */
+  /** The frames have started or stopped. */
   changed(): void;
-  /** The connection was lost, for a short or long time. */
+  /** The connection was lost, temporarily or for a longer time. */
   lost(): void;
 }
 
@@ -45,11 +48,11 @@ export class KioskShow {
   model: Model | null = null;
   layers: Layer[] = [];
   looks: Look[] = [];
-  /** A live picture is on the canvas. */
+  /** Whether a frame is on the canvas. */
   drawn = false;
-  /** No live pictures for some seconds. */
+  /** Whether no frame has arrived for some seconds. */
   away = false;
-  /** Set by the stage. */
+  /** The stage sets these callbacks. */
   onFrame: (part: FrameMessage) => void = () => {};
   onResetFrames: () => void = () => {};
 
@@ -57,11 +60,11 @@ export class KioskShow {
   private readonly _connection: Connection;
   private readonly _orbitTool: OrbitTool;
   private _viewShown: View | null = null;
-  private _standsAtView = false; // the camera was not moved since
-  private _placed = false; // the camera has been at the view's position
+  private _standsAtView = false; // the camera was not moved since the view was shown
+  private _placed = false; // the camera has reached the position of the view
   private _awayTimer: ReturnType<typeof setTimeout> | null = null;
-  private _pick = ""; // the last tap without an answer
-  private _pickedAt = { x: 0, y: 0 }; // on the stage, CSS pixels
+  private _pick = ""; // the id of the last tap without a response
+  private _pickedAt = { x: 0, y: 0 }; // on the stage, in CSS pixels
   private _flightEndsMs = 0;
 
   constructor(
@@ -111,17 +114,17 @@ export class KioskShow {
     this.stopExpecting();
     this._connection.close();
   }
-  /** Call this when the server has just answered another request: reconnects at once. */
+  /** Reconnects immediately. Call this when the server has just responded to another request. */
   checkConnection(): void {
     this._connection.check();
   }
 
-  /** What the server draws around the object. */
+  /** Sets the background that the server draws around the object. */
   setRoom(room: Background): void {
     this._connection.setBackground(room);
   }
 
-  /** Shows the view with these layers; `flightS`: duration of the camera's movement. */
+  /** Shows the view with these layers. `flightS` is the duration of the camera's movement. */
   goTo(view: View, layers: LayerOverride[], flightS: number): void {
     this._viewShown = view;
     this._standsAtView = true;
@@ -135,8 +138,8 @@ export class KioskShow {
   }
 
   /**
-   * Shows a view after the model or the view may have changed. Visitors' camera movements are kept,
-   * unless the camera of the view has changed.
+   * Shows a view after the model or the view may have changed. The camera stays where visitors have
+   * moved it, unless the camera of the view has changed.
    */
   goOn(view: View, layers: LayerOverride[]): void {
     const same =
@@ -145,7 +148,7 @@ export class KioskShow {
     else this.goTo(view, layers, 0);
   }
 
-  /** Whether the camera is still at the view. */
+  /** Whether visitors have not moved the camera away from the view. */
   get untouched(): boolean {
     return this._standsAtView;
   }
@@ -163,8 +166,9 @@ export class KioskShow {
   }
 
   /**
-   * CSS pixels, and window pixels per CSS pixel. The text of a stop may need more room than the
-   * previous one; a running camera movement continues.
+   * Sets the size in CSS pixels and the number of window pixels per CSS pixel. The size may change
+   * between stops, because their texts need different amounts of room. A running camera movement
+   * continues.
    */
   setViewport(width: number, height: number, scale: number): void {
     this.view.setViewport(width, height, scale);
@@ -186,7 +190,7 @@ export class KioskShow {
   private move(change: () => void): void {
     const first = this._standsAtView;
     this._standsAtView = false;
-    this._pick = ""; // the tapped place has moved
+    this._pick = ""; // the tapped point has moved
     change();
     this._host.moved();
     if (first) this._host.changed();
@@ -237,7 +241,7 @@ export class KioskShow {
           this._pick = "";
           this._host.tapped(message, this._pickedAt);
         },
-        // Visitors cannot act on problems and do not see them; the operator finds them in the
+        // Visitors cannot solve problems and do not see them. The operator finds them in the
         // browser's console.
         problem: (problem) =>
           console.info(

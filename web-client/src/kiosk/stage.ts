@@ -1,5 +1,5 @@
-// <strata-kiosk-stage>: the streamed picture and the gestures on it. Without live pictures, it
-// shows the stored picture of the stop.
+// <strata-kiosk-stage>: the streamed frames and the gestures on them. Without frames, it shows the
+// stored image of the stop.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -21,7 +21,7 @@ const kKeyZoom = 0.85;
 export class StrataKioskStage extends LitElement {
   @property({ attribute: false }) session!: KioskSession;
   @property({ attribute: false }) show!: KioskShow;
-  // The owner increments this to trigger a render.
+  // The owner increments this property to trigger a render.
   @property({ type: Number }) changes = 0;
   @query("canvas") private _canvas!: HTMLCanvasElement;
   @query(".surface") private _surface!: HTMLElement;
@@ -54,7 +54,8 @@ export class StrataKioskStage extends LitElement {
     }
     img {
       margin: auto;
-      /* The edges fade out where the picture's shape differs from the stage. */
+      /* The edges fade out, because the aspect ratio of the image may differ from that of the
+         stage. */
       mask:
         linear-gradient(transparent, #000 9%, #000 91%, transparent),
         linear-gradient(to right, transparent, #000 9%, #000 91%, transparent);
@@ -70,8 +71,8 @@ export class StrataKioskStage extends LitElement {
     canvas.live {
       opacity: 1;
     }
-    /* Movement without visitors, at no cost for the server: the same full-quality picture for
-       all screens at this stop. */
+    /* Movement without visitors that does not load the server: all screens at this stop show the
+       same full-quality image. */
     :host(.resting) :is(canvas, img) {
       animation: come-near 20s ease-in-out infinite alternate;
     }
@@ -111,7 +112,7 @@ export class StrataKioskStage extends LitElement {
     this.show.onFrame = this.show.onResetFrames = () => {};
   }
 
-  /** Data attributes describe the canvas, for tests and tools. */
+  /** Describes the canvas in data attributes, for tests and tools. */
   private onDrawn(part: FrameMessage): void {
     this.show.frameDrawn(part);
     const { dataset } = this._canvas;
@@ -147,8 +148,8 @@ export class StrataKioskStage extends LitElement {
     const { session, show } = this;
     const view = session.stop?.view;
     const live = show.drawn && !show.away;
-    // Behind the live picture it would only use memory; the browser's cache has it when it is
-    // needed.
+    // Behind the frames, the stored image would only use memory. The browser's cache provides it
+    // when it is needed.
     return html`${view && !live ? this.storedPicture(view) : nothing}
       <div class="surface" tabindex="0" role="application" aria-label=${session.words.stage} @keydown=${this.onKey}>
         <canvas class=${live ? "live" : ""} width="2" height="2"></canvas>

@@ -1,5 +1,5 @@
 // The contents of a tour's stops: the existing stops, and the layers that visitors can choose at
-// each.
+// each stop.
 
 import type { LayerOverride, Tour, TourStop, View } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
@@ -11,7 +11,7 @@ export interface Stop {
   view: View;
 }
 
-/** The stops whose views exist; the others are skipped. `views`: by slug. */
+/** Returns the stops whose views exist. The keys of `views` are slugs. */
 export const stopsOf = (tour: Pick<Tour, "stops">, views: ReadonlyMap<string, View>): Stop[] =>
   tour.stops.flatMap((stop) => {
     const view = stop.view === undefined ? undefined : views.get(stop.view);
@@ -21,12 +21,12 @@ export const stopsOf = (tour: Pick<Tour, "stops">, views: ReadonlyMap<string, Vi
 export const stepFrom = (index: number, by: number, count: number): number =>
   (((index + by) % count) + count) % count;
 
-/** A way in which a stop shows its layers; null: as saved in its view. */
+/** The layer that a visitor chose at a stop. Null shows the layers as saved in the view. */
 export type LayerChoice = Layer | null;
 
 /**
- * The existing layers of the stop, and before them the view as saved, unless that view shows only
- * one of them.
+ * Returns the choices at a stop: the view as saved, then the stop's existing layers. The view as
+ * saved is omitted if it shows exactly one of these layers.
  */
 export function choicesOf({ stop, view }: Stop, layers: readonly Layer[]): LayerChoice[] {
   const offered = stop.layers.flatMap((slug) => layers.find((layer) => layer.slug === slug) ?? []);
@@ -34,7 +34,7 @@ export function choicesOf({ stop, view }: Stop, layers: readonly Layer[]): Layer
   return shownAtFirst({ stop, view }, offered).length === 1 ? offered : [null, ...offered];
 }
 
-/** The choice at arrival. */
+/** Returns the initial choice at a stop. */
 export const firstChoice = (stop: Stop, choices: readonly LayerChoice[]): LayerChoice =>
   choices.includes(null)
     ? null
@@ -48,7 +48,10 @@ function shownAtFirst({ view }: Stop, offered: readonly Layer[]): Layer[] {
   return offered.filter((layer) => shown.get(layer.id)?.visible ?? layer.visible);
 }
 
-/** The layers of the view; among the choices, only the chosen one. */
+/**
+ * Returns the layers of the view. Of the layers that visitors can choose, only the chosen one is
+ * visible.
+ */
 export function layersShown(
   stop: Stop,
   layers: readonly Layer[],
@@ -62,7 +65,7 @@ export function layersShown(
   return [...shown].map(([layer, rest]) => ({ layer, ...rest }));
 }
 
-/** The visible layers, the topmost first. */
+/** Returns the visible layers, the topmost first. */
 export function seenLayers(layers: readonly Layer[], overrides: readonly LayerOverride[]): Layer[] {
   const visible = new Map(overrides.map((each) => [each.layer, each.visible]));
   return [...layers]

@@ -1,7 +1,6 @@
-// The kiosk's storage in its browser, with which the tour continues while the server is
-// unreachable: the page's files, the last answer about its tour, and all contents of the stops.
-// Where browsers have no such storage (addresses without TLS other than localhost), nothing is
-// stored.
+// The kiosk's storage in its browser. It contains the page's files, the last response about the
+// tour, and all contents of the stops. So the tour continues while the server is unreachable.
+// Browsers do not provide this storage for addresses without TLS, except localhost.
 
 import { Api, type Fetch } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -10,12 +9,12 @@ import { asKiosk, patientFetch, pictureOfView } from "./as-kiosk";
 import { cardOf } from "./cards";
 import { addressOfFile, thumbnailOfFile } from "./media";
 
-/** The used parts of the browser's CacheStorage and Cache. */
+/** The parts of the browser's CacheStorage and Cache that the kiosk uses. */
 export interface KioskCache {
   match(key: string): Promise<Response | undefined>;
   put(key: string, response: Response): Promise<void>;
   delete(key: string): Promise<unknown>;
-  /** Paths with their queries. */
+  /** Returns the stored paths with their queries. */
   keys(): Promise<string[]>;
 }
 
@@ -23,27 +22,32 @@ export interface StoreOptions {
   openCache: () => Promise<KioskCache | null>;
   secret: string;
   fetch?: Fetch;
-  /** Files of the page that were loaded. */
+  /** Returns the loaded files of the page. */
   files?: () => string[];
 }
 
 const kCache = "strata-kiosk";
-/** Key of the stored page, the same for every secret, and scope of the worker. */
+/**
+ * The key of the stored page, which is the same for every secret. It is also the scope of the
+ * worker.
+ */
 const kPageKey = "/kiosk/";
-const kMediaBytes = 400 * 2 ** 20; // of sounds and videos; the rest plays while the server is there
+// limit for stored sounds and videos; further ones need the server
+const kMediaBytes = 400 * 2 ** 20;
 const kSlowBytesPerMs = 200;
 const kFilePatienceMs = 30_000;
-const kAgainMs = 6 * 3600_000; // records may have changed without a new version of the tour
+const kAgainMs = 6 * 3600_000; // records may change without a new version of the tour
 
 export class KioskStore {
-  private _kept = ""; // state of the last complete storing
+  private _kept = ""; // the last state that was stored completely
   private _keptMs = 0;
   private _keeping = false;
 
   constructor(private readonly _options: StoreOptions) {}
 
   /**
-   * The last answer of the server for this link; null where it is unknown, or the link has expired.
+   * Returns the last response of the server for this link. Returns null if none is stored, or if
+   * the link has expired.
    */
   async lastTold(now: Date = new Date()): Promise<KioskSelf | null> {
     const found = await (await this._options.openCache())?.match(await this.selfKey());
@@ -52,7 +56,7 @@ export class KioskStore {
     return self.expires && new Date(self.expires) <= now ? null : self;
   }
 
-  /** Deletes everything after the link became invalid. */
+  /** Deletes all stored items, after the link became invalid. */
   async forget(): Promise<void> {
     this._kept = "";
     const cache = await this._options.openCache();
@@ -61,7 +65,8 @@ export class KioskStore {
 
   /**
    * Stores the tour with all its contents, one item after the other, and deletes items of earlier
-   * versions. `state`: a different one is stored again. The next call repeats failed items.
+   * versions. The tour is stored again if `state` differs from the last stored state. The next call
+   * retries failed items.
    */
   async keep(self: KioskSelf, state: string): Promise<void> {
     const nowMs = performance.now();
@@ -100,7 +105,7 @@ export class KioskStore {
     for (const file of (this._options.files ?? filesOfPage)()) await put(file, () => get(file));
     const putFile = async (key: string, bytes: number): Promise<void> => {
       if (await cache.match(key))
-        kept.add(key); // the content of an id never changes
+        kept.add(key); // the content of a file with this id never changes
       else
         await put(key, () =>
           this._options.fetch
@@ -120,7 +125,7 @@ export class KioskStore {
     return complete;
   }
 
-  /** A digest, so that the storage does not reveal the secret. */
+  /** Returns a key with a digest of the secret, so the storage does not reveal the secret. */
   private async selfKey(): Promise<string> {
     const digest = await crypto.subtle.digest(
       "SHA-256",
@@ -132,7 +137,7 @@ export class KioskStore {
 
 type Put = (key: string, ask: () => Promise<Response>) => Promise<void>;
 
-/** Requests everything that visitors can open at the stops, and stores each answer. */
+/** Requests all items that visitors can open at the stops, and stores the responses. */
 async function keepTour({ model, tour }: KioskSelf, get: Fetch, put: Put): Promise<void> {
   const api = new Api(async (address, init) => {
     const response = await get(asKiosk(address), init);
@@ -162,7 +167,9 @@ async function keepTour({ model, tour }: KioskSelf, get: Fetch, put: Put): Promi
       }
 }
 
-/** Pictures and subtitles, then as many sounds and videos as the budget permits, in their order. */
+/**
+ * Stores images and subtitles, then as many sounds and videos as the limit permits, in their order.
+ */
 async function keepFiles(
   self: KioskSelf,
   put: (key: string, bytes: number) => Promise<void>,
@@ -189,7 +196,7 @@ async function unlessGone(asked: Promise<unknown>): Promise<void> {
   }
 }
 
-/** Loaded files with immutable names, and the icon. */
+/** Returns the loaded files with immutable names, and the icon. */
 function filesOfPage(): string[] {
   const loaded = performance.getEntriesByType("resource").map(({ name }) => new URL(name));
   const own = loaded.filter(
@@ -212,12 +219,12 @@ export async function openBrowserCache(): Promise<KioskCache | null> {
   };
 }
 
-/** The worker that answers from the storage. Without it, the page works until a reload. */
+/** Starts the worker that serves stored items. Without it, the page works until it is reloaded. */
 export async function startWorker(): Promise<void> {
   try {
     await navigator.serviceWorker?.register("/kiosk-worker.js", { scope: kPageKey });
   } catch (error) {
-    // a browser without workers, or with workers disabled
+    // The browser does not support workers, or workers are disabled.
     console.info("no service worker:", String(error));
   }
 }

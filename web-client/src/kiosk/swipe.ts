@@ -3,8 +3,8 @@
 const kReach = 48; // CSS pixels
 
 /**
- * Calls `swiped` with +1 for a swipe to the left, which shows the next item on the right; −1 for
- * the opposite. Returns a function that stops the detection.
+ * Calls `swiped` with +1 for a swipe to the left, which shows the next item on the right. Calls it
+ * with −1 for a swipe to the right. Returns a function that stops the detection.
  */
 export function followSwipes(element: HTMLElement, swiped: (by: 1 | -1) => void): () => void {
   let start: { pointer: number; x: number; y: number } | null = null;
@@ -24,7 +24,7 @@ export function followSwipes(element: HTMLElement, swiped: (by: 1 | -1) => void)
     swiped(dx < 0 ? 1 : -1);
   };
   const cancel = (): void => void (start = null);
-  /** The end of a swipe is not a click on the button below it. */
+  /** Suppresses the click on the button at which a swipe ends. */
   const click = (event: Event): void => {
     if (justSwiped) event.stopPropagation();
     justSwiped = false;

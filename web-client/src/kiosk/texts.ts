@@ -1,5 +1,5 @@
-// Texts of the kiosk's own buttons and signs. The texts of the stops come with the tour, in
-// languages that this page may not have.
+// Texts of the kiosk's own buttons and signs. The tour contains the texts of the stops, in
+// languages that this page may not support.
 
 import { pageLanguage, type PageLanguage } from "../core/locale";
 
@@ -121,8 +121,8 @@ const es: KioskTexts = {
 const all: Record<PageLanguage, KioskTexts> = { en, de, es };
 
 /**
- * In the chosen language of the tour, or else in the first of the tour's languages that this page
- * has, or English.
+ * Returns the texts in the chosen language. If this page does not support it, returns the texts in
+ * the first of the tour's languages that this page supports, or in English.
  */
 export const textsIn = (language: string, languages: readonly string[]): KioskTexts =>
   all[pageLanguage(language, languages)];

@@ -1,15 +1,16 @@
-// The rules of the service worker: the requests that it answers in place of the server, and the
-// source of each answer. The page stores items in the cache (store.ts); the worker only reads them.
-// This file imports no code of the page: a worker is a single file without shared chunks.
+// The rules of the service worker: the requests that it handles instead of the server, and the
+// source of each response. The page stores items in the cache (store.ts), and the worker only reads
+// them. This file imports no code of the page, because a worker is a single file without shared
+// chunks.
 
 /**
- * page: any kiosk's address; all have the same page. file: immutable, named by its content. data:
- * the server's current answer if it is reachable. media: a file of the tour, whose content never
- * changes, perhaps only a part of it.
+ * page: the address of any kiosk. All kiosks have the same page. file: an immutable file, whose
+ * name depends on its content. data: the server's current response, if the server is reachable.
+ * media: a file of the tour, or a part of it. Its content never changes.
  */
 export type Answered = "page" | "file" | "media" | "data" | "not";
 
-/** `own`: the worker's scope, which is the path of all kiosks. */
+/** Classifies a request. `own` is the worker's scope, which is the path of all kiosks. */
 export function answered(
   { method, mode, url }: { method: string; mode: string; url: string },
   own: string,
@@ -28,8 +29,8 @@ export function answered(
 }
 
 /**
- * The bytes that a Range header requests of a file of `size` bytes, the last one included. Null: the
- * whole file, as for any header that is not one range of bytes.
+ * Returns the bytes that a Range header requests of a file with `size` bytes, including the last
+ * one. Returns null for the whole file, also if the header is not a single range of bytes.
  */
 export function requestedBytes(
   header: string | null,
@@ -43,6 +44,6 @@ export function requestedBytes(
   return first <= last ? { first, last } : null;
 }
 
-/** The answer comes from a proxy and not from the server. */
+/** Whether the response comes from a proxy that cannot reach the server. */
 export const saysAway = (status: number): boolean =>
   status === 502 || status === 503 || status === 504;

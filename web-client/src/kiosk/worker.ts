@@ -1,5 +1,5 @@
-// The service worker of the kiosk page: while the server is unreachable, it answers with stored
-// items. Other pages are out of its scope.
+// The service worker of the kiosk page. While the server is unreachable, it responds with stored
+// items. Other pages are outside its scope.
 
 import { answered, requestedBytes, saysAway } from "./worker-rules";
 
@@ -19,7 +19,7 @@ interface WorkerScope {
 }
 const scope = globalThis as unknown as WorkerScope;
 
-const kPatienceMs = 10_000; // pictures need a moment; an unreachable server never answers
+const kPatienceMs = 10_000; // images take a moment; an unreachable server never responds
 
 scope.addEventListener("install", (event) => event.waitUntil(scope.skipWaiting()));
 scope.addEventListener("activate", (event) => event.waitUntil(scope.clients.claim()));
@@ -28,7 +28,7 @@ scope.addEventListener("fetch", (event) => {
   const own = scope.registration.scope;
   switch (answered(request, own)) {
     case "page":
-      return event.respondWith(newest(request, own)); // the same page for every secret
+      return event.respondWith(newest(request, own)); // the page is the same for every secret
     case "file":
       return event.respondWith(stored(request.url).then((found) => found ?? fetch(request)));
     case "media":
@@ -44,7 +44,7 @@ scope.addEventListener("fetch", (event) => {
 const stored = (key: string): Promise<Response | undefined> =>
   caches.match(key, { ignoreVary: true });
 
-/** Players read sounds and videos in parts. */
+/** Returns the requested part of a file. Players read sounds and videos in parts. */
 async function partOf(whole: Response, request: Request): Promise<Response> {
   const header = request.headers.get("Range");
   if (header === null) return whole;
@@ -57,10 +57,13 @@ async function partOf(whole: Response, request: Request): Promise<Response> {
   return new Response(content.slice(part.first, part.last + 1), { status: 206, headers });
 }
 
-/** The server's answer, or the stored one if the server does not answer within kPatienceMs. */
+/**
+ * Returns the server's response, or the stored one if the server does not respond within
+ * kPatienceMs.
+ */
 async function newest(request: Request, key: string): Promise<Response> {
   const asked = fetch(request);
-  asked.catch(() => {}); // a failure after the time limit is ignored
+  asked.catch(() => {}); // ignores a failure after the time limit
   let timer: ReturnType<typeof setTimeout> | undefined;
   const late = new Promise<null>(
     (resolve) => (timer = setTimeout(() => resolve(null), kPatienceMs)),

@@ -1,5 +1,5 @@
 // The viewer's camera: a turntable around the model's up axis, in world coordinates and double
-// precision; the server subtracts the model's origin. Pixels belong to the window (width × height),
+// precision. The server subtracts the model's origin. Pixels refer to the window (width × height),
 // with the origin at the top left and y down.
 
 import type { Plane } from "../core/protocol.gen";
@@ -13,7 +13,7 @@ export interface Bounds {
   max: Vec3;
 }
 
-/** The camera as the protocol sends it: column-major, OpenGL clip space. */
+/** The camera in the format of the protocol: column-major matrices, OpenGL clip space. */
 export interface CameraMessage {
   view: number[];
   projection: number[];
@@ -34,8 +34,8 @@ interface Frame {
   up: Vec3;
 }
 
-// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`. The
-// frame of the opposite axis is rotated about `right` by half a turn, as on the server
+// Right-handed coordinate frames of the front view: to the right, into the screen, and up. The
+// coordinate frame of the opposite axis is rotated about `right` by half a turn, as on the server
 // (server/core/up.h).
 export const kFrames: Record<UpAxis, Frame> = {
   z: { right: [1, 0, 0], into: [0, 1, 0], up: [0, 0, 1] },
@@ -47,9 +47,9 @@ export const kFrames: Record<UpAxis, Frame> = {
 };
 export const kUpAxes: readonly UpAxis[] = ["x", "y", "z", "-x", "-y", "-z"];
 
-/** "z", "−y". */
+/** Returns the name of an axis, such as "z" or "−y". */
 export const axisName = (up: UpAxis): string => up.replace("-", "−");
-/** "+Z", "−Y". */
+/** Returns the name of an up direction, such as "+Z" or "−Y". */
 export const upName = (up: UpAxis): string =>
   (up.startsWith("-") ? `−${up.slice(1)}` : `+${up}`).toUpperCase();
 
@@ -60,17 +60,17 @@ export const boundingRadius = (bounds: Bounds): number =>
 export class OrbitCamera {
   target: Vec3 = [0, 0, 0];
   distance = 1;
-  azimuth = 0; // radians around up; 0 looks at the front
+  azimuth = 0; // radians around the up axis; 0 is the front view
   elevation = 0; // radians above the horizon, −π/2…π/2
   perspective = true;
   /**
-   * Tangent of half the vertical field of view; it differs from the default while this camera shows
-   * another participant's view, or a view saved in another window.
+   * The tangent of half the vertical field of view. It differs from the default while this camera
+   * shows another participant's view, or a view that was saved in another window.
    */
   halfField = kHalfFieldTangent;
   width = 1; // window pixels
   height = 1;
-  /** This camera does not see parts that the planes cut away. */
+  /** The planes of the section. The camera does not show the parts that they cut away. */
   section: Plane[] = [];
 
   private _bounds: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
@@ -116,24 +116,24 @@ export class OrbitCamera {
   }
 
   /**
-   * Shows a part of the model, from the side that its surface faces. Without `normal`: from the
-   * part's side of the model; a part near the middle has no side.
+   * Shows a part of the model, from the direction that its surface faces. Without `normal`, shows
+   * it from its side of the model. A part near the middle has no side.
    */
   lookAt(box: Bounds, normal?: Vec3): void {
     const middle = centre(box);
     const outwards = normal ?? subtract(middle, centre(this._bounds));
     const { back } = this.axes();
     const hasSide = normal !== undefined || length(outwards) > 0.15 * boundingRadius(this._bounds);
-    // Rotates only to a part that faces away; a visible one keeps the direction.
+    // Rotates only if the part faces away from the viewer.
     if (hasSide && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
     this.target = middle;
-    const least = boundingRadius(this._bounds) * 0.08; // includes some surroundings of a small part
+    const least = boundingRadius(this._bounds) * 0.08; // shows some surroundings of a small part
     const radius = Math.max(boundingRadius(box), least);
     const halfWidth = (this.halfField * this.width) / this.height;
     this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(this.halfField, halfWidth)));
   }
 
-  /** Rotates so that `outwards` points to the viewer. */
+  /** Rotates the camera until `outwards` points to the viewer. */
   private face(outwards: Vec3): void {
     const frame = kFrames[this._up];
     const [x, y, z] = [
@@ -146,7 +146,7 @@ export class OrbitCamera {
     this.elevation = Math.min(1.2, Math.max(-1.2, Math.atan2(z, level)));
   }
 
-  /** From slightly right and above, which shows that the object is solid. */
+  /** Sets the first view, from slightly right and above, which shows that the object is solid. */
   firstView(): void {
     this.azimuth = 0.4;
     this.elevation = 0.18;
@@ -167,7 +167,9 @@ export class OrbitCamera {
     this.fit();
   }
 
-  /** Unit vectors of the window in the world: right, up, and back to the viewer. */
+  /**
+   * Returns the unit vectors of the window in world coordinates: right, up, and back to the viewer.
+   */
   axes(): { right: Vec3; up: Vec3; back: Vec3 } {
     const frame = kFrames[this._up];
     const [sa, ca] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
@@ -182,26 +184,29 @@ export class OrbitCamera {
     return add(this.target, scale(this.axes().back, this.distance));
   }
 
-  /** World length of one window pixel at a depth in front of the eye. */
+  /** Returns the world length of one window pixel at a depth in front of the eye. */
   unitPerPixel(depth = this.distance): number {
     return (2 * this.halfField * (this.perspective ? depth : this.distance)) / this.height;
   }
 
-  /** World length of a window pixel at a place, for the current camera. */
+  /**
+   * Returns a function for the current camera. It returns the world length of a window pixel at a
+   * point.
+   */
   pixelSize(): (place: Vec3) => number {
     const [eye, { back }, unit] = [this.eye(), this.axes(), this.unitPerPixel(1)];
     const { perspective } = this;
     return (place) => (perspective ? unit * dot(subtract(eye, place), back) : unit);
   }
 
-  /** Restores the default field; objects at the target's distance keep their size. */
+  /** Restores the default field of view. Objects at the target's distance keep their size. */
   resetField(): void {
     this.distance *= this.halfField / kHalfFieldTangent;
     this.halfField = kHalfFieldTangent;
   }
 
   /**
-   * Sets the center of rotation to the middle of the window at this depth. The picture does not
+   * Sets the center of rotation to the middle of the window at this depth. The view does not
    * change.
    */
   turnAround(depth: number): void {
@@ -218,7 +223,7 @@ export class OrbitCamera {
     this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + elevationDelta));
   }
 
-  /** A drag of one pixel rotates the model by the same angle in both directions. */
+  /** Rotates the model by a drag in pixels. The angle per pixel is the same in both directions. */
   orbitPixels(dx: number, dy: number): void {
     const turn = Math.PI / Math.min(this.width, this.height);
     this.orbit(-dx * turn, dy * turn);
@@ -230,7 +235,10 @@ export class OrbitCamera {
     this.target = add(this.target, add(scale(right, -dx * unit), scale(up, dy * unit)));
   }
 
-  /** factor < 1 zooms in. The point under the window pixel (x, y) stays there. */
+  /**
+   * Zooms in if the factor is less than 1. The point under the window pixel (x, y) keeps its
+   * position.
+   */
   zoomAt(factor: number, x: number, y: number): void {
     const radius = boundingRadius(this._bounds);
     const distance = Math.min(
@@ -330,7 +338,7 @@ export class OrbitCamera {
     };
   }
 
-  /** Window position of a world point; null behind the eye. */
+  /** Returns the window position of a world point, or null behind the eye. */
   project(point: Vec3): { x: number; y: number; depth: number } | null {
     const seen = transform(this.viewMatrix(), [point[0], point[1], point[2], 1]);
     const clip = transform(this.projectionMatrix(), seen);
@@ -342,13 +350,13 @@ export class OrbitCamera {
     };
   }
 
-  /** The same; also null outside the window. */
+  /** Returns the window position of a world point, or null behind the eye or outside the window. */
   projectInside(point: Vec3): { x: number; y: number; depth: number } | null {
     const at = this.project(point);
     return at && at.x >= 0 && at.y >= 0 && at.x <= this.width && at.y <= this.height ? at : null;
   }
 
-  /** Whether the section's planes cut the world point away. */
+  /** Whether the planes of the section cut the world point away. */
   cutsAway(point: Vec3): boolean {
     return this.section.some(([a, b, c, d]) => dot([a, b, c], point) + d < 0);
   }
@@ -363,7 +371,7 @@ export class OrbitCamera {
   }
 }
 
-/** The position of a camera; `between` interpolates two of them. */
+/** The position of a camera. `between` interpolates two positions. */
 export type Place = Pick<
   OrbitCamera,
   "target" | "distance" | "azimuth" | "elevation" | "perspective" | "halfField"

@@ -1,4 +1,4 @@
-// Following another camera: the position from which this window shows the same.
+// Follows another camera: computes the position from which this window shows the same content.
 
 import {
   boundingRadius,
@@ -12,16 +12,17 @@ import {
 } from "./camera";
 import { add, dot, length, scale, subtract, type Vec3 } from "./vector";
 
-// distance of the target from the eye, relative to the model's radius, if the model's middle is
-// behind the eye
+// The distance of the target from the eye, relative to the model's radius, if the middle of the
+// model is behind the eye.
 const kNearest = 0.02;
-// lengths relative to the distance, and radians: less than a pixel in most windows
+// A tolerance for lengths relative to the distance, and for radians. It is less than a pixel in
+// most windows.
 const kArrived = 5e-4;
 
 /**
- * For `own`: the eye and direction of the other camera, and a field that includes its whole window,
- * for any shape of the own window. A tilted horizon and an off-axis window, which cameras of this
- * page never have, are ignored.
+ * Returns the position for `own` with the eye and direction of the other camera. The field of view
+ * includes the other camera's whole window, for any aspect ratio of this window. A tilted horizon
+ * and an off-axis window are ignored, because cameras of this page never have them.
  */
 export function placeLike(
   theirs: Pick<CameraMessage, "view" | "projection">,
@@ -53,7 +54,7 @@ export function placeLike(
   };
 }
 
-/** Whether the remaining distance to `place` is too small to see. */
+/** Whether the remaining distance to `place` is too small to be visible. */
 export function hasArrived(camera: OrbitCamera, place: Place): boolean {
   const here = placeOf(camera);
   const close = (a: number, b: number): boolean => Math.abs(a - b) <= kArrived;

@@ -1,5 +1,5 @@
-// The direction of raking light, as a point of a round pad: the middle is the viewing direction,
-// the rim the side.
+// The direction of raking light, as a point on a round pad. The middle of the pad is light from the
+// viewing direction, the rim is light from the side.
 
 import type { Point3 } from "../core/protocol.gen";
 
@@ -8,7 +8,9 @@ export interface PadPoint {
   y: number; // up, −1…1
 }
 
-/** Light nearly parallel to the picture plane shows only edges. */
+/**
+ * The lowest angle of the light. Light that is nearly parallel to the image plane shows only edges.
+ */
 const kLowestDegrees = 6;
 const kRim = Math.cos((kLowestDegrees * Math.PI) / 180);
 
@@ -17,7 +19,9 @@ export function onPad({ x, y }: PadPoint): PadPoint {
   return length > kRim ? { x: (x / length) * kRim, y: (y / length) * kRim } : { x, y };
 }
 
-/** Towards the light in the eye's axes: x right, y up, z towards the viewer. */
+/**
+ * Returns the direction to the light in the axes of the eye: x right, y up, z towards the viewer.
+ */
 export function directionOf(point: PadPoint): Point3 {
   const { x, y } = onPad(point);
   return [x, y, Math.sqrt(1 - x * x - y * y)];
@@ -28,7 +32,10 @@ export function padPoint(direction: Point3): PadPoint {
   return onPad({ x: direction[0] / length, y: direction[1] / length });
 }
 
-/** Degrees clockwise from the top, 0…360, and above the picture plane. */
+/**
+ * Returns the angles of the light in degrees: clockwise from the top, 0…360, and above the image
+ * plane.
+ */
 export function anglesOf(point: PadPoint): { from: number; above: number } {
   const { x, y } = onPad(point);
   return {

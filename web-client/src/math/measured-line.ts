@@ -1,36 +1,37 @@
-// Measures of places that a user has set on a surface, computed from the places alone: lengths in
-// their unit, areas in its square. domain/profile describes the surface between them.
+// Measures of points that a user has set on a surface, computed only from these points. Lengths are
+// in the unit of the points, areas in the square of this unit. domain/profile describes the surface
+// between the points.
 
 import { kFrames, type UpAxis } from "./camera";
 import { add, cross, dot, length, scale, subtract, type Vec3 } from "./vector";
 
-/** The straight lengths from place to place, one for each leg. */
+/** Returns the straight lengths from point to point, one for each leg. */
 export const legsOf = (places: readonly Vec3[]): number[] =>
   places.slice(1).map((place, index) => length(subtract(place, places[index]!)));
 
 export const sum = (numbers: readonly number[]): number =>
   numbers.reduce((total, each) => total + each, 0);
 
-/** The place's coordinate along the model's up axis. */
+/** Returns the coordinate of the point along the model's up axis. */
 export const heightOf = (place: Vec3, up: UpAxis): number => dot(place, kFrames[up].up);
 
 export interface FlatPolygon {
   area: number;
   perimeter: number;
-  /** Largest distance of a place from the plane: 0 where all are in one plane. */
+  /** The largest distance of a point from the plane. It is 0 if all points are in one plane. */
   off_plane: number;
 }
 
 /**
- * The flat area of the polygon through the places, in their order (Newell's formula): exact for
- * places in one plane; otherwise the area of the projection along the normal with the largest area.
- * In a self-intersecting polygon, parts with the opposite orientation count as negative. Null:
- * fewer than three places.
+ * Returns the flat area of the polygon through the points, in their order (Newell's formula). It is
+ * exact for points in one plane. Otherwise it is the area of the projection along the normal with
+ * the largest area. In a self-intersecting polygon, parts with the opposite orientation count as
+ * negative. Returns null for fewer than three points.
  */
 export function flatPolygon(places: readonly Vec3[]): FlatPolygon | null {
   const [first, ...others] = places;
   if (!first || others.length < 2) return null;
-  // coordinates of a site may be large and its polygons small
+  // A site may have large coordinates and small polygons.
   const fromFirst = others.map((place) => subtract(place, first));
   const twice = fromFirst
     .slice(1)

@@ -1,6 +1,6 @@
 // Planes that cut a model open, from a user's choice: a cut across one axis, or a box. Positions
-// are shares of the model's bounds, so that they have the same meaning for a coin and a quarry.
-// Other planes come from named views and are not changed.
+// are fractions of the model's bounds, so they have the same meaning for a coin and a quarry. Other
+// planes come from saved views and are not changed.
 
 import type { Bounds } from "./camera";
 import type { Plane } from "../core/protocol.gen";
@@ -10,16 +10,16 @@ export type SectionMode = "off" | Axis | "box" | "planes";
 
 export interface SectionChoice {
   mode: SectionMode;
-  position: number; // of a cut, 0…1
-  flipped: boolean; // the other side is kept
-  box: { min: [number, number, number]; max: [number, number, number] }; // 0…1
-  planes: Plane[]; // unchanged, for the mode "planes"
+  position: number; // position of a cut, 0…1
+  flipped: boolean; // the cut keeps the other side
+  box: { min: [number, number, number]; max: [number, number, number] }; // fractions, 0…1
+  planes: Plane[]; // unchanged planes, for the mode "planes"
 }
 
 export const kAxes: readonly Axis[] = ["x", "y", "z"];
-/** Smallest share of the model that remains in a box. */
+/** The smallest fraction of the model that remains in a box. */
 export const kThinnestBox = 0.01;
-const kRounded = 1e-9; // rounding error of a share in world coordinates
+const kRounded = 1e-9; // rounding error of a fraction in world coordinates
 
 export const noSection = (): SectionChoice => ({
   mode: "off",
@@ -29,12 +29,15 @@ export const noSection = (): SectionChoice => ({
   planes: [],
 });
 
-/** A position in the world on an axis. */
+/** Returns the world position on an axis for a fraction of the bounds. */
 export function worldPosition(bounds: Bounds, axis: number, share: number): number {
   return bounds.min[axis]! + (bounds.max[axis]! - bounds.min[axis]!) * share;
 }
 
-/** [a, b, c, d] keeps the half space a x + b y + c z + d ≥ 0. */
+/**
+ * Returns the planes of a choice. A plane [a, b, c, d] keeps the half-space a x + b y + c z + d ≥
+ * 0.
+ */
 export function sectionPlanes(choice: SectionChoice, bounds: Bounds): Plane[] {
   const plane = (axis: number, share: number, keepsAbove: boolean): Plane => {
     const sign = keepsAbove ? 1 : -1;
@@ -55,8 +58,8 @@ export function sectionPlanes(choice: SectionChoice, bounds: Bounds): Plane[] {
 }
 
 /**
- * The choice for these planes: a cut or a box within the bounds where possible, else the planes
- * themselves.
+ * Returns the choice for these planes. If possible, it is a cut or a box within the bounds.
+ * Otherwise it keeps the planes.
  */
 export function sectionChoice(planes: readonly Plane[], bounds: Bounds): SectionChoice {
   if (planes.length === 0) return noSection();
@@ -82,7 +85,10 @@ export function sectionChoice(planes: readonly Plane[], bounds: Bounds): Section
   return isInsideOut ? kept : { ...noSection(), mode: "box", box };
 }
 
-/** For a plane across an axis and through the bounds; null: any other plane. */
+/**
+ * Returns the position of a plane that crosses an axis within the bounds, or null for any other
+ * plane.
+ */
 function sideOf(
   [a, b, c, d]: Plane,
   { min, max }: Bounds,
@@ -91,12 +97,12 @@ function sideOf(
   const axis = normal.findIndex((part) => part !== 0);
   if (axis < 0 || normal.filter((part) => part !== 0).length > 1) return null;
   const share = (-d / normal[axis]! - min[axis]!) / (max[axis]! - min[axis]!);
-  // also for a flat model, where it is NaN
+  // For a flat model, the fraction is NaN.
   if (!(share >= -kRounded && share <= 1 + kRounded)) return null;
   return { axis, share: Math.min(1, Math.max(0, share)), keepsAbove: normal[axis]! > 0 };
 }
 
-/** A side of the box moved to a share, never past the opposite side. */
+/** Moves a side of the box to a fraction of the bounds, but never past the opposite side. */
 export function withBoxSide(
   choice: SectionChoice,
   side: "min" | "max",

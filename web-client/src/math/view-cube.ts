@@ -2,7 +2,7 @@
 
 import type { OrbitCamera, StandardView } from "./camera";
 
-/** In the order of their keys. */
+/** The standard views, in the order of their keys. */
 export const kStandardViews: readonly StandardView[] = [
   "front",
   "back",
@@ -20,13 +20,13 @@ const kSame = 1e-6; // radians
 
 const quarters = (azimuth: number): number => ((Math.round(azimuth / kQuarter) % 4) + 4) % 4;
 
-/** The view whose face points to the viewer most. */
+/** Returns the view whose face points most directly to the viewer. */
 export function viewTowards({ azimuth, elevation }: Direction): StandardView {
   if (Math.abs(elevation) > kQuarter / 2) return elevation > 0 ? "top" : "bottom";
   return kAround[quarters(azimuth)]!;
 }
 
-/** The standard view from exactly this direction; null: none. */
+/** Returns the standard view from exactly this direction, or null. */
 export function standardViewOf(direction: Direction): StandardView | null {
   const { azimuth, elevation } = direction;
   const isUpright = Math.abs(Math.abs(elevation) - kQuarter) < kSame;
@@ -37,7 +37,7 @@ export function standardViewOf(direction: Direction): StandardView | null {
     : null;
 }
 
-/** The view that an arrow key goes to from another; null for other keys. */
+/** Returns the view to which an arrow key moves from `from`. Returns null for other keys. */
 export function neighborView(from: StandardView, key: string): StandardView | null {
   const at = kAround.indexOf(from);
   switch (key) {

@@ -1,4 +1,5 @@
-// Each failure of a call, including a lost network, as an error with a problem for people.
+// Represents each failure of a call, including a lost network, as an error with a problem for the
+// user.
 
 import { ownProblems } from "../core/problems";
 import type { ProblemBody } from "../core/types";
@@ -20,7 +21,10 @@ export function unreachable(): ApiError {
   return new ApiError({ status: 0, title, detail });
 }
 
-/** The problem in an answer's text; for other texts, the meaning of the status in plain words. */
+/**
+ * Returns the problem in a response's text. For other texts, returns a problem that describes the
+ * status in plain words.
+ */
 export function problemOfText(status: number, text: string): ProblemBody {
   try {
     const body = JSON.parse(text) as Partial<ProblemBody> | null;
@@ -38,7 +42,7 @@ export function problemOfText(status: number, text: string): ProblemBody {
       };
     }
   } catch {
-    // Not JSON: a proxy's page, or empty. The status is sufficient.
+    // The text is not JSON but a proxy's page, or it is empty. The status is sufficient.
   }
   const words = ownProblems();
   const [title, detail] = words.statuses[status] ?? [

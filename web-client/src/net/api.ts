@@ -37,7 +37,7 @@ export class Api {
     return parsed(await this.request(call, options));
   }
 
-  /** Returns the value with its ETag; "" without one. */
+  /** Returns the value with its ETag, which is "" if the response has none. */
   async versioned<C extends Call>(
     call: C,
     ...[options]: Given<Options<C>>
@@ -46,12 +46,12 @@ export class Api {
     return { value: await parsed(response), etag: response.headers.get("ETag") ?? "" };
   }
 
-  /** For a call without content in its answer. */
+  /** Sends a call whose response has no content. */
   async send<C extends Call>(call: C, ...[options]: Given<Options<C>>): Promise<void> {
     await this.request(call, options);
   }
 
-  /** Deletes the current version. */
+  /** Reads a resource and deletes the version that was read. */
   async deleteAsRead<C extends Call & `DELETE ${string}`>(
     call: C,
     options: Pick<Options<C>, "path" & keyof Options<C>>,
@@ -62,8 +62,8 @@ export class Api {
   }
 
   /**
-   * All entries of a list, page by page: each page begins after the last entry of the previous one,
-   * regardless of writes in between.
+   * Reads all entries of a list, page by page. Each page begins after the last entry of the
+   * previous page, even if entries were written in the meantime.
    */
   async all<C extends Call, K extends ListName<Answer<C>>>(
     call: C,
@@ -82,10 +82,11 @@ export class Api {
     return found;
   }
 
-  /** A file; its request can be canceled, also during the transfer. */
+  /** Reads a file. The request can be canceled, also during the transfer. */
   async blob<C extends Call>(call: C, ...[options]: Given<Options<C>>): Promise<Blob> {
     const given: AnyOptions | undefined = options;
-    // the server refuses a request that accepts only JSON if the answer is a file of another type
+    // The server refuses a request that accepts only JSON if the response is a file of another
+    // type.
     const response = await this.request(call, { accept: "*/*", ...given });
     try {
       return await response.blob();
@@ -107,7 +108,7 @@ export class Api {
     return uploadFiles(request, files, progress, asForm);
   }
 
-  /** The address of a call, for links and downloads. */
+  /** Returns the address of a call, for links and downloads. */
   url<C extends Call>(call: C, ...[options]: Given<Options<C>>): string {
     const given: AnyOptions | undefined = options;
     return kBase + targetOf(call, given ?? {});
@@ -151,15 +152,15 @@ export class Api {
 const kAnyFile = "application/octet-stream";
 
 /**
- * Calls with secrets in the request or answer: the server must not store these, as it does for an
- * `Idempotency-Key`.
+ * Calls with secrets in the request or response. They have no `Idempotency-Key`, because the server
+ * would store their responses.
  */
 const kWithSecrets =
   /^POST \/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+|models\/[^/]+\/tours\/[^/]+\/kiosks)$/;
 
 const methodOf = (call: Call): string => call.slice(0, call.indexOf(" "));
 
-/** The path with its parameters filled in, and the query. */
+/** Returns the path with its parameters filled in, and the query. */
 function targetOf(call: Call, { path = {}, query = {} }: AnyOptions): string {
   const parts = path as Record<string, unknown>;
   const filled = call
@@ -169,11 +170,11 @@ function targetOf(call: Call, { path = {}, query = {} }: AnyOptions): string {
   return asked.length > 0 ? `${filled}?${new URLSearchParams(asked as string[][])}` : filled;
 }
 
-/** For a change of the version that was read. */
+/** Returns the header for a change that applies only to the version that was read. */
 export const ifVersion = (version: number): { "If-Match": string } => ({
   "If-Match": `"v${version}"`,
 });
-/** For a change that applies to any version. */
+/** The header for a change that applies to any version. */
 export const kAsItIs = { "If-Match": "*" };
 
 async function parsed<T>(response: Response): Promise<T> {
@@ -185,8 +186,8 @@ async function parsed<T>(response: Response): Promise<T> {
 }
 
 /**
- * Address of the next page of a list, below `kBase`, from the `Link` of this one (RFC 8288); null:
- * this is the last page.
+ * Returns the address of the next page of a list, below `kBase`, from the `Link` header of the
+ * current page (RFC 8288). Returns null after the last page.
  */
 export function nextPage(link: string | null): string | null {
   const target = /<([^>]*)>\s*;\s*rel="?next"?/.exec(link ?? "")?.[1];

@@ -1,10 +1,10 @@
-// The parameters and answers of each call of the HTTP interface, from the contract. Types only.
+// The types of the parameters and responses of each call of the HTTP interface, from the contract.
 
 import type { paths } from "./contract.gen";
 
 type Method = "get" | "post" | "put" | "patch" | "delete";
 
-/** A call by its method and its path, as in "PATCH /models/{model}". */
+/** A call, given by its method and path, such as "PATCH /models/{model}". */
 export type Call = {
   [P in keyof paths]: {
     [M in Method]: paths[P][M] extends object ? `${Uppercase<M>} ${P}` : never;
@@ -22,7 +22,7 @@ type Parameters<C extends Call> =
   Operation<C> extends { parameters: infer P extends { query?: object; header?: object } }
     ? Pick<P, "query"> & Path<P> & Header<C, Exclude<P["header"], undefined>>
     : never;
-/** Changes of versioned resources require `If-Match`: the compiler rejects a call without it. */
+/** Changes to versioned resources require `If-Match`. The compiler rejects a call without it. */
 type Header<C, H> = [H] extends [never]
   ? unknown
   : [C, "If-Match"] extends [`${"PATCH" | "DELETE"} ${string}`, keyof H]
@@ -33,7 +33,7 @@ type Path<P> = P extends { path: infer I } ? { path: { [K in keyof I]: Id } } : 
 type Body<O> = O extends { requestBody: { content: infer T } }
   ? { body: T extends { "application/json": infer J } ? Sent<J> | FileIn<T> : FileIn<T> }
   : { body?: undefined };
-/** Also accepts read-only values. */
+/** The type of a sent value, which may be read-only. */
 export type Sent<T> = T extends object ? { readonly [K in keyof T]: Sent<T[K]> } : T;
 type FileIn<T> = Exclude<keyof T, "application/json"> extends never ? never : Blob;
 
@@ -41,23 +41,23 @@ export type Options<C extends Call> = Parameters<C> &
   Body<Operation<C>> & {
     /** The media type of a file to send. */
     type?: string;
-    /** Instead of JSON. */
+    /** The accepted media type, instead of JSON. */
     accept?: string;
     signal?: AbortSignal;
-    /** Continues after the page is closed. */
+    /** Whether the request continues after the page is closed. */
     keepalive?: boolean;
   };
 export type Query<C extends Call> = NonNullable<Options<C>["query"]>;
 
-/** Makes the options optional where the call requires none. */
+/** Makes the options optional if the call requires none. */
 export type Given<O> = object extends O ? [options?: O] : [options: O];
 
 type Json<R> = R extends { content: { "application/json": infer T } } ? T : never;
-/** The JSON answer of a call. */
+/** The JSON response of a call. */
 export type Answer<C extends Call> =
   Operation<C> extends { responses: infer R } ? Json<R[keyof R]> : never;
 
-/** For an answer with a list: the member that contains it. */
+/** The member of a response that contains its list. */
 export type ListName<A> = {
   [K in keyof A]: A[K] extends readonly unknown[] ? K : never;
 }[keyof A] &

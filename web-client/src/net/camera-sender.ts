@@ -1,20 +1,20 @@
-// Sends the camera to the server. The latest wins: at most one camera for each drawn picture,
-// always the latest one.
+// Sends the camera to the server. It sends at most one camera for each repaint of the page, always
+// the latest one.
 
 import type { CameraMessage } from "../math/camera";
 import type { ClientMessage } from "../core/protocol.gen";
 
 export interface CameraHost {
   maySend(): boolean;
-  /** Whether so much is unsent that cameras must wait. */
+  /** Whether so much data is unsent that cameras must wait. */
   isBusy(): boolean;
   send(message: ClientMessage): void;
-  /** Calls back before the next picture is drawn. */
+  /** Calls back before the next repaint. */
   nextFrame(callback: () => void): void;
 }
 
 export class CameraSender {
-  /** Number of the last camera sent; frames echo it. */
+  /** The number of the last sent camera. The server returns it in frames. */
   seq = 0;
   private _newest: { camera: CameraMessage; moving: boolean } | null = null;
   private _isScheduled = false;
@@ -30,11 +30,11 @@ export class CameraSender {
     this._newest = null;
   }
 
-  /** Sends the latest camera, also after a reconnection. */
+  /** Sends the latest camera again, for example after a reconnection. */
   sendNow(): void {
     if (!this._newest) return;
     const { camera, moving } = this._newest;
-    this._newest = { camera, moving: false }; // after a reconnection the camera is not moving
+    this._newest = { camera, moving: false }; // after a reconnection, the camera is not moving
     this.seq += 1;
     this._host.send({ op: "camera", seq: this.seq, ...camera, moving });
   }

@@ -1,6 +1,6 @@
-// The WebSocket of one open model: sends hello, keeps the latest camera, resends unsaved changes,
-// and reconnects automatically. Tests can replace the socket by a fake; this file does not use the
-// DOM.
+// The WebSocket connection of one open model. It sends hello, keeps the latest camera, resends
+// unsaved changes, and reconnects automatically. Tests can replace the socket by a fake, because
+// this file does not use the DOM.
 
 import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
@@ -41,12 +41,12 @@ import {
   type Welcome,
 } from "../core/protocol.gen";
 
-/** lost: waits for the next attempt. open: the server has sent welcome. */
+/** lost: the connection waits for the next attempt. open: the server has sent welcome. */
 export type ConnectionState = "connecting" | "open" | "lost" | "closed";
 
 export interface SavingState {
-  waiting: number; // changes that are not durable
-  failing: boolean; // the server could not save some of them; they are sent again
+  waiting: number; // number of changes that are not durable yet
+  failing: boolean; // the server could not save some changes; they are sent again
 }
 
 export interface ConnectionCallbacks {
@@ -68,13 +68,16 @@ export interface ConnectionCallbacks {
   snapshot(message: SnapshotEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
-  /** A refusal. A permanently refused change is not waiting anymore. */
+  /** The server refused a message. A permanently refused change no longer waits. */
   problem(problem: Omit<ProblemMessage, "op">): void;
-  /** Number of changes that an earlier page could not save and that this page sends again. */
+  /**
+   * Reports the number of changes that an earlier page could not save and that this page sends
+   * again.
+   */
   takenUp(changes: number): void;
 }
 
-/** Storage of waiting changes that survives the page (offline-queue.ts). */
+/** Storage for waiting changes that persists after the page is closed (offline-queue.ts). */
 export interface ChangeQueue {
   read(): Promise<ChangeMessage[]>;
   put(message: ChangeMessage): void;
@@ -86,18 +89,21 @@ export interface ConnectionOptions {
   client: string;
   devicePixelRatio: number;
   makeSocket?: (url: string, protocol: string) => SocketLike;
-  /** For the person who paints here; without it, unsaved changes live as long as the connection. */
+  /**
+   * Makes the queue of the user who paints. Without a queue, unsaved changes are lost when the
+   * connection object is closed.
+   */
   makeQueue?: (user: string, model: number) => ChangeQueue;
-  /** Calls back before the next picture is drawn. */
+  /** Calls back before the next repaint. */
   nextFrame?: (callback: () => void) => void;
   random?: () => number;
 }
 
-// for the handshake and the welcome; the server may be loading the model
+// The time limit for the handshake and the welcome, during which the server may load the model.
 const kOpeningMs = 30_000;
 const kBusySocketBytes = 256 * 1024; // cameras wait above this number of unsent bytes
-const kAdvice = "advice"; // id of messages that may fail without a report
-const kMostWaiting = 5000; // changes; with more, new strokes are refused
+const kAdvice = "advice"; // id of messages whose failure is not reported
+const kMostWaiting = 5000; // number of changes above which new strokes are refused
 
 export class Connection {
   private _socket: SocketLike | null = null;
@@ -114,7 +120,7 @@ export class Connection {
 
   private _queue: ChangeQueue | null = null;
   private readonly _outbox = new Outbox((ids) => this._queue?.remove(ids));
-  // ids whose answers are ignored: discarded changes, and signs of life
+  // The ids of messages whose responses are ignored: discarded changes and liveness checks.
   private readonly _silenced = new Set<string>();
 
   private readonly _camera: CameraSender;
@@ -131,7 +137,7 @@ export class Connection {
         this.send(message);
         if (this._settings.comparesWithPast && message.op === "camera")
           this.send({ ...message, view_id: kBesideView });
-        this.expectAnswer(); // a frame will follow
+        this.expectAnswer(); // the server will send a frame
       },
       nextFrame: _options.nextFrame ?? ((callback) => void requestAnimationFrame(callback)),
     });
@@ -143,11 +149,11 @@ export class Connection {
   get waiting(): number {
     return this._outbox.waiting;
   }
-  /** Whether so many changes are unsaved that new strokes are refused. */
+  /** Whether new strokes are refused because too many changes are unsaved. */
   get full(): boolean {
     return this._outbox.waiting > kMostWaiting;
   }
-  /** Number of the last camera sent; frames echo it. */
+  /** The number of the last sent camera. The server returns it in frames. */
   get cameraSeq(): number {
     return this._camera.seq;
   }
@@ -175,11 +181,11 @@ export class Connection {
     socket.onclose = () => {
       if (socket === this._socket) this.onLost();
     };
-    socket.onerror = () => {}; // a close event follows
+    socket.onerror = () => {}; // the browser then sends a close event
     this._silence.limit(kOpeningMs);
   }
 
-  /** Closes permanently; unsaved changes stay in the queue. */
+  /** Closes the connection permanently. Unsaved changes stay in the queue. */
   close(): void {
     this.forgetTimers();
     const socket = this._socket;
@@ -189,8 +195,8 @@ export class Connection {
   }
 
   /**
-   * Call this when the network has changed, the page is visible again, or a person asks: reconnects
-   * without delay, and checks whether an open connection still works.
+   * Reconnects without delay, or checks whether an open connection still works. Call this when the
+   * network has changed, the page is visible again, or the user requests it.
    */
   check(): void {
     if (this._state === "open") this._silence.askNow();
@@ -200,7 +206,7 @@ export class Connection {
     this.open();
   }
 
-  /** Ends viewing: no camera is sent after a reconnection. Unsaved changes are still sent. */
+  /** Ends viewing. No camera is sent after a reconnection. Unsaved changes are still sent. */
   stopViewing(): void {
     this._camera.forget();
     this._settings.forgetShown();
@@ -219,14 +225,14 @@ export class Connection {
     if (this._settings.setAppearance(looks, light)) this.sendSettings();
   }
 
-  /** Null: the server's default. */
+  /** Sets the background. Null restores the server's default. */
   setBackground(background: Background | null): void {
     if (this._settings.setBackground(background)) this.sendSettings();
   }
 
   /**
-   * Shows the state after this edit, instead of the newest one; `beside`: in the second view, next
-   * to the newest state. Null: the newest state alone.
+   * Shows the state after this edit instead of the newest state. With `beside`, the second view
+   * shows it next to the newest state. Null shows only the newest state.
    */
   setPast(at: number | null, beside: boolean): void {
     const compared = this._settings.comparesWithPast;
@@ -234,7 +240,7 @@ export class Connection {
     this.sendSettings();
     if (this._state !== "open") return;
     if (this._settings.comparesWithPast && !compared) this._camera.sendNow();
-    // The second view keeps no earlier state. Its later pictures get no credit.
+    // The second view no longer shows the earlier state. Its later frames get no credit.
     if (compared && !this._settings.comparesWithPast)
       this.send({ op: "layers", view_id: kBesideView, layers: [] });
   }
@@ -253,17 +259,20 @@ export class Connection {
     if (this._state === "open") this.send({ op: "pick", id, x, y, ...(camera ? { camera } : {}) });
   }
 
-  /** The presence of this person; replaces the previous one. */
+  /** Sends the presence of this user, which replaces the previous one. */
   presence(shown: Omit<PresenceUpdate, "op">): void {
     if (this._state === "open") this.send({ op: "presence", ...shown });
   }
 
-  /** Reports that this person edits a record, or has stopped. */
+  /** Reports that this user edits a record, or has stopped editing it. */
   editRecord(what: { table: number; key: number; editing: boolean; take_over?: boolean }): void {
     if (this._state === "open") this.send({ op: "record.edit", id: kAdvice, ...what });
   }
 
-  /** Null while edits are not possible: not connected, or too many unsaved changes. */
+  /**
+   * Begins a stroke. Returns null while edits are not possible, because the page is not connected
+   * or too many changes are unsaved.
+   */
   beginStroke(options: StrokeOptions): StrokeHandle | null {
     if (this._state !== "open" || this.full) return null;
     const begin = beginOf(options);
@@ -273,7 +282,7 @@ export class Connection {
     });
   }
 
-  /** An edit, undo or redo. Returns its id, or null while edits are not possible. */
+  /** Sends an edit, undo or redo. Returns its id, or null while edits are not possible. */
   sendChange(message: SingleChange): string | null {
     if (this._state !== "open") return null;
     this.change(message);
@@ -289,7 +298,8 @@ export class Connection {
   }
 
   private send(message: ClientMessage): void {
-    // The server may have begun to close the connection. Changes are sent again over the next one.
+    // The server may have begun to close the connection. Changes are sent again over the next
+    // connection.
     if ((this._socket?.readyState ?? kOpenSocket) > kOpenSocket) return;
     this._socket?.send(JSON.stringify(message));
   }
@@ -362,7 +372,7 @@ export class Connection {
         if (message.id !== undefined && this._silenced.delete(message.id)) return;
         return this._callbacks.picked(message);
       default:
-        message satisfies never; // parse_server_message throws on an unknown op
+        message satisfies never; // parse_server_message throws an error if op is unknown
     }
   }
 
@@ -388,7 +398,7 @@ export class Connection {
     }
   }
 
-  /** Sends changes that this person's earlier pages could not save. */
+  /** Sends changes that this user's earlier pages could not save. */
   private async takeUp(queue: ChangeQueue, known: Welcome["strokes"]): Promise<void> {
     const messages = await queue.read();
     if (this._state === "closed") return;
@@ -411,7 +421,7 @@ export class Connection {
       this._callbacks.problem(problem);
       return;
     }
-    // A batch is out of order if the previous one was refused temporarily: both are sent again.
+    // A batch is out of order if the previous batch was refused temporarily. Both are sent again.
     const outOfOrder = message.status === 409 && this._outbox.followsWaitingBatch(message.ref);
     const passing = message.status === 429 || message.status >= 500 || outOfOrder;
     if (passing) {
@@ -427,7 +437,7 @@ export class Connection {
     this._callbacks.problem(problem);
   }
 
-  /** The model was deleted, so its waiting changes are discarded. */
+  /** Discards the waiting changes, because the model was deleted. */
   forget(): void {
     this._queue?.remove(this._outbox.messages().map((message) => message.id));
   }
@@ -451,7 +461,7 @@ export class Connection {
     this._socket = null;
     this.setState("lost");
     this.reportSaving();
-    // a listener has closed the connection or requested another attempt
+    // A listener may have closed the connection or requested another attempt.
     if (this._retryTimer || this._state !== "lost") return;
     const random = (this._options.random ?? Math.random)();
     const delayMs =
@@ -467,7 +477,7 @@ export class Connection {
     if (this._state === "open") this._silence.expectAnswer();
   }
 
-  /** Sends a request that the server always answers. */
+  /** Sends a request to which the server always responds. */
   private askForLife(): void {
     const id = newId();
     this._silenced.add(id);

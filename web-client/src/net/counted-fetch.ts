@@ -1,5 +1,5 @@
-// `data-requests` of the root element is the number of pending requests of the page, so that
-// browser tests wait for zero instead of a fixed time.
+// Keeps the number of the page's pending requests in `data-requests` of the root element. Browser
+// tests can wait for zero instead of a fixed time.
 
 let underWay = 0;
 
@@ -8,7 +8,7 @@ function count(by: number): void {
   document.documentElement.dataset["requests"] = String(underWay);
 }
 
-/** Like `fetch`; a request counts until its answer begins or fails. */
+/** Works like `fetch`. A request is pending until its response begins or fails. */
 export async function countedFetch(input: string, init?: RequestInit): Promise<Response> {
   count(+1);
   try {

@@ -6,12 +6,13 @@ import type { Job } from "../core/types";
 
 const kPollMs = 400;
 const kLongestPollMs = 5000;
-const kMostFailedPolls = 60; // some minutes: a restarted server still reports the job's result
+// some minutes, because a restarted server still reports the job's result
+const kMostFailedPolls = 60;
 
 export const jobIsOver = (job: Job): boolean => job.state !== "queued" && job.state !== "running";
 
 /**
- * Calls `tell` with each state of the job, and returns the last one. Retries while the server is
+ * Calls `tell` with each state of the job, and returns the last state. Retries while the server is
  * temporarily unreachable.
  */
 export async function followJob(api: Api, first: Job, tell: (job: Job) => void): Promise<Job> {

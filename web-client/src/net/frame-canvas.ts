@@ -1,5 +1,5 @@
 // Draws the parts of streamed frames into a canvas, in order, and reports complete frames. The
-// browser decodes them without blocking the page.
+// browser decodes the parts without blocking the page.
 
 import type { FrameMessage } from "./frame-header";
 
@@ -38,13 +38,13 @@ export class FrameCanvas {
   ) {}
 
   /**
-   * Decoding starts at once; drawing keeps the order of calls. A part that cannot be decoded counts
-   * as drawn, so that the server's credit does not run out.
+   * Decodes a part immediately and draws it in the order of the calls. A part that cannot be
+   * decoded counts as drawn, so the server's credit does not run out.
    */
   push(part: FrameMessage): void {
     const generation = this._generation;
     const decoded = this._decode(part);
-    decoded.catch(() => {}); // reported at the await below, in order
+    decoded.catch(() => {}); // the await below reports failures, in order
     this._queue = this._queue.then(async () => {
       try {
         const bitmap = await decoded;
@@ -57,7 +57,7 @@ export class FrameCanvas {
     });
   }
 
-  /** Discards pending parts: their connection was lost. */
+  /** Discards pending parts, because their connection was lost. */
   reset(): void {
     this._generation += 1;
   }

@@ -1,7 +1,7 @@
 /**
- * Reads the binary messages that carry one rectangle of a picture. The layout and the numbered
- * rules are in protocol/frame.md; the server's counterpart is
- * protocol/cpp/protocol/frame_header.cpp, and both read the same golden vectors.
+ * Reads the binary messages that contain one rectangle of a frame. protocol/frame.md defines the
+ * layout and the numbered rules. The server's counterpart is
+ * protocol/cpp/protocol/frame_header.cpp. Tests of both read the same golden vectors.
  */
 
 export const kFrameHeaderBytes = 56;
@@ -17,11 +17,14 @@ export type FrameCodec = (typeof CODECS)[keyof typeof CODECS];
 
 export interface FrameHeader {
   codec: FrameCodec;
-  /** The rectangle is the whole picture. */
+  /** Whether the rectangle is the whole frame. */
   keyframe: boolean;
-  /** Full quality; no better frame follows until something changes. */
+  /** Whether the frame has full quality. No better frame follows until the content changes. */
   still: boolean;
-  /** Last rectangle of this frame: show it, then acknowledge. */
+  /**
+   * Whether this is the last rectangle of the frame. The page shows the frame and then acknowledges
+   * it.
+   */
   last: boolean;
   view_id: number;
   frame: number;
@@ -40,11 +43,11 @@ export interface FrameHeader {
 
 export interface FrameMessage {
   header: FrameHeader;
-  /** A JPEG or PNG file; a view of the message's buffer, not a copy. */
+  /** A JPEG or PNG file. It is a view of the message's buffer, not a copy. */
   payload: Uint8Array<ArrayBuffer>;
 }
 
-/** A frame that breaks a rule; `field` is the member. */
+/** A frame that breaks a rule. `field` is the invalid member. */
 export class FrameError extends Error {
   constructor(
     readonly field: string,
@@ -60,7 +63,7 @@ function demand(holds: boolean, field: string, detail: string): asserts holds {
 }
 
 /**
- * Header and payload of a whole message. Throws FrameError for every message that breaks a rule.
+ * Returns the header and payload of a message. Throws a FrameError if the message breaks a rule.
  */
 export function decodeFrame(message: ArrayBuffer): FrameMessage {
   demand(message.byteLength >= kFrameHeaderBytes, "message", "it has at least 56 bytes");
@@ -105,7 +108,7 @@ function safeInteger(view: DataView, offset: number, field: string): number {
   return Number(value);
 }
 
-/** Rules 5 to 10: conditions between the members. */
+/** Checks rules 5 to 10, the conditions between the members. */
 function check(h: FrameHeader): void {
   demand(h.view_id <= 15, "view_id", "a view is 0 to 15");
   demand(

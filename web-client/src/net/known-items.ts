@@ -1,5 +1,5 @@
-// Listed items of one kind, each with a version, about which the server sends events: all are read
-// at first, and events during the read take precedence.
+// A list of versioned items of one kind. All items are read first, and the server then sends events
+// about them. Events during the read take precedence over its result.
 
 import { ApiError } from "./api-error";
 
@@ -9,12 +9,12 @@ interface Item {
 }
 
 export class KnownItems<T extends Item> {
-  /** The last read failed. */
+  /** Whether the last read failed. */
   failed = false;
   loaded = false;
 
   private _known = new Map<number, T>();
-  // events during the read
+  // The events during the read.
   private _reading: { gone: Set<number>; come: Set<number> } | null = null;
 
   get all(): T[] {
@@ -24,7 +24,7 @@ export class KnownItems<T extends Item> {
     return this._known.get(id) ?? null;
   }
 
-  /** Reads all items. Returns false if a later read has started, whose answer counts. */
+  /** Reads all items. Returns false if a later read has started, which replaces this one. */
   async load(read: () => Promise<readonly T[]>): Promise<boolean> {
     const reading = (this._reading = { gone: new Set<number>(), come: new Set<number>() });
     let items: readonly T[];
@@ -48,7 +48,7 @@ export class KnownItems<T extends Item> {
     return true;
   }
 
-  /** Returns false if the known item is newer, or was deleted. */
+  /** Stores an item. Returns false if the known item is newer or was deleted. */
   put(item: T): boolean {
     const known = this._known.get(item.id);
     if ((known && known.version > item.version) || this._reading?.gone.has(item.id)) return false;

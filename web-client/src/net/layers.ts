@@ -1,4 +1,4 @@
-// Calls about layers, with complete palettes.
+// Calls about layers. They return layers with complete palettes.
 
 import {
   completeLayer,
@@ -18,9 +18,9 @@ export async function readLayer(api: Api, model: Id, layer: Id): Promise<Version
 }
 
 /**
- * With `etag`, the version that the change was made for: if another person has changed the layer
- * since, the function throws an ApiError with status 412. Without it, the change applies to any
- * version.
+ * Changes a layer. With `etag`, the change applies only to this version. If another user has
+ * changed the layer since, an ApiError with status 412 is thrown. Without `etag`, the change
+ * applies to any version.
  */
 export async function changeLayer(
   api: Api,
@@ -38,8 +38,9 @@ export async function changeLayer(
 }
 
 /**
- * With `expression`: the layer, or a job if the surface's shape must be computed first. With
- * `compute`: a job, whose result is the layer. Otherwise the layer.
+ * Creates a layer. With `expression`, returns the layer, or a job if the shape of the surface must
+ * be computed first. With `compute`, returns a job whose result is the layer. Otherwise returns the
+ * layer.
  */
 export async function createLayerOrJob(
   api: Api,
@@ -50,13 +51,13 @@ export async function createLayerOrJob(
   return "slug" in answer ? { layer: completeLayer(answer) } : { job: answer };
 }
 
-/** For layers without `compute` and `expression`. */
+/** Creates a layer without `compute` and `expression`. */
 export async function createLayer(api: Api, model: Id, layer: LayerCreate): Promise<Layer> {
   const answer = await api.json("POST /models/{model}/layers", { path: { model }, body: layer });
   return completeLayer(answer as Layer);
 }
 
-/** Computes the layer's expression from its current inputs. */
+/** Computes the layer's expression again from its current inputs. */
 export async function recomputeLayer(
   api: Api,
   model: Id,

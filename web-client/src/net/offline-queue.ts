@@ -1,11 +1,11 @@
-// Changes that are not known to be durable, in the browser's database, so that they survive the
-// page: when the same person opens the model in this browser again, they are sent with the same
-// ids. If two pages of one person send the same change, it is still painted once.
+// Stores changes in the browser's database until they are durable on the server. When the same user
+// opens the model in this browser again, the stored changes are sent with the same ids. If two
+// pages of a user send the same change, it is still painted only once.
 
 import type { ChangeMessage } from "./outbox";
 
 const kDatabase = "strata";
-const kStore = "unsaved"; // messages by [user, model, creation time in µs, id]
+const kStore = "unsaved"; // keys: [user, model, creation time in µs, id]
 const kChanges: readonly string[] = [
   "stroke.begin",
   "stroke.extend",
@@ -30,7 +30,7 @@ function open(): Promise<IDBDatabase> {
   const request = indexedDB.open(kDatabase, 1);
   request.onupgradeneeded = () => void request.result.createObjectStore(kStore);
   database = resultOf(request).then((opened) => {
-    // by the browser: its data were deleted, or the disk failed
+    // The browser closed the database: its data were deleted, or the disk failed.
     opened.onclose = () => (database = null);
     return opened;
   });
@@ -47,8 +47,8 @@ const isChange = (row: unknown): row is ChangeMessage =>
   kChanges.includes(row.op as string);
 
 /**
- * The changes of one person on one model. `failed` is called when the browser cannot store them;
- * then they live as long as the page.
+ * The changes of one user on one model. `failed` is called if the browser cannot store them. The
+ * changes are then lost when the page is closed.
  */
 export class OfflineQueue {
   private readonly _keys = new Map<string, Key>();
@@ -60,7 +60,7 @@ export class OfflineQueue {
     private readonly _failed: (why: unknown) => void,
   ) {}
 
-  /** In order of creation. */
+  /** Returns the stored changes in the order of creation. */
   async read(): Promise<ChangeMessage[]> {
     try {
       const store = (await open()).transaction(kStore).objectStore(kStore);
@@ -72,7 +72,7 @@ export class OfflineQueue {
       for (const key of keys as Key[]) this._keys.set(key[3], key);
       return rows.filter(isChange);
     } catch {
-      return []; // reported at the next put()
+      return []; // the next put() reports the failure
     }
   }
 
@@ -92,8 +92,8 @@ export class OfflineQueue {
   private change(...changes: ((store: IDBObjectStore) => IDBRequest)[]): void {
     if (changes.length === 0) return;
     const all = async (): Promise<void> => {
-      // Relaxed: the data must survive the page, not a crash of the machine. This saves a flash
-      // write for each batch of a stroke.
+      // With relaxed durability, the data persist after the page is closed, but not after a system
+      // crash. This avoids a flash write for each batch of a stroke.
       const store = (await open())
         .transaction(kStore, "readwrite", { durability: "relaxed" })
         .objectStore(kStore);

@@ -1,5 +1,5 @@
 // All requested changes that are not known to be durable yet, in their order. Ids never change, so
-// that a repeated message is painted only once.
+// a repeated message is painted only once.
 
 import { newId } from "../core/ids";
 import type {
@@ -17,7 +17,7 @@ export type SingleChange = EditRequest | Undo | Redo;
 interface StrokeEntry {
   kind: "stroke";
   begin: StrokeBegin;
-  parts: StrokeExtend[]; // unsaved parts, ascending n
+  parts: StrokeExtend[]; // unsaved parts, sorted by n
   end: StrokeEnd | null;
 }
 interface SingleEntry {
@@ -29,10 +29,10 @@ type Entry = StrokeEntry | SingleEntry;
 export class Outbox {
   private _entries: Entry[] = [];
 
-  /** `dropped` is called with the ids of messages that do not wait anymore. */
+  /** `dropped` is called with the ids of messages that no longer wait. */
   constructor(private readonly _dropped: (ids: string[]) => void = () => {}) {}
 
-  /** Changes that are not durable. */
+  /** The number of changes that are not durable. */
   get waiting(): number {
     return this._entries.reduce(
       (sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1),
@@ -59,8 +59,8 @@ export class Outbox {
   }
 
   /**
-   * Puts the changes of an earlier page before those of this one. Its unfinished strokes end.
-   * Returns the number of changes that are new here.
+   * Inserts the changes of an earlier page before those of this page, and ends the earlier page's
+   * unfinished strokes. Returns the number of changes that were not waiting yet.
    */
   adopt(messages: readonly ChangeMessage[]): number {
     const before = this.waiting;
@@ -79,7 +79,7 @@ export class Outbox {
     return this.stroke(stroke) !== undefined;
   }
 
-  /** Whether a message with this id waits here. */
+  /** Whether a message with this id is waiting. */
   has(id: string): boolean {
     return this._entries.some((entry) =>
       entry.kind === "single"
@@ -107,20 +107,23 @@ export class Outbox {
     });
   }
 
-  /** Whether the message is a batch of a stroke, and an earlier batch waits too. */
+  /** Whether the message is a batch of a stroke of which an earlier batch is also waiting. */
   followsWaitingBatch(id: string): boolean {
     return this._entries.some(
       (entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0,
     );
   }
 
-  /** The server has saved all batches of the stroke up to n. */
+  /** Removes the batches of the stroke up to n, which the server has saved. */
   savedThrough(stroke: string, n: number): void {
     const entry = this.stroke(stroke);
     if (entry) this.shrink(() => (entry.parts = entry.parts.filter((part) => part.n > n)));
   }
 
-  /** The server will never accept this message. Returns the ids that are discarded with it. */
+  /**
+   * Discards a message that the server will never accept. Returns the ids of all discarded
+   * messages.
+   */
   giveUp(id: string): string[] {
     return this.shrink(() => {
       for (const entry of this._entries)
@@ -131,7 +134,7 @@ export class Outbox {
     });
   }
 
-  /** The messages to send again, in order. */
+  /** Returns the messages to send again, in order. */
   messages(): ChangeMessage[] {
     return this._entries.flatMap((entry): ChangeMessage[] =>
       entry.kind === "single"
@@ -147,8 +150,8 @@ export class Outbox {
   }
 
   /**
-   * Also removes ended strokes whose batches are all saved. Returns the ids of the removed
-   * messages; `besides`: messages that arrived in the meantime.
+   * Applies a change and removes ended strokes whose batches are all saved. Returns the ids of the
+   * removed messages, including messages in `besides`, which arrived in the meantime.
    */
   private shrink(change: () => void, besides: readonly ChangeMessage[] = []): string[] {
     const before = [...this.messages(), ...besides];

@@ -1,14 +1,14 @@
-// Times to read again after events that precede the saving: soon after the first event, and again
-// when the last one is certainly saved.
+// Schedules new reads after events. The server sends these events before it has saved a change. One
+// read is soon after the first event, another when the last change is certainly saved.
 
-const kSoonMs = 1000; // events in this time cause one read
-const kSavedMs = 3000; // after the last event
+const kSoonMs = 1000; // events in this time cause a single read
+const kSavedMs = 3000; // time after the last event
 
 export class ReadAgain {
   private _timer: ReturnType<typeof setTimeout> | null = null;
   private _newestMs = 0;
 
-  /** `last`: no further read follows, unless there are new events. */
+  /** `last` is true if no further read follows without new events. */
   constructor(private readonly _read: (last: boolean) => void) {}
 
   news(): void {

@@ -1,4 +1,4 @@
-// Calls about records: of a table, or of the layer that contains its keys.
+// Calls about records of a table, or of a layer that contains keys of its records.
 
 import { personLanguages } from "../core/locale";
 import type { RecordInput, RecordList, RecordPatch, TableEdit } from "../core/protocol.gen";
@@ -6,7 +6,7 @@ import type { TableRecord } from "../core/types";
 import { ifVersion, kAsItIs, type Api } from "./api";
 import type { Id } from "./calls";
 
-/** Records of a table, or of the table whose keys a layer contains. */
+/** A table, or a layer that contains keys of its records. */
 export type RecordPlace = { table: Id } | { model: Id; layer: Id };
 
 export interface RecordQuery {
@@ -16,7 +16,10 @@ export interface RecordQuery {
   offset: number;
 }
 
-/** A page of a table's records; with a layer, including their areas there. */
+/**
+ * Reads a page of a table's records. With a layer, the result includes the areas of the records on
+ * the layer.
+ */
 export async function readRecords(
   api: Api,
   place: RecordPlace,
@@ -26,7 +29,7 @@ export async function readRecords(
     limit,
     offset,
     ...(sortby === "" ? {} : { sortby }),
-    // language of the alphabetical order
+    // The language of the alphabetical order.
     ...(/^(-?key)?$/.test(sortby) ? {} : { lang: personLanguages()[0]! }),
     ...(filter === "" ? {} : { filter }),
   };
@@ -40,7 +43,7 @@ export const readRecord = (api: Api, place: RecordPlace, key: number): Promise<T
     ? api.json("GET /tables/{table}/records/{key}", { path: { ...place, key } })
     : api.json("GET /models/{model}/layers/{layer}/records/{key}", { path: { ...place, key } });
 
-/** Without a key, the record gets the next one. */
+/** Creates a record. Without a key, the record gets the next free key. */
 export async function createRecord(
   api: Api,
   table: Id,
@@ -51,8 +54,8 @@ export async function createRecord(
 }
 
 /**
- * Changes the version that was read; after another person's change the result is an ApiError with
- * status 412.
+ * Changes the version of a record that was read. If another user has changed the record since, an
+ * ApiError with status 412 is thrown.
  */
 export const changeRecord = (
   api: Api,
@@ -66,7 +69,7 @@ export const changeRecord = (
     header: change.version === undefined ? kAsItIs : ifVersion(change.version),
   });
 
-/** The latest edit of a record. */
+/** Returns the latest edit of a record. */
 export async function lastEditOf(api: Api, table: Id, key: number): Promise<TableEdit | undefined> {
   const query = { key, limit: 1 };
   return (await api.json("GET /tables/{table}/edits", { path: { table }, query })).edits[0];

@@ -1,5 +1,5 @@
 // Sends unsaved changes again, in order, and no faster than the server accepts. New changes wait
-// behind them.
+// until these are sent.
 
 import type { ChangeMessage } from "./outbox";
 
@@ -7,7 +7,7 @@ export const kFirstRetryMs = 250;
 export const kLastRetryMs = 8000;
 
 export class Resender {
-  /** Below the server's limit. */
+  /** The rate of messages, which is below the server's limit. */
   messagesPerSecond = 100;
   private _left: ChangeMessage[] = [];
   private _delayMs = kFirstRetryMs;
@@ -16,20 +16,23 @@ export class Resender {
 
   constructor(private readonly _send: (message: ChangeMessage) => void) {}
 
-  /** Replaces the rest of an earlier start. */
+  /** Starts to send messages. They replace the remaining messages of an earlier start. */
   start(messages: ChangeMessage[]): void {
     this._left = messages;
     this.sendSlice();
   }
 
-  /** Returns false if no resending is active and the message need not wait. */
+  /**
+   * Queues a message. Returns false if no messages are being sent again, so the message need not
+   * wait.
+   */
   queue(message: ChangeMessage): boolean {
     if (this._left.length === 0) return false;
     this._left.push(message);
     return true;
   }
 
-  /** Waits twice as long each time, until a change was saved. */
+  /** Starts again after a delay, which doubles each time until a change is saved. */
   later(start: () => void): void {
     if (this._startTimer) return;
     this._startTimer = setTimeout(() => {

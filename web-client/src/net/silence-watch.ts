@@ -1,9 +1,9 @@
-// A dead network does not report itself, so the server's silence is the signal. Before the
-// connection is closed, the server gets a request that it always answers, since not every message
-// has an answer.
+// Detects a dead network by the server's silence, because no event reports it. Before the
+// connection is closed, the page sends a request to which the server always responds, since not
+// every message has a response.
 
-const kQuietMs = 10_000; // an answer is due but none came: request a sign of life
-const kSilenceMs = 10_000; // no sign of life: the connection is dead
+const kQuietMs = 10_000; // after this time without a due response, a liveness check is sent
+const kSilenceMs = 10_000; // after this further time, the connection is dead
 
 export interface SilenceHost {
   ask(): void;
@@ -12,7 +12,7 @@ export interface SilenceHost {
 
 export class SilenceWatch {
   private _timer: ReturnType<typeof setTimeout> | null = null;
-  private _due = false; // a message was sent that the server answers
+  private _due = false; // the server must respond to a message
 
   constructor(private readonly _host: SilenceHost) {}
 
@@ -28,12 +28,12 @@ export class SilenceWatch {
     this._host.ask();
   }
 
-  /** Gives up after this time without a message. */
+  /** Gives up after this time without a message from the server. */
   limit(silenceMs: number): void {
     this.after(silenceMs, () => this._host.giveUp());
   }
 
-  /** The server sent a message, or no answer is expected. */
+  /** Ends the wait: the server sent a message, or no response is expected. */
   heard(): void {
     this._due = false;
     if (this._timer) clearTimeout(this._timer);

@@ -1,4 +1,4 @@
-// A stroke during drawing: its beginning, and the pieces of its path that are sent to the server.
+// A stroke during drawing: its beginning, and the segments of its path that are sent to the server.
 
 import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
@@ -32,7 +32,7 @@ export const beginOf = (options: StrokeOptions): StrokeBegin => ({
 });
 
 /**
- * One stroke during drawing. The server sweeps the brush from the last point of the previous batch.
+ * A stroke during drawing. The server moves the brush from the last point of the previous batch.
  */
 export class StrokeHandle {
   private _n = 0;
@@ -44,7 +44,10 @@ export class StrokeHandle {
     private readonly _change: (message: ChangeMessage) => void,
   ) {}
 
-  /** `widths`: the brush's share of its radius at each point; absent: the whole radius. */
+  /**
+   * Adds points to the path. `widths` is the fraction of the brush radius at each point. Without
+   * `widths`, the whole radius applies.
+   */
   extend(points: readonly Point[], widths?: readonly number[]): void {
     if (this._ended || points.length === 0) return;
     for (let start = 0; start < points.length; start += this._pathPoints) {

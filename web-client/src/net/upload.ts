@@ -1,24 +1,24 @@
-// File uploads with progress, since `fetch` does not report the number of sent bytes.
+// Uploads files with progress, which `fetch` does not report.
 
 import { newId } from "../core/ids";
 import { ApiError, cancelled, problemOfText, unreachable } from "./api-error";
 
-/** A file with its path, by which the other files of its scan refer to it. */
+/** A file with its path. Other files of the same scan refer to it by this path. */
 export interface UploadFile {
   file: File;
   path: string;
 }
 
 export interface Upload<T> {
-  /** Resolves with the answer. */
+  /** Resolves with the response. */
   done: Promise<T>;
   cancel(): void;
 }
 
-/** Receives the share of sent bytes, from 0 to 1. */
+/** Receives the fraction of sent bytes, from 0 to 1. */
 export type Progress = (share: number) => void;
 
-/** Sends an opened request with the files as a form, or with a single file as the body. */
+/** Sends an opened request, with the files as a form or with a single file as the body. */
 export function uploadFiles<T>(
   request: XMLHttpRequest,
   files: readonly UploadFile[],

@@ -1,5 +1,5 @@
-// Differences of this person's view from the defaults: sent after each change, and again after each
-// welcome.
+// The differences between this user's view and the defaults. They are sent after each change, and
+// again after each welcome.
 
 import type {
   Background,
@@ -10,32 +10,32 @@ import type {
   Welcome,
 } from "../core/protocol.gen";
 
-/** The view that shows the past next to now. */
+/** The id of the view that shows an earlier state next to the newest state. */
 export const kBesideView = 1;
 
 export class ViewSettings {
   overrides: LayerOverride[] = [];
-  private _looks: LookShown[] | null = null; // null: the default surface images
-  private _light: Light | null = null; // null: the server's default
-  private _background: Background | null = null; // null: the server's default
-  private _at: number | null = null; // the state after this edit; null: the newest
-  private _beside = false; // that state is in the second view, and the first shows the newest
+  private _looks: LookShown[] | null = null; // null for the default surface images
+  private _light: Light | null = null; // null for the server's default
+  private _background: Background | null = null; // null for the server's default
+  private _at: number | null = null; // shows the state after this edit; null for the newest state
+  private _beside = false; // the second view shows that state, the first view the newest state
 
-  /** Returns whether there is a change to send. */
+  /** Sets the surface images and light. Returns whether there is a change to send. */
   setAppearance(looks: LookShown[] | null, light: Light): boolean {
     const stays = !looks && !this._looks && isUsual(light) && isUsual(this._light);
     if (!stays) [this._looks, this._light] = [looks, light];
     return !stays;
   }
 
-  /** Returns the same. */
+  /** Sets the background. Returns whether there is a change to send. */
   setBackground(background: Background | null): boolean {
     const changes = JSON.stringify(background) !== JSON.stringify(this._background);
     if (changes) this._background = background;
     return changes;
   }
 
-  /** The state to show; `beside`: in the second view. */
+  /** Sets the state to show. With `beside`, the second view shows it. */
   setPast(at: number | null, beside: boolean): void {
     [this._at, this._beside] = [at, at !== null && beside];
   }
@@ -51,8 +51,8 @@ export class ViewSettings {
   }
 
   /**
-   * Removes deleted layers and surface images: the server refuses a whole message with an unknown
-   * one.
+   * Removes deleted layers and surface images, because the server refuses a whole message if it
+   * contains an unknown one.
    */
   keepOnly({ layers, looks }: Pick<Welcome, "layers" | "looks">): void {
     const layerIds = new Set<number | string>(layers.map(({ id }) => id));
@@ -82,7 +82,7 @@ export class ViewSettings {
     };
   }
 
-  /** The same for the second view, which shows the earlier state. */
+  /** Returns the message for the second view, which shows the earlier state. */
   messageBeside(): ClientMessage {
     const message = { ...this.message(), view_id: kBesideView };
     return this._at === null ? message : ({ ...message, at: this._at } as ClientMessage);

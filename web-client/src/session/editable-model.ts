@@ -1,5 +1,4 @@
-// The metadata of the open model: reads and changes them, and previews another unit and up
-// direction.
+// Reads and changes the metadata of the open model, and previews another unit and up direction.
 
 import type { Api, Versioned } from "../net/api";
 import type { Model, ModelPatch } from "../core/types";
@@ -41,8 +40,8 @@ export class EditableModel {
   }
 
   /**
-   * Displays the model with this unit and up direction, without saving them; null: with its own
-   * ones.
+   * Displays the model with this unit and up direction, without saving them. Null restores the
+   * model's own unit and up direction.
    */
   preview(scale: ModelScale | null): void {
     if (!this.value) return;
@@ -64,7 +63,7 @@ export class EditableModel {
   put(model: Model): void {
     const turned = this.value !== null && this.value.up !== model.up;
     this._value = model;
-    // Changes by other people do not end the preview.
+    // Changes by other users do not end the preview.
     const { view } = this._host;
     if (this._preview) view.setModel({ ...model, up: this._preview.up }, false);
     else view.setModel(model, turned);

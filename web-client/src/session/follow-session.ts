@@ -1,12 +1,11 @@
-// Elements that show a ModelSession are rendered again after a change of its parts that they show.
+// Renders elements that show a ModelSession again after a change to the parts that they show.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 import type { ModelSession, SessionPart } from "./model-session";
 
 /**
- * Call this in the element's constructor. Follows the element's session as long as the element is
- * in the page. `parts`: the parts on which the display depends; without any, every change causes a
- * rendering.
+ * Follows the element's session while the element is in the page. Call this in the element's
+ * constructor. The display depends on `parts`. Without `parts`, every change causes a rendering.
  */
 export function followSession(
   host: ReactiveControllerHost & { session: ModelSession },
@@ -32,7 +31,7 @@ class SessionFollower implements ReactiveController {
 
   hostUpdate(): void {
     const { session } = this._host;
-    // an update may be pending after the element was removed
+    // An update may be pending after the element was removed.
     if (!this._connected || session === this._followed) return;
     this._unsubscribe?.();
     this._followed = session;

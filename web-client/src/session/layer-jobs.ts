@@ -1,6 +1,7 @@
-// Running jobs that make layers or surface images of the open model, or files for this person: a
-// layer computed from the shape, layers transferred from another scan, a measured figure. Finished
-// layers arrive by events, as for all participants; a file is listed until it is saved.
+// Running jobs that make layers or surface images of the open model, or files for this user.
+// Examples are a layer computed from the shape, layers transferred from another scan, and a figure
+// to scale. All participants receive finished layers in events. A file is listed until the user
+// saves it.
 
 import { pageLocale } from "../core/locale";
 import { ApiError } from "../net/api-error";
@@ -19,7 +20,7 @@ export interface LayerJob {
 
 /** A job that the server has accepted. */
 export interface StartedJob {
-  /** Ids of the new layers; empty if the job was canceled or failed. */
+  /** The ids of the new layers. Empty if the job was canceled or failed. */
   done: Promise<readonly number[]>;
 }
 
@@ -35,7 +36,10 @@ export class LayerJobs {
     private readonly _changed: () => void,
   ) {}
 
-  /** Throws an ApiError if the server refuses the job at once. */
+  /**
+   * Starts a job that computes a layer. Throws an ApiError if the server refuses the job
+   * immediately.
+   */
   async compute(layer: LayerCreate): Promise<StartedJob> {
     const job = (await this._api.json("POST /models/{model}/layers", {
       path: { model: this._modelId },
@@ -44,7 +48,10 @@ export class LayerJobs {
     return { done: this.follow(this.add(layer.name, job), job) };
   }
 
-  /** The same. `name`: the name of the job for the user. */
+  /**
+   * Starts a job that transfers layers. `name` is the displayed name of the job. Throws like
+   * compute().
+   */
   async transfer(name: string, wish: Transfer): Promise<StartedJob> {
     const job = await this._api.json("POST /models/{model}/transfer", {
       path: { model: this._modelId },
@@ -53,14 +60,14 @@ export class LayerJobs {
     return { done: this.follow(this.add(name, job), job) };
   }
 
-  /** Follows a job that another part has started; `made` is called when it is done. */
+  /** Follows a job that another part of the page has started. Calls `made` when the job is done. */
   watch(name: string, job: Job, made: (job: Job) => void): void {
     void this.follow(this.add(name, job), job, made);
   }
 
   /**
-   * Makes a file. Returns the key of its entry; `made` is called when it is done. Throws like
-   * compute().
+   * Starts a job that makes a figure. Returns the key of its entry. Calls `made` when the job is
+   * done. Throws like compute().
    */
   async makeFigure(
     name: string,

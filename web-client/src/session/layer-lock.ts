@@ -1,4 +1,4 @@
-// The reason why a layer cannot be changed, and how to unlock it, in words.
+// Explains why a layer cannot be changed, and how to unlock it.
 
 import { labelOf } from "../domain/cells";
 import { isAsComputed, type Layer } from "../core/types";

@@ -1,10 +1,13 @@
-// The values of layers in words.
+// Describes values of layers in words.
 
 import { holdsFractions, valueRange, type Layer } from "../core/types";
 import { formatNumber } from "../domain/measure";
 import { texts } from "../texts";
 
-/** The reason why a value cannot be painted in the layer, in plain words; null if it can. */
+/**
+ * Returns the reason why a value cannot be painted in the layer, in plain words. Returns null if it
+ * can be painted.
+ */
 export function valueProblem(layer: Layer, value: number): string | null {
   if (!Number.isFinite(value)) return texts.brush.bad_value;
   if (!holdsFractions(layer.type) && !Number.isInteger(value)) return texts.brush.whole_number;
@@ -14,16 +17,16 @@ export function valueProblem(layer: Layer, value: number): string | null {
   return null;
 }
 
-/** Names of records; null where unknown. */
+/** Returns names of records, or null for unknown names. */
 export interface RecordLabels {
   label(table: number, key: number): string | null;
-  /** For a list of terms, in the person's language; null for other tables. */
+  /** Returns the name of a term in the user's language, or null if the table is not a term list. */
   term(table: number, key: number): string | null;
 }
 
 /**
- * A value in readable form: its term, the label of its class, the name of its record, or the number
- * with its unit.
+ * Describes a value by its term, the label of its class, the name of its record, or the number with
+ * its unit.
  */
 export function describeValue(
   layer: Layer,

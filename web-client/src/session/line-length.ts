@@ -1,4 +1,4 @@
-// The length of a line during drawing, over the picture.
+// Shows the length of a line during drawing, over the frame.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { beside } from "../ui/beside";
@@ -9,12 +9,12 @@ import type { ViewControl } from "./view-control";
 
 const kLength = { width: 96, height: 28 };
 
-// distance from the line's end, CSS pixels
+// The distance from the end of the line in CSS pixels.
 const kGapPx = 14;
 
 /**
- * Places the length next to the line's end, at a window pixel. Screen readers get the length when
- * the line is finished.
+ * Shows the length next to the end of the line, at a window pixel. Screen readers read the length
+ * when the line is finished.
  */
 export function lengthSoFar(
   { camera, scale }: ViewControl,

@@ -1,6 +1,5 @@
-// Measures a line during drawing. The server returns the surface under each new part, one part at a
-// time and at limited intervals, so that the cost of a long line does not grow with every pointer
-// move.
+// Measures a line during drawing. The page requests the surface under each new part, one part at a
+// time and with minimum intervals. So the cost of a long line does not grow with each pointer move.
 
 import type { Point } from "../net/stroke";
 import type { Outline } from "../tools/tool";
@@ -8,20 +7,23 @@ import type { Outline } from "../tools/tool";
 const kAskEveryMs = 80;
 
 export interface LineMeasureHost<Step> {
-  /** The surface under the pixels of a path. */
+  /** Returns the surface under the pixels of a path. */
   lookAlong(path: readonly Point[]): Promise<readonly Step[]>;
   metresAlong(steps: readonly Step[]): number;
   changed(): void;
 }
 
-/** A part of the line, from the end of the previous part. */
+/** A part of the line. It begins at the end of the previous part. */
 interface Part<Step> {
   path: readonly Point[];
   steps: readonly Step[];
 }
 
 export class LineMeasure<Step> {
-  /** The last known length; null: no line, none of it on the surface, or not known yet. */
+  /**
+   * The last known length. Null if there is no line, if no part of it is on the surface, or if the
+   * length is not known yet.
+   */
   metres: number | null = null;
 
   private _line: Pick<Outline, "points" | "pointer"> | null = null;
@@ -29,11 +31,11 @@ export class LineMeasure<Step> {
   private _known: Part<Step>[] = [];
   private _asking = false;
   private _timer: ReturnType<typeof setTimeout> | null = null;
-  private _count = 0; // of lines: answers about earlier ones are ignored
+  private _count = 0; // number of lines; responses about earlier lines are ignored
 
   constructor(private readonly _host: LineMeasureHost<Step>) {}
 
-  /** The line's current path; null: no line. */
+  /** Sets the current path of the line. Null means that there is no line. */
   follow(line: Pick<Outline, "points" | "pointer"> | null): void {
     this._line = line && { points: [...line.points], pointer: line.pointer };
     this._due = line !== null;
@@ -59,7 +61,7 @@ export class LineMeasure<Step> {
     }
   }
 
-  /** Keeps the parts that are still on the line. Returns the index of the last of their points. */
+  /** Keeps the parts that still belong to the line. Returns the index of their last point. */
   private keepKnown(points: readonly Point[]): number {
     let at = 0;
     const other = this._known.findIndex(({ path }) => {
@@ -74,7 +76,10 @@ export class LineMeasure<Step> {
     return at;
   }
 
-  /** `stays`: a drawn part, without the segment to the pointer. */
+  /**
+   * Measures a part of the line. `stays` is true for a drawn part, false for the segment to the
+   * pointer.
+   */
   private async learn(path: readonly Point[], stays: boolean): Promise<void> {
     const count = this._count;
     this._asking = true;
@@ -82,7 +87,7 @@ export class LineMeasure<Step> {
       this._timer = null;
       this.ask();
     }, kAskEveryMs);
-    // problems are reported when the line is finished
+    // Problems are reported when the line is finished.
     const steps = await this._host.lookAlong(path).catch(() => null);
     this._asking = false;
     if (count === this._count) {

@@ -1,15 +1,15 @@
-// The part of the surface that a condition or outlines select, lit in the picture before anything
-// changes, or the part that differs between two states. The server measures it and draws where the camera sees it; both are requested again
-// when the camera rests.
+// The highlighted part of the surface. It is the part that a condition or outlines select, before
+// the user changes it, or the part that differs between two states. The server measures the area
+// and draws an image of its visible part. The page requests both again when the camera stops.
 
 import type { SelectRequest, SelectResponse } from "../core/protocol.gen";
 import type { OrbitCamera } from "../math/camera";
 import { cancelled, ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
 
-const kMostPixels = 640; // of the longer side: the picture only marks an area
+const kMostPixels = 640; // longer side of the image, which only marks an area
 
-/** What is lit. */
+/** The highlighted area. */
 export type LitRequest = Pick<SelectRequest, "where" | "within" | "layers" | "include" | "changed">;
 
 export interface LitHost {
@@ -18,13 +18,13 @@ export interface LitHost {
 }
 
 export class LitArea {
-  /** The address of a picture in the stage's window: opaque where the area is seen. */
+  /** The address of an image of the stage's window. It is opaque where the area is visible. */
   picture: string | null = null;
   private _request: LitRequest | null = null;
-  private _lasting: LitRequest | null = null; // lit again when another area is no longer lit
+  private _lasting: LitRequest | null = null; // highlighted again when no other area is highlighted
   private _running: AbortController | null = null;
 
-  /** The rest of the picture is dimmed: what changed may be small. */
+  /** Whether the rest of the frame is dimmed, because changed parts may be small. */
   get dims(): boolean {
     return this._request?.changed !== undefined;
   }
@@ -36,8 +36,8 @@ export class LitArea {
   ) {}
 
   /**
-   * Measures and lights an area in place of the previous one. A later call cancels this one
-   * (ApiError 499). A refused area leaves nothing lit.
+   * Measures and highlights an area, which replaces the previous one. A later call cancels this one
+   * (ApiError 499). If the server refuses the area, no area is highlighted.
    */
   async show(request: LitRequest): Promise<SelectResponse> {
     this._request = request;
@@ -52,7 +52,10 @@ export class LitArea {
     }
   }
 
-  /** As `show`, and the area stays lit after others were lit in between. Null: no longer. */
+  /**
+   * Works like `show`. The area is highlighted again after other areas were highlighted
+   * temporarily. Null ends this.
+   */
   async showLasting(request: LitRequest | null): Promise<SelectResponse | null> {
     this._lasting = request;
     if (request) return this.show(request);
@@ -73,13 +76,13 @@ export class LitArea {
     this._running?.abort();
   }
 
-  /** The picture no longer fits. */
+  /** Removes the image, which no longer matches the camera. */
   cameraMoved(): void {
     this.put(null);
   }
 
   cameToRest(): void {
-    // A failure leaves the area unlit; the measured one stays valid.
+    // After a failure, the area is not highlighted. Its measured size remains valid.
     if (this._request && !this.picture) void this.measure(this._request).catch(ignored);
   }
 

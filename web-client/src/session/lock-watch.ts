@@ -1,4 +1,4 @@
-// Decides whether the active tool may change the selected layer, and explains why not.
+// Decides whether the active tool may change the selected layer, and explains a refusal.
 
 import type { ProblemMessage } from "../core/protocol.gen";
 import { isAsComputed, type Layer } from "../core/types";
@@ -16,13 +16,14 @@ export interface LockWatchHost {
 }
 
 export class LockWatch {
-  // the layer of the last notice
+  // The id of the layer in the last notice.
   private _told: number | null = null;
 
   constructor(private readonly _host: LockWatchHost) {}
 
   /**
-   * For this user: curators may change locked layers, except those that are as they were computed.
+   * Whether the layer is locked for this user. Curators may change locked layers, except layers
+   * that still have their computed values.
    */
   isLocked(layer: Layer): boolean {
     return layer.locked && (!this._host.canCurate() || isAsComputed(layer));
@@ -46,7 +47,10 @@ export class LockWatch {
     this.tell(target);
   }
 
-  /** Shows the same notice when the server refused a stroke because the layer is locked. */
+  /**
+   * Shows the same notice if the server refused a stroke because the layer is locked. Returns
+   * whether it did.
+   */
   explains({ status, field }: Pick<ProblemMessage, "status" | "field">): boolean {
     const selected = this._host.selected();
     if (status !== 403 || field !== "layer" || !selected || !this.isLocked(selected)) return false;
@@ -54,7 +58,7 @@ export class LockWatch {
     return true;
   }
 
-  /** The text is always the same, so that repeated notices merge. */
+  /** Shows the notice. Its text is always the same, so repeated notices are merged. */
   private tell(layer: Layer): void {
     notices.show("problem", texts.layers.locked, whyLocked(layer));
   }

@@ -1,7 +1,7 @@
-// One open model on this page, as the elements of all features see it: its parts, each with one
-// purpose, and members for several of them. `shell/open-model-session` assembles the parts. This is
-// the only file outside `shell/` that names the parts of all features; it imports only types, and
-// no part imports it (the interfaces between parts are in `session/parts`).
+// The interface of one open model for the elements of all features. It consists of parts with one
+// purpose each, and of members that concern several parts. `shell/open-model-session` assembles the
+// parts. This is the only file outside `shell/` that names the parts of all features. It imports
+// only types, and no part imports it. The interfaces between parts are in `session/parts`.
 
 import type { Api } from "../net/api";
 import type { ConnectionState, SavingState } from "../net/connection";
@@ -38,8 +38,8 @@ import type { ViewControl } from "./view-control";
 import type { Views } from "../features/views/views";
 
 /**
- * Parts with separate change signals. `session`: the model, the connection, or this person's
- * rights; all elements receive it.
+ * The parts with separate change signals. `session` signals changes to the model, the connection,
+ * or this user's rights. All elements receive this signal.
  */
 export type SessionPart =
   | "session"
@@ -72,10 +72,10 @@ export type SessionPart =
 export interface ModelSession {
   readonly model: Model | null;
   readonly deleted: boolean;
-  /** The server does not recognize this person's session. */
+  /** Whether the server no longer recognizes this user's session. */
   readonly signedOut: boolean;
   readonly role: Role;
-  /** The user name of this person. */
+  /** The name of this user. */
   readonly user: string;
   readonly session: string;
   readonly connectionState: ConnectionState;
@@ -109,40 +109,46 @@ export interface ModelSession {
   readonly modelId: string;
   readonly gestures: GestureHandler;
   /**
-   * Calls `listener` after every change, or only after changes of these parts and of the session
+   * Calls `listener` after every change, or only after changes to these parts and to the session
    * itself.
    */
   subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void;
-  /** Ends the connection; unsaved changes are sent when the same person opens the model again. */
+  /** Ends the connection. Unsaved changes are sent when the same user opens the model again. */
   discard(): void;
   checkConnection(): void;
   readonly canPaint: boolean;
   readonly canCurate: boolean;
-  /** For this person: curators can change locked layers too, except those that are as computed. */
+  /**
+   * Whether the layer is locked for this user. Curators can change locked layers, except layers
+   * that still have their computed values.
+   */
   isLocked(layer: Layer): boolean;
-  /** The selected layer, if the active tool would change its texels but must not. */
+  /** The selected layer, if the active tool would change its texels but may not. */
   readonly lockedTarget: Layer | null;
   /** Opens or closes the table of the selected layer. */
   toggleTable(): void;
   chooseTool(name: ToolName): void;
-  /** Sends the next drawings to this column of the record. */
+  /** Adds the next drawings to this column of the record. */
   drawMarks(layer: Layer, key: number, column: Column): void;
-  /** Undoes strokes; with tools that add to records, changes of the table. */
+  /** Undoes a stroke. With tools that add to records, undoes a change to the table. */
   undo(): void;
   redo(): void;
-  /** Background of the model; null: the server's default. */
+  /** Sets the background of the model. Null restores the server's default. */
   setBackground(background: Background | null): void;
-  /** A frame of the second view, which shows the past next to now, is on the screen. */
+  /**
+   * Reports that a frame of the second view is on the screen. This view shows an earlier state next
+   * to the newest one.
+   */
   thenDrawn(part: FrameMessage): void;
-  /** Selects a layer that this person has created. */
+  /** Adds and selects a layer that this user has created. */
   addCreated(layer: Layer): void;
-  /** Shows layers that a job made for this person, and selects the first one. */
+  /** Shows the layers that a job made for this user, and selects the first one. */
   showMade(ids: readonly number[]): void;
   changeModel(change: ModelPatch): Promise<void>;
   reloadModel(): Promise<void>;
   /**
-   * Displays the model with this unit and up direction, without saving them; null: with its own
-   * ones.
+   * Displays the model with this unit and up direction, without saving them. Null restores the
+   * model's own unit and up direction.
    */
   previewScale(scale: ModelScale | null): void;
   /** The unit of the displayed lengths. */

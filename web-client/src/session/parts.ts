@@ -1,5 +1,5 @@
-// Interfaces that the parts of an open model offer to other features. The implementing classes are
-// in the folders of their features; other features use only these interfaces.
+// Interfaces that the parts of an open model offer to other features. The classes that implement
+// them are in the folders of their features. Other features use only these interfaces.
 
 import type {
   Highlight,
@@ -20,36 +20,39 @@ export interface LayersPart {
   select(layer: Layer): void;
   visible(layer: Layer): boolean;
   setVisible(layer: Layer, visible: boolean): void;
-  /** Null: no highlight. */
+  /** Sets the highlight of a layer. Null removes it. */
   setHighlight(layerId: number, highlight: Highlight | null): void;
-  /** The settings that a named view keeps. */
+  /** Returns the settings that a saved view stores. */
   toKeep(): LayerOverride[];
   /**
-   * Applies the settings of a named view, without other highlights; layers that it does not contain
-   * get their defaults. Returns a function that restores the previous settings, without the
-   * temporary highlights.
+   * Applies the settings of a saved view and removes other highlights. Layers that the view does
+   * not contain get their defaults. Returns a function that restores the previous settings, without
+   * the temporary highlights.
    */
   showView(view: { layers: LayerOverride[] }): () => void;
 }
 
 export interface TablesPart {
-  /** The table that is open below the stage. */
+  /** The open table below the stage. */
   readonly view: {
     readonly layerId: number;
     readonly tableId: number;
     readonly highlight: Highlight | null;
     readonly rows: { put(record: TableRecord): void };
   } | null;
-  /** Null until it is loaded; the call requests it. */
+  /** Returns the table, or null until it is loaded. The first call requests it. */
   find(id: number): Table | null;
-  /** The name of a record; null where it has none, or it is not loaded yet. */
+  /**
+   * Returns the name of a record. Returns null if the record has no name, or if it is not loaded
+   * yet.
+   */
   label(id: number, key: number): string | null;
-  /** Whether the record is known not to exist. */
+  /** Whether it is known that the record does not exist. */
   lacks(id: number, key: number): boolean;
   open(layer: Layer): void;
   /** Scrolls to the record's row in the table of its layer. */
   showRow(layer: Layer, key: number): void;
-  /** Undoes or redoes this person's latest change of the table. */
+  /** Undoes or redoes this user's latest change to the table. */
   undo(table: number): Promise<void>;
   redo(table: number): Promise<void>;
 }
@@ -61,16 +64,24 @@ export interface CommentsPart {
 
 export interface AppearancePart {
   readonly section: SectionChoice;
-  /** The settings that a named view keeps, without the section, which belongs to the camera. */
+  /**
+   * Returns the settings that a saved view stores, without the section, which belongs to the
+   * camera.
+   */
   toKeep(): { looks: LookShown[]; light: Light };
-  /** Applies the settings of a named view. Returns a function that restores the previous ones. */
+  /**
+   * Applies the settings of a saved view. Returns a function that restores the previous settings.
+   */
   showView(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void;
 }
 
 export interface PaintingPart {
   readonly brush: { valueFor(layer: Layer): number };
-  /** A drawing is in progress, so the camera stays fixed. */
+  /** Whether a drawing is in progress, during which the camera does not move. */
   stroking: boolean;
-  /** Makes the selected layer visible; null if none is selected. The user was shown the reason. */
+  /**
+   * Makes the selected layer visible and returns it. Shows a notice and returns null if no layer is
+   * selected.
+   */
   chosenLayer(): Layer | null;
 }

@@ -1,5 +1,5 @@
-// Asks the server for the values under the pointer: one request at a time and at limited intervals;
-// the latest position wins.
+// Requests the values under the pointer from the server: one request at a time, with minimum
+// intervals, and always for the latest position.
 
 import { newId } from "../core/ids";
 import type { PointerSample } from "../ui/input";
@@ -8,7 +8,10 @@ import type { Picked } from "../core/protocol.gen";
 const kAskEveryMs = 60;
 const kGiveUpAfterMs = 2000;
 
-/** The action at the position: only pointing, a tap to look closer, or taking the value. */
+/**
+ * The action at the position: only pointing, a tap to look at the values, or taking the value for
+ * the brush.
+ */
 export type PickPurpose = "hover" | "look" | "take";
 
 export interface PickProbeHost {
@@ -24,12 +27,15 @@ export class PickProbe {
 
   constructor(private readonly _host: PickProbeHost) {}
 
-  /** Whether no request waits and none is pending. */
+  /** Whether no request is waiting or pending. */
   get idle(): boolean {
     return this._asked === null && this._waiting === null;
   }
 
-  /** A waiting press keeps its purpose, regardless of later pointer moves. */
+  /**
+   * Requests the values at a position. A waiting press keeps its purpose, regardless of later
+   * pointer moves.
+   */
   ask(sample: PointerSample, purpose: PickPurpose = "hover"): void {
     this._waiting = {
       sample,
@@ -38,12 +44,12 @@ export class PickProbe {
     this.send();
   }
 
-  /** Asks again when the surface may have changed under a resting pointer. */
+  /** Repeats the request, because the surface may have changed under a resting pointer. */
   askAgain(sample: PointerSample | null): void {
     if (sample && !this._waiting) this.ask(sample);
   }
 
-  /** Returns true for an answer to this probe's request. */
+  /** Handles a response. Returns true if it belongs to this probe's request. */
   answer(message: Picked): boolean {
     const asked = this._asked;
     if (!asked || message.id !== asked.id) return false;
@@ -53,14 +59,17 @@ export class PickProbe {
     return true;
   }
 
-  /** Returns true for a refusal of this probe's request; the next pointer move asks again. */
+  /**
+   * Handles a refusal. Returns true if it belongs to this probe's request. The next pointer move
+   * sends a new request.
+   */
   refused(ref: string | undefined): boolean {
     if (ref === undefined || ref !== this._asked?.id) return false;
     this._asked = null;
     return true;
   }
 
-  /** The connection was lost, and with it the answer. */
+  /** Forgets the pending request, because its response was lost with the connection. */
   reset(): void {
     this._asked = null;
   }
@@ -75,7 +84,7 @@ export class PickProbe {
     const waiting = this._waiting;
     if (!waiting || this._timer || !this._host.ready()) return;
     const nowMs = performance.now();
-    // its answer triggers the next request
+    // The response to the pending request triggers the next request.
     if (this._asked && nowMs - this._asked.atMs < kGiveUpAfterMs) return;
     this._waiting = null;
     this._asked = { id: newId(), atMs: nowMs, purpose: waiting.purpose };

@@ -1,5 +1,6 @@
-// The visibility of places on the surface. While the camera moves, places that were visible and
-// face it count as visible; when it rests, the server returns the surface at their pixels.
+// Determines the visibility of points on the surface. While the camera moves, points that were
+// visible and face the camera count as visible. When it stops, the server returns the surface at
+// their pixels.
 
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../math/camera";
 import type { Point } from "../net/stroke";
@@ -13,29 +14,34 @@ export interface PinPlace {
 
 export interface PinSightHost {
   camera(): OrbitCamera;
-  /** The places to show. */
+  /** Returns the points to show. */
   places(): PinPlace[];
-  /** The surface at each of these window pixels (two or more); null off the model. */
+  /**
+   * Returns the surface point at each of these window pixels (two or more), or null for a pixel off
+   * the model.
+   */
   lookAt(camera: CameraMessage, pixels: Point[]): Promise<(Vec3 | null)[]>;
   changed(): void;
 }
 
-export const kMostLooked = 1000; // pixels in one request to the server
-const kReach = 0.004; // share of the model's radius: tolerance of a hit in front of a place
+export const kMostLooked = 1000; // largest number of pixels in one request
+const kReach = 0.004; // tolerance for a hit in front of a point, relative to the model's radius
 
 export class PinSight {
-  private _known = new Map<number, boolean>(); // at the last rest of the camera
-  private _moved = true; // since that rest
+  private _known = new Map<number, boolean>(); // visibility when the camera last stopped
+  private _moved = true; // whether the camera has moved since then
   private _asked = 0;
 
   constructor(private readonly _host: PinSightHost) {}
 
   cameraMoved(): void {
     this._moved = true;
-    this._asked += 1; // a pending answer belongs to another camera
+    this._asked += 1; // a pending response belongs to another camera
   }
 
-  /** Call this when the camera rests, or when the places have changed. */
+  /**
+   * Determines the visibility. Call this when the camera stops, or when the points have changed.
+   */
   async look(): Promise<void> {
     const camera = this._host.camera();
     const asked = (this._asked += 1);
@@ -75,7 +81,7 @@ export class PinSight {
   }
 }
 
-/** Whether the surface at the place faces the camera. */
+/** Whether the surface at the point faces the camera. */
 export function faces(
   camera: OrbitCamera,
   { position, normal }: Pick<PinPlace, "position" | "normal">,

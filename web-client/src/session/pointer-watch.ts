@@ -1,4 +1,4 @@
-// This person's pointer, the values under it, and its presence messages to the others.
+// This user's pointer, the values under it, and the presence messages to other participants.
 
 import type { OrbitCamera } from "../math/camera";
 import type { PointerSample } from "../ui/input";
@@ -12,7 +12,9 @@ export interface PointerHost {
   ready(): boolean;
   ask(id: string, sample: PointerSample): void;
   showOthers(pointer: PointerSample | null): void;
-  /** A press that takes the value, or a tap to look closer. */
+  /**
+   * The results of a press that takes the value for the brush, and of a tap to look at the values.
+   */
   taken(message: Picked): void;
   looked(message: Picked): void;
   /** `picked` has changed. */
@@ -21,10 +23,10 @@ export interface PointerHost {
 }
 
 export class PointerWatch {
-  at: PointerSample | null = null; // window pixels
-  picked: Picked | null = null; // under the pointer, last known
+  at: PointerSample | null = null; // in window pixels
+  picked: Picked | null = null; // last known values under the pointer
 
-  private _depth: number | null = null; // of the last visible surface point under the pointer
+  private _depth: number | null = null; // depth of the last surface point under the pointer
   private _presenceTimer: ReturnType<typeof setTimeout> | null = null;
   private readonly _probe: PickProbe;
 
@@ -56,7 +58,10 @@ export class PointerWatch {
     this._probe.ask(sample, "look");
   }
 
-  /** Call this when the surface or the view may have changed under a resting pointer. */
+  /**
+   * Requests the values again. Call this when the surface or the view may have changed under a
+   * resting pointer.
+   */
   askAgain(): void {
     this._probe.askAgain(this.at);
   }
@@ -64,11 +69,11 @@ export class PointerWatch {
   answer(message: Picked): void {
     this._probe.answer(message);
   }
-  /** Returns true for a refusal of this pointer's request. */
+  /** Handles a refusal. Returns true if it belongs to this pointer's request. */
   refused(ref: string | undefined): boolean {
     return this._probe.refused(ref);
   }
-  /** The connection was lost, and with it the answer. */
+  /** Forgets the pending request, because its response was lost with the connection. */
   reset(): void {
     this._probe.reset();
   }
@@ -79,7 +84,10 @@ export class PointerWatch {
     this._probe.stop();
   }
 
-  /** Depth of the surface under the pointer; where it is unknown, that of the camera's target. */
+  /**
+   * Returns the depth of the surface under the pointer. If it is unknown, returns the depth of the
+   * camera's target.
+   */
   surfaceDepth(): number {
     return this._depth !== null && this._depth > 0 ? this._depth : this._host.camera().distance;
   }
@@ -94,7 +102,7 @@ export class PointerWatch {
     this._host.changed();
   }
 
-  /** The brush radius in the presence message depends on this depth. */
+  /** Stores the depth, on which the brush radius in the presence message depends. */
   private seeDepth(depth: number): void {
     const told = this._depth;
     this._depth = depth;

@@ -1,18 +1,18 @@
 // The current editors of records, and the records that this page has open for editing. These claims
-// are advice, so that people do not surprise each other: the record's version protects the data,
-// and without a connection everyone can edit.
+// are only advice, which makes users aware of each other. The version of the record protects the
+// data. Without a connection, all users can edit.
 
 import type { RecordEditor, RecordEditors as EditorsMessage } from "../core/protocol.gen";
 
 export interface RecordEditorsHost {
-  /** Sends nothing without a connection. */
+  /** Sends a claim to the server. Has no effect without a connection. */
   say(what: { table: number; key: number; editing: boolean; take_over?: boolean }): void;
-  /** The name of a user. */
+  /** Returns the displayed name of a user. */
   nameOf(user: string): string;
   changed(): void;
 }
 
-/** Another person with their name, or this person in another window. */
+/** Another user with this name, or this user in another window. */
 export interface OtherEditor {
   user: string;
   isMe: boolean;
@@ -20,9 +20,9 @@ export interface OtherEditor {
 
 const idOf = (table: number, key: number): string => `${table} ${key}`;
 
-/** A record that is open in this page, until `release`. */
+/** A record that is open for editing in this page, until `release`. */
 export class RecordClaim {
-  /** This page was its editor. */
+  /** Whether this page was the editor of the record. */
   had = false;
 
   constructor(
@@ -31,11 +31,11 @@ export class RecordClaim {
     readonly key: number,
   ) {}
 
-  /** Null: this page may edit it. */
+  /** The other editor of the record. Null if this page may edit it. */
   get other(): OtherEditor | null {
     return this._editors.other(this.table, this.key);
   }
-  /** Another person has taken it over. */
+  /** Whether another editor has taken the record over. */
   get lost(): boolean {
     return this.had && this.other !== null;
   }
@@ -71,7 +71,7 @@ export class RecordEditors {
 
   takeOver({ table, key }: RecordClaim): void {
     this._host.say({ table, key, editing: true, take_over: true });
-    this._there.delete(idOf(table, key)); // the server's event will confirm it
+    this._there.delete(idOf(table, key)); // the server confirms this with an event
     this._host.changed();
   }
 
@@ -81,7 +81,7 @@ export class RecordEditors {
       this._host.say({ table, key, editing: false });
   }
 
-  /** A new connection, which has no state of this page. */
+  /** Sends the claims of this page over a new connection. */
   joined(session: string, user: string): void {
     this._me = { session, user };
     this._there.clear();
@@ -94,7 +94,7 @@ export class RecordEditors {
     this._host.changed();
   }
 
-  /** The connection was lost: all editors are unknown. */
+  /** Forgets all editors, which are unknown after the connection was lost. */
   left(): void {
     this._there.clear();
     this._host.changed();
@@ -108,7 +108,7 @@ export class RecordEditors {
   private take({ table, key, session, user }: RecordEditor): void {
     if (session === undefined) {
       this._there.delete(idOf(table, key));
-      // this page gets it unless another person is faster
+      // This page becomes the editor, unless another page is faster.
       if (this.claimed(table, key)) this._host.say({ table, key, editing: true });
       return;
     }

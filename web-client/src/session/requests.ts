@@ -1,9 +1,9 @@
-// Requests for dialogs of the page that several features send.
+// Requests for dialogs of the page. Several features send them.
 
 import type { Column, TourEntry, View } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 
-/** `table`: the list to import into; null: a new one. */
+/** The dialog that imports terms. `table` is the list to import into. Null makes a new list. */
 export type TermsRequest = { dialog: "terms"; table: number | null; file: File | null };
 
 export type TablePanelRequest =
@@ -14,13 +14,16 @@ export type TablePanelRequest =
   | { dialog: "csv"; table: number; file: File }
   | { dialog: "photos"; table: number; files: File[] };
 
-/** The editor of a tour (without `tour`: of a new one), or its links for kiosks. */
+/**
+ * The editor of a tour, or the dialog with its links for kiosks. If `tour` is null, the editor
+ * makes a new tour.
+ */
 export type TourRequest =
   { dialog: "tour"; tour: TourEntry | null } | { dialog: "kiosks"; tour: TourEntry };
 
 /**
- * The dialog that saves a view or describes an existing one; without `view`: the current view. Or
- * the figure dialog; without `view`: for the current view.
+ * The dialog that saves or describes a view, or the figure dialog. Without `view`, they refer to
+ * the current view.
  */
 export interface ViewRequest {
   dialog: "view" | "figure";

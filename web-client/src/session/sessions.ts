@@ -1,5 +1,5 @@
-// All model sessions that may have unsaved changes: the one on the page, and earlier ones whose
-// connection is still open.
+// All model sessions that may have unsaved changes: the session on the page, and earlier sessions
+// whose connection is still open.
 
 import type { ModelSession } from "./model-session";
 
@@ -11,14 +11,14 @@ export const forget = (session: ModelSession): void => void sessions.delete(sess
 export const unsavedChanges = (): number =>
   [...sessions].reduce((sum, session) => sum + session.saving.waiting, 0);
 
-/** Call this when the network has changed, or the page is visible again. */
+/** Checks all connections. Call this when the network has changed, or the page is visible again. */
 export function checkConnections(): void {
   for (const session of sessions) session.checkConnection();
 }
 
 /**
- * Another person has signed in; unsaved changes must not be sent in their name. Returns the number
- * of changes that wait for their author's return.
+ * Ends all sessions after another user has signed in, so unsaved changes are not sent in that
+ * user's name. Returns the number of changes that wait until their author signs in again.
  */
 export function discardUnsaved(): number {
   const lost = unsavedChanges();
@@ -26,7 +26,7 @@ export function discardUnsaved(): number {
   return lost;
 }
 
-/** The page may close: this person's layer settings are sent now. */
+/** Sends this user's layer settings now, because the page may close. */
 export function keepViews(): void {
   for (const session of sessions) session.layers.flush();
 }

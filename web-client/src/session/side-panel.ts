@@ -1,5 +1,5 @@
-// A part of the side panel: a heading, its tools, and the content. The page shows it in one of its
-// tabs.
+// A part of the side panel: a heading, its tools, and the content. The page shows each part in a
+// tab.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { property } from "lit/decorators.js";
@@ -33,7 +33,7 @@ export const sidePanelStyles = [
 export abstract class SidePanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
 
-  /** `parts`: of the session, as in followSession(). */
+  /** `parts` are parts of the session, as in followSession(). */
   constructor(...parts: SessionPart[]) {
     super();
     followSession(this, ...parts);
@@ -41,11 +41,11 @@ export abstract class SidePanel extends LitElement {
 
   protected abstract readonly heading: string;
   protected abstract content(): unknown;
-  /** In the heading, after its text. */
+  /** The content after the text of the heading. */
   protected besideHeading(): unknown {
     return nothing;
   }
-  /** After the heading. */
+  /** The tools after the heading. */
   protected tools(): unknown {
     return nothing;
   }

@@ -1,15 +1,18 @@
-// Change signals: each part of an open model has a separate signal, so that a change redraws only
-// the elements that show it.
+// Change signals. Each part of an open model has a separate signal, so a change redraws only the
+// elements that show this part.
 
 type Listener = () => void;
 
-/** `Part`: the names of the parts. `common` concerns all: it is sent to every listener. */
+/** `Part` contains the names of the parts. The signal `common` is sent to every listener. */
 export class Signals<Part extends string> {
   private readonly _listeners = new Map<Listener, ReadonlySet<Part> | null>();
 
   constructor(private readonly _common: Part) {}
 
-  /** Without parts: listens to every change. Returns a function that unsubscribes. */
+  /**
+   * Subscribes to the changes of these parts, or to all changes if `parts` is empty. Returns a
+   * function that unsubscribes.
+   */
   subscribe(listener: Listener, parts: readonly Part[] = []): () => void {
     this._listeners.set(listener, parts.length > 0 ? new Set([...parts, this._common]) : null);
     return () => this._listeners.delete(listener);

@@ -1,4 +1,4 @@
-// The camera of this page's view: it moves only while nobody paints, and each move is sent to the
+// The camera of this page's view. It does not move while the user paints. Each move is sent to the
 // server.
 
 import {
@@ -15,48 +15,48 @@ import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import type { Vec3 } from "../math/vector";
 
-const kStillAfterMs = 120; // time without input after which the camera counts as still
+const kStillAfterMs = 120; // the camera counts as still after this time without input
 const kFlightMs = 600;
-// time constants of the approach to a followed camera
+// The time constants of the movement towards a followed camera.
 const kEaseMs = { least: 70, most: 250 };
 
 export interface ViewHost {
   send(moving: boolean): void;
   /**
-   * Runs the action now, or after the current stroke, since a stroke's pixels belong to the camera
-   * at its start.
+   * Runs the action now, or after the current stroke, because the pixels of a stroke belong to the
+   * camera at its start.
    */
   whenFree(action: () => void): void;
   isPainting(): boolean;
   cameToRest(): void;
-  /** This person moved the view, which ends the following of another one. */
+  /** This user has moved the view, so the page stops following another view. */
   wentOwnWay(): void;
   changed(): void;
 }
 
 export class ViewControl {
   readonly camera = new OrbitCamera();
-  /** Window pixels per CSS pixel. */
+  /** The number of window pixels per CSS pixel. */
   scale = 1;
   framesDrawn = 0;
 
   private _hasModel = false;
   private _fitted = false;
   private _stillTimer: ReturnType<typeof setTimeout> | null = null;
-  private _flight = 0; // of requestAnimationFrame; 0: none
+  private _flight = 0; // id of requestAnimationFrame, or 0
   private _flightTo: Place | null = null;
-  // the followed camera
+  // The followed camera.
   private _beside: {
     camera: CameraMessage;
     heardMs: number;
     easeMs: number;
     glidedMs: number;
   } | null = null;
-  private _glide = 0; // of requestAnimationFrame; 0: none
+  private _glide = 0; // id of requestAnimationFrame, or 0
 
   constructor(private readonly _host: ViewHost) {}
 
-  /** The stage's size in CSS pixels, and window pixels per CSS pixel. */
+  /** Sets the stage's size in CSS pixels and the number of window pixels per CSS pixel. */
   setViewport(width: number, height: number, scale: number): void {
     this._host.whenFree(() => {
       this.scale = scale;
@@ -67,7 +67,7 @@ export class ViewControl {
     });
   }
 
-  /** Takes the current model; `turned`: its up direction has changed. */
+  /** Sets the model. `turned` is true if its up direction has changed. */
   setModel(model: Model, turned: boolean): void {
     this._hasModel = true;
     this.camera.setModel(model.bounds, model.up);
@@ -80,7 +80,7 @@ export class ViewControl {
     if (this.camera.up === up) return;
     this.endFlight();
     this.camera.setModel(model.bounds, up);
-    this.camera.fit(); // another side faces the eye
+    this.camera.fit(); // another side faces the viewer
     this.moved(false);
   }
 
@@ -102,14 +102,14 @@ export class ViewControl {
   fit(): void {
     this.moveInUsualField(() => this.camera.fit());
   }
-  /** Flies to a part of the model, as `fly`. */
+  /** Flies to a part of the model, like `fly`. */
   flyTo(box: Bounds, normal?: Vec3): void {
     this.flyToResult(() => this.camera.lookAt(box, normal));
   }
   flyToStandard(view: StandardView): void {
     this.flyToResult(() => this.camera.standardView(view));
   }
-  /** Flies to the view in which the model was opened. */
+  /** Flies to the initial view of the model. */
   flyToFirst(): void {
     this.flyToResult(() => this.camera.firstView());
   }
@@ -123,8 +123,8 @@ export class ViewControl {
     this.fly(to);
   }
   /**
-   * Flies to a place in this time; at once for people who prefer reduced motion. Any other move
-   * ends the flight.
+   * Flies to a position in this time, or immediately for users who prefer reduced motion. Any other
+   * move ends the flight.
    */
   fly(to: Place, flightMs = kFlightMs): void {
     if (this._host.isPainting()) return;
@@ -156,12 +156,12 @@ export class ViewControl {
     this._flightTo = null;
   }
 
-  /** The camera's place, or the end of its flight. */
+  /** The position of the camera, or the end of its flight. */
   get place(): Place {
     return this._flightTo ?? placeOf(this.camera);
   }
 
-  /** Follows another camera until `look_alone`, after the current stroke. */
+  /** Follows another camera until `lookAlone`, and begins after the current stroke. */
   lookAlong(camera: CameraMessage): void {
     const now = performance.now();
     if (this._beside) {
@@ -175,7 +175,7 @@ export class ViewControl {
     this._host.whenFree(() => this.glide());
   }
 
-  /** Ends the following. The picture stays, with the default field. */
+  /** Stops following. The camera keeps its position and gets the default field of view. */
   lookAlone(): void {
     if (!this._beside) return;
     this._beside = null;
@@ -186,12 +186,12 @@ export class ViewControl {
     });
   }
 
-  /** Sets the center of rotation to the middle of the picture at this depth. */
+  /** Sets the center of rotation to the middle of the view at this depth. */
   turnAround(depth: number): void {
     this.camera.turnAround(depth);
   }
 
-  /** Whether the camera is moving to a followed one. */
+  /** Whether the camera is moving towards a followed camera. */
   get gliding(): boolean {
     return this._glide !== 0;
   }
@@ -211,7 +211,7 @@ export class ViewControl {
       return;
     }
     const to = placeLike(beside.camera, camera);
-    // for a straight path of the eye
+    // This makes the path of the eye straight.
     if (camera.perspective === to.perspective)
       camera.turnAround(to.perspective ? to.distance : camera.depthOf(to.target));
     const now = performance.now();
@@ -237,7 +237,10 @@ export class ViewControl {
     this.moveInUsualField(() => (this.camera.perspective = perspective));
   }
 
-  /** The picture, the brush and the pointer ignore parts that the planes cut away. */
+  /**
+   * Sets the planes of the section. The frame, the brush and the pointer ignore the parts that they
+   * cut away.
+   */
   setSection(planes: Plane[], moving: boolean): void {
     this._host.whenFree(() => {
       this.camera.section = planes;
@@ -261,7 +264,7 @@ export class ViewControl {
     this._stillTimer = null;
   }
 
-  /** Runs once, when both the model and the stage's size are known. */
+  /** Shows the first view, as soon as the model and the stage's size are known. */
   private fitAtFirst(): void {
     if (this._fitted || !this._hasModel || this.camera.width <= 1) return;
     this._fitted = true;
@@ -270,8 +273,8 @@ export class ViewControl {
   }
 
   /**
-   * Restores the default field of view, which a view saved in another window may have changed;
-   * small moves keep the field.
+   * Moves the camera and restores the default field of view. A view that was saved in another
+   * window may have changed the field. Small moves keep it.
    */
   private moveInUsualField(change: () => void): void {
     this.move(() => {

@@ -1,5 +1,5 @@
-// <strata-command-palette>: finds a command by its words and runs it: a field with a list (the
-// combobox pattern of ARIA). The recently used ones come first.
+// <strata-command-palette>: finds a command by its words and runs it. It is a field with a list
+// (the combobox pattern of ARIA). Recently used commands come first.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -19,7 +19,7 @@ import type { PageHost } from "./open-dialog";
 
 const words = texts.commands;
 const kMostRecent = 6;
-const kPage = 8; // rows of Page Up and Page Down
+const kPage = 8; // number of rows that Page Up and Page Down move by
 
 interface Section {
   title: string;
@@ -122,7 +122,8 @@ export class StrataCommandPalette extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues): void {
-    // Another render of the page keeps the list: rows must not move under the pointer.
+    // The list stays the same when the page is rendered again, so rows do not move under the
+    // pointer.
     if (this._all.length === 0)
       this._all = [...keyCommands(this.host), ...moreCommands(this.host)].filter(
         ({ isKeyOnly }) => !isKeyOnly,
@@ -142,7 +143,10 @@ export class StrataCommandPalette extends LitElement {
     return recent.length > 0 ? [{ title: words.recent, commands: recent }, ...sections] : sections;
   }
 
-  /** Of equally good results, recently used commands are first and impossible ones last. */
+  /**
+   * Returns the matching commands. Among commands with the same rank, recently used ones come first
+   * and unavailable ones last.
+   */
   private found(): Section[] {
     const recent = this._recent.value;
     const place = ({ id, problem }: Command): number =>
@@ -262,14 +266,14 @@ export class StrataCommandPalette extends LitElement {
     this._dialog.close();
   }
 
-  /** The command may open another dialog: only after this one has closed. */
+  /** Runs the command after this dialog has closed, because the command may open another dialog. */
   private onClosed(): void {
     this.dispatchEvent(new CustomEvent("closed"));
     this._chosen?.run("");
   }
 }
 
-/** A press on the list keeps the focus in the field. */
+/** Keeps the focus in the field when the user presses on the list. */
 const keepFocus = (event: Event): void => event.preventDefault();
 
 declare global {

@@ -1,21 +1,21 @@
-// One command of a model's page: for keys, the help and the command palette.
+// A command of the model page, for keys, the help and the command palette.
 
 import type { IconName } from "../ui/icons";
 
 export interface Command {
   readonly id: string;
-  /** Its part of the page, in this person's language. */
+  /** The group of the command in the help, in the user's language. */
   readonly group: string;
   readonly title: string;
-  /** As `ui/keys/command-keys` writes them. */
+  /** The keys, in the notation of `ui/keys/command-keys`. */
   readonly keys?: readonly string[];
-  /** The first key, as caps. */
+  /** The key caps of the first key. */
   readonly caps?: readonly string[];
   readonly glyph?: IconName;
-  /** Why it is not possible now. Its key shows the reason, or does nothing. */
+  /** The reason why the command is unavailable. Its key shows the reason or has no effect. */
   readonly problem?: string | undefined;
-  /** It makes sense only with its key. */
+  /** Whether the command is useful only with its key. */
   readonly isKeyOnly?: boolean;
-  /** Returns false if it had nothing to do. */
+  /** Runs the command. Returns false if the command had no effect. */
   run(key: string): boolean | void;
 }

@@ -1,4 +1,5 @@
-// The commands with keys. `more-commands` has those without, which are loaded later.
+// The commands with keys. `more-commands` contains the commands without keys, which are loaded
+// later.
 
 import { kStandardViews } from "../math/view-cube";
 import { hasOptions, kChangingTools, kRailTools } from "../tools/tool";
@@ -18,7 +19,7 @@ const kArrows: Readonly<Record<string, [number, number]>> = {
 const kArrowStep = 0.04;
 const kZoomStep = 1.15;
 
-/** Why this person cannot change anything now. */
+/** Returns the reason why the user cannot change the model now. */
 export function changeProblem(session: ModelSession): string | undefined {
   if (!session.canPaint) return texts.brush.viewer_only;
   return session.past.isActive ? texts.past.paint_refused : undefined;
@@ -44,7 +45,7 @@ export function keyCommands(host: PageHost): Command[] {
       title: texts.tools[tool],
       glyph: tool,
       problem: kChangingTools.includes(tool) ? changing : undefined,
-      // once more: its options, if another tab hides them
+      // if the tool is already active, shows its options
       run: () =>
         session.tools.active === tool && hasOptions(tool)
           ? host.panel("layers")
@@ -215,7 +216,10 @@ export function keyCommands(host: PageHost): Command[] {
   ];
 }
 
-/** Stops following, closes the comment, or goes back to now: the first of them that applies. */
+/**
+ * Stops following, closes the open comment, or returns to the newest state. Only the first
+ * applicable action runs. Returns false if no action applies.
+ */
 function leave(session: ModelSession): boolean {
   if (session.together.followed) session.together.stopFollowing();
   else if (session.comments.close()) return true;

@@ -1,5 +1,5 @@
-// The connection status on a model's page: whether all changes are saved, and a banner while the
-// server is unreachable.
+// The connection status on the model page. It shows whether all changes are saved, and a banner
+// while the server is unreachable.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { ModelSession } from "../session/model-session";

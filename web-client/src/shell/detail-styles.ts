@@ -1,4 +1,4 @@
-// Layout of dialogs that only display: names at the left, values at the right.
+// Layout of dialogs that only display values: names on the left, values on the right.
 
 import { css } from "lit";
 

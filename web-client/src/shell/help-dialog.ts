@@ -1,4 +1,4 @@
-// <strata-help-sheet>: the keys and gestures of the page, and the release of the server.
+// <strata-help-sheet>: shows the keys and gestures of the page, and the version of the server.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -23,17 +23,17 @@ export class StrataHelpDialog extends LitElement {
   static override styles = [sharedStyles, detailStyles];
 
   @property({ attribute: false }) host!: PageHost;
-  /** The server's version, which is also the page's. Empty until the answer arrives. */
+  /** The version of the server and of the page. Empty until the response arrives. */
   @state() private _version = "";
-  @state() private _rows: HelpTexts | null = null; // null: not loaded
-  private _next: (() => void) | null = null; // after the help has closed
+  @state() private _rows: HelpTexts | null = null; // null: not loaded yet
+  private _next: (() => void) | null = null; // called after the help has closed
 
   override connectedCallback(): void {
     super.connectedCallback();
     void this.readVersion();
     loadHelp().then(
       (rows) => (this._rows = rows),
-      () => {}, // the keys of the commands are here
+      () => {}, // The help then shows only the keys of commands.
     );
   }
 
@@ -42,7 +42,7 @@ export class StrataHelpDialog extends LitElement {
       const answer = await fetch("/api/v1/version");
       if (answer.ok) this._version = ((await answer.json()) as ServerVersion).version;
     } catch {
-      // The help works without the version.
+      // The help also works without the version.
     }
   }
 
@@ -74,7 +74,7 @@ export class StrataHelpDialog extends LitElement {
     ${part(rows, rows.table, rows.table_rows)} ${part(rows, rows.layers, rows.layer_rows)}`;
   }
 
-  /** The keys of the commands, by their part of the page. */
+  /** Lists the keys of the commands, by group. */
   private commands(): TemplateResult {
     const groups = new Map<string, Command[]>();
     for (const command of keyCommands(this.host))
@@ -100,7 +100,10 @@ export class StrataHelpDialog extends LitElement {
     this._next?.();
   }
 
-  /** Closes first, so that the tour later returns the focus to the opener of the help. */
+  /**
+   * Closes the help before the tour starts, so the tour later returns the focus to the element that
+   * opened the help.
+   */
   private showTour(): void {
     this._dialog.close();
     this.dispatchEvent(new CustomEvent("tour"));

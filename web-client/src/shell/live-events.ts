@@ -3,7 +3,7 @@
 import type { ConnectionCallbacks } from "../net/connection";
 import type { ModelSession } from "../session/model-session";
 
-/** Events for the parts; the session itself handles the others. */
+/** The events for the parts. The session itself handles all other events. */
 export type EventsOfParts = Omit<
   ConnectionCallbacks,
   "state" | "welcome" | "frame" | "saving" | "model" | "problem" | "takenUp"
@@ -18,7 +18,7 @@ export function eventsOfParts(session: ModelSession): EventsOfParts {
     },
     saved: () => {
       session.reviews.saved();
-      session.tables.refreshAreas(); // including the areas that this person's own strokes changed
+      session.tables.refreshAreas(); // also the areas that this user's own strokes have changed
       session.activity.outdated();
       session.past.outdated();
     },

@@ -10,7 +10,7 @@ async function start(): Promise<void> {
   const language = pageLanguage(chosen, navigator.languages);
   document.documentElement.lang = language;
   await loadTexts(language, chosen !== null, navigator.languages);
-  await import("./strata-app"); // its modules read texts at load time
+  await import("./strata-app"); // its modules read the texts when they are loaded
 }
 
 void start();

@@ -1,4 +1,4 @@
-// Makes the tools of an open model and connects them to its parts.
+// Makes the tools of an open model and connects them to the parts of the model.
 
 import type { Point } from "../net/stroke";
 import type { PointerSample } from "../ui/input";
@@ -20,7 +20,7 @@ import { ToolManager } from "../tools/tool-manager";
 export interface ToolChanges {
   /** Another tool was activated. */
   chosen(name: ToolName): void;
-  /** The outline of the active tool changed. */
+  /** The outline of the active tool has changed. */
   outline(): void;
 }
 
@@ -66,7 +66,7 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
   };
   const partHost = {
     ...outlineHost,
-    // The camera stays fixed, as for each outline.
+    // The camera does not move while the outline is drawn.
     beginOutline: () => (session.painting.stroking = true),
     finishOutline: (path: Point[]) => session.past.setPart(path),
     giveUp: () => session.past.setPart(null),

@@ -1,4 +1,4 @@
-// <strata-about-sheet>: information about the model and its files, and the roles that can download
+// <strata-about-sheet>: information about the model, its files, and the roles that can download
 // them.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
@@ -21,7 +21,7 @@ import { detailStyles } from "./detail-styles";
 
 const kDownloaders = ["viewer", "annotator", "curator"] as const;
 
-/** Empty for models from earlier releases of the import. */
+/** Describes the open edges. Empty for models that an earlier release imported. */
 function openEdgesText({ open_edges: edges }: Model): string {
   const words = texts.model.details_list;
   if (!edges) return "";
@@ -32,10 +32,9 @@ function openEdgesText({ open_edges: edges }: Model): string {
 @customElement("strata-about-sheet")
 export class StrataModelDetails extends LitElement {
   @property({ attribute: false }) model!: Model;
-  @property() viewer: Role = "guest"; // this person's role
+  @property() viewer: Role = "guest"; // the user's role
   /**
-   * Whether this person can correct the model's unit and up direction, and set the role for
-   * downloads.
+   * Whether the user can correct the model's unit and up direction, and set the role for downloads.
    */
   @property({ type: Boolean }) correctable = false;
 

@@ -1,5 +1,5 @@
-// The dialogs of a model's page. The page is shown before they are loaded; they form a separate
-// part (`page-parts.ts`).
+// The dialogs of the model page. They are a separate part (`page-parts.ts`), so the page is shown
+// before they are loaded.
 
 import "../features/layers/color-dialog";
 import "../features/tables/column-dialog";

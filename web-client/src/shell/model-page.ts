@@ -1,5 +1,5 @@
-// <strata-model-page>: one model: the stage in the middle, tools at the left, layers and brush at
-// the right (on a phone: a sheet at the bottom).
+// <strata-model-page>: the page of one model. The stage is in the middle, the tools on the left,
+// the layers and the brush on the right. On a phone, layers and brush are in a sheet at the bottom.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -71,7 +71,7 @@ import { lostBanner, savingStatus } from "./connection-status";
 import "../features/appearance/picture-bar";
 import "../features/appearance/view-panel";
 
-const kNarrow = 820; // window width up to which the panel lies over the model
+const kNarrow = 820; // in windows up to this width, the panel covers the model
 const kMaxPanelWidth = 620;
 const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
 
@@ -82,17 +82,17 @@ export class StrataModelPage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @property({ attribute: "model_id" }) modelId = "";
-  /** All projects that this person can see. */
+  /** All projects that the user can see. */
   @property({ attribute: false }) projects: readonly Project[] = [];
   @state() private _dialog: OpenDialog | null = null;
-  // separate from dialogs: views can be saved while a stop is previewed
+  // Separate from dialogs, because views can be saved while a stop is previewed.
   @state() private _tourEditor: { tour: TourEntry | null } | null = null;
   @state() private _missing: { heading: string; lead: string } | null = null;
   @state() private _panelShown = window.innerWidth > kNarrow;
   @query("strata-stage") private _stage!: StrataStage | null;
   @query("strata-tour") private _tour!: StrataOnboarding | null;
   @query(".scroll") private _panelContent!: HTMLElement | null;
-  // in pixels at the default text size; scales with it
+  // The size is in pixels at the default text size, and scales with the text size.
   private readonly _panelSplitter = new Splitter(this, {
     label: texts.model.resize_panel,
     key: "strata.panel_width",
@@ -115,10 +115,10 @@ export class StrataModelPage extends LitElement {
   private _session: OpenModelSession | null = null;
   private _askedScale = false;
   private _measures = false;
-  private _tool: ToolName | null = null; // the tool whose options are in view
-  private _role: Role | null = null; // in the last welcome
-  private _card: number | "new" | null = null; // the comment that is open
-  private _wantedComment: number | null = null; // from the address
+  private _tool: ToolName | null = null; // the tool whose options are visible
+  private _role: Role | null = null; // role in the last welcome
+  private _card: number | "new" | null = null; // the open comment
+  private _wantedComment: number | null = null; // comment in the address
   private _wantedView: string | null = null;
 
   static override styles = [sharedStyles, tabListStyles, modelStyles];
@@ -155,7 +155,7 @@ export class StrataModelPage extends LitElement {
   }
 
   override updated(): void {
-    this._tour?.requestUpdate(); // its target may have moved
+    this._tour?.requestUpdate(); // the target of the tour may have moved
     const session = this._session;
     if (session) {
       this.bringOptions(session.tools.active);
@@ -164,14 +164,14 @@ export class StrataModelPage extends LitElement {
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
     if (session?.tables.view) this.liftNotices(narrow ? "52dvh" : `${this._tableSplitter.size}px`);
     else if (session?.past.isOpen) this.liftNotices("var(--past-height, 0px)");
-    // its sheet covers the tools
+    // In narrow windows, the sheet of a comment covers the tools.
     else
       this.liftNotices(
         narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null,
       );
   }
 
-  /** Notices belong to the whole page and would cover the table or the sheet of a comment. */
+  /** Moves notices up, because they would cover the table or the sheet of a comment. */
   private liftNotices(height: string | null): void {
     const { style } = document.documentElement;
     if (height) style.setProperty("--beneath", height);
@@ -220,7 +220,7 @@ export class StrataModelPage extends LitElement {
     this.requestUpdate();
   }
 
-  /** The place on the model has changed, or its first frame was drawn. */
+  /** Handles a change of the view, and the first frame. */
   private onPlace(session: OpenModelSession): void {
     if (session !== this._session) return;
     this.followAddress(session);
@@ -231,14 +231,14 @@ export class StrataModelPage extends LitElement {
     }
   }
 
-  /** Opens the panel with the measurement. */
+  /** Opens the panel when the measuring tool becomes active. */
   private showMeasuring(session: OpenModelSession): void {
     const measures = session.tools.active === "measure";
     if (measures && !this._measures) this._panelShown = true;
     this._measures = measures;
   }
 
-  /** Shows the options of a newly chosen tool: they are at the top of the layers. */
+  /** Shows the options of a newly chosen tool, which are above the layers. */
   private bringOptions(tool: ToolName): void {
     if (tool === this._tool) return;
     this._tool = tool;
@@ -251,8 +251,8 @@ export class StrataModelPage extends LitElement {
   }
 
   /**
-   * Shows the list of the comment that was opened on the picture or by a link. A person who reads
-   * the activity stays there.
+   * Shows the list of comments when a comment was opened on the stage or by a link. If the user
+   * reads the activity, that tab stays open.
    */
   private bringComment(card: number | "new" | null): void {
     if (card === this._card) return;
@@ -260,7 +260,7 @@ export class StrataModelPage extends LitElement {
     if (typeof card === "number" && this._tabs.chosen !== "activity") this._tabs.choose("comments");
   }
 
-  /** Opens the panel, which may lie over the model, at the options of the active tool. */
+  /** Opens the panel at the options of the active tool. The panel may cover the model. */
   private showOptions(session: OpenModelSession): void {
     if (session.tables.view) session.tables.close();
     this._panelShown = true;
@@ -269,7 +269,8 @@ export class StrataModelPage extends LitElement {
   }
 
   private readonly onHash = (event: HashChangeEvent): void => {
-    if (event.newURL !== location.href) return; // the page was held and its address restored
+    // the user stayed on the page, and its address was restored
+    if (event.newURL !== location.href) return;
     this.readAddress();
     if (this._session) this.followAddress(this._session);
   };
@@ -280,8 +281,8 @@ export class StrataModelPage extends LitElement {
   }
 
   /**
-   * Opens the comment or view of the address as soon as it is loaded. From then on the address
-   * follows the displayed one.
+   * Opens the comment or view in the address as soon as it is loaded. After that, the address
+   * always names the displayed comment or view.
    */
   private followAddress(session: OpenModelSession): void {
     const { comments, view, views } = session;
@@ -360,7 +361,7 @@ export class StrataModelPage extends LitElement {
       }`;
   }
 
-  /** Shows the model: in a narrow window the panel closes. */
+  /** Makes room for the model. In a narrow window, the panel closes. */
   private makeRoom(): void {
     if (window.innerWidth <= kNarrow) this._panelShown = false;
   }
@@ -472,7 +473,7 @@ export class StrataModelPage extends LitElement {
     }
   }
 
-  /** With the options of the active tool, which mostly changes a layer. */
+  /** Shows the layers, and above them the options of the active tool. */
   private layers(session: OpenModelSession): TemplateResult {
     const { active } = session.tools;
     const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
@@ -524,7 +525,7 @@ export class StrataModelPage extends LitElement {
     };
   }
 
-  /** Null: shows or hides the panel. */
+  /** Shows a tab of the panel. Null shows or hides the panel. */
   private showTab(tab: PanelTab | null): void {
     this._panelShown = tab !== null || !this._panelShown;
     if (tab) this._tabs.choose(tab);
@@ -560,15 +561,15 @@ export class StrataModelPage extends LitElement {
     if (event.key === " " && this._stage) this._stage.orbitHeld = false;
   };
 
-  /** The key may be released in another window. */
+  /** Ends the rotation by a held key, because the key may be released in another window. */
   private readonly onBlur = (): void => {
     if (this._stage) this._stage.orbitHeld = false;
   };
 }
 
 /**
- * After a click, the button loses the keyboard focus: otherwise Space would press it again instead
- * of rotating the model. A button pressed by a key keeps the focus.
+ * Removes the keyboard focus from a clicked button. Otherwise Space would press the button again
+ * instead of rotating the model. A button that was pressed with a key keeps the focus.
  */
 function giveBackKeyboard(event: MouseEvent): void {
   if (event.detail === 0) return;

@@ -128,7 +128,7 @@ export const modelStyles = css`
     top: 0.625rem;
     right: 0.625rem;
     max-width: calc(100% - 1.25rem);
-    bottom: 0.625rem; /* takes no clicks itself */
+    bottom: 0.625rem; /* does not receive clicks itself */
   }
   .banner {
     position: absolute;
@@ -157,7 +157,7 @@ export const modelStyles = css`
     justify-items: end;
     pointer-events: none;
     position: absolute;
-    right: 4.75rem; /* left of the bar on the picture, which tall cards reach */
+    right: 4.75rem; /* left of the bar on the stage, which tall cards would otherwise cover */
     bottom: calc(0.875rem + var(--past-height, 0px));
     max-width: min(21.25rem, calc(100% - 17.625rem));
   }
@@ -192,7 +192,7 @@ export const modelStyles = css`
   }
   .scroll {
     grid-row: 3; /* below the jobs, if there are any */
-    position: relative; /* visually hidden content would lengthen the page otherwise */
+    position: relative; /* otherwise visually hidden content would lengthen the page */
     overflow: hidden auto;
     padding: 0 var(--space-3) var(--space-6);
   }
@@ -245,7 +245,7 @@ export const modelStyles = css`
       z-index: 3;
     }
     .saving span,
-    .commands, /* the help opens them */
+    .commands, /* available through the help */
     .scale-chip {
       display: none;
     }
@@ -266,7 +266,7 @@ export const modelStyles = css`
       font-size: var(--text-large);
     }
     .readings {
-      z-index: 3; /* above the bar on the picture */
+      z-index: 3; /* above the bar on the stage */
       right: 0.625rem;
       bottom: calc(0.625rem + var(--past-height, 0px));
       max-width: calc(100% - 1.25rem);

@@ -1,4 +1,4 @@
-// The commands without keys: for what the model has, and the dialogs of the page.
+// The commands without keys: for the model's content, and for the dialogs of the page.
 
 import { labelOf } from "../domain/cells";
 import { called } from "../domain/people";
@@ -23,7 +23,7 @@ export const moreCommands = (host: PageHost): Command[] => [
   ...ofUser(host),
 ];
 
-/** A command that opens a dialog. */
+/** Returns a function that opens a dialog. */
 const opening = (
   host: PageHost,
   group: string,

@@ -20,8 +20,9 @@ export class StrataNotices extends LitElement {
       :host {
         position: fixed;
         z-index: 50;
-        left: 4.75rem; /* next to the tools and above the scale bar */
-        bottom: calc(4.75rem + var(--beneath, 0px)); /* height of the content below the picture */
+        left: 4.75rem; /* right of the tools and above the scale bar */
+        /* plus the height of the content below the stage */
+        bottom: calc(4.75rem + var(--beneath, 0px));
         display: grid;
         gap: var(--space-2);
         width: min(27.5rem, calc(100vw - 5.5rem));

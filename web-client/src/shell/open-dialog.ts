@@ -1,4 +1,5 @@
-// Renders the requested dialog of a model's page. The elements belong to the part `model_dialogs`.
+// Renders the requested dialog of the model page. The dialog elements belong to the part
+// `model_dialogs`.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { TourEntry } from "../core/protocol.gen";
@@ -18,20 +19,20 @@ export type OpenDialog =
   | Extract<TourRequest, { dialog: "kiosks" }>
   | { dialog: "scale" | "help" | "about" | "orthophoto" | "commands" };
 
-/** The page, as its commands and dialogs see it. */
+/** The interface of the page for its commands and dialogs. */
 export interface PageHost {
   session: ModelSession;
   me: Me;
   /** Whether the user can manage links for kiosks. */
   seesToKiosks: boolean;
-  /** Replaces the open dialog; null: none. */
+  /** Replaces the open dialog. Null closes it. */
   show(dialog: OpenDialog | null): void;
   /** Makes room for the model. */
   aside(): void;
-  /** Shows a tab of the side panel; null: shows or hides the panel. */
+  /** Shows a tab of the side panel. Null shows or hides the panel. */
   panel(tab: PanelTab | null): void;
   account(request: AccountRequest): void;
-  /** Opens the editor of a tour; null: of a new one. */
+  /** Opens the editor of a tour. Null makes a new tour. */
   editTour(tour: TourEntry | null): void;
   signedOut(): void;
   startTour(): void;
@@ -136,6 +137,6 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
   }
 }
 
-/** The current layer: the request may have an older version. */
+/** Returns the current version of the layer, because the request may contain an older one. */
 const newest = (session: ModelSession, layer: Layer): Layer =>
   session.layers.all.find((each) => each.id === layer.id) ?? layer;

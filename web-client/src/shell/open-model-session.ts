@@ -1,11 +1,13 @@
 // One open model on this page: its life cycle, and the messages between its parts. `view` is the
-// camera, `lit` the lit part of the surface, `layers` the layers, `tables` the records behind the layers' keys, `comments` the
-// comments on the surface, `hovered` the record under the resting mouse, `appearance` the surface
-// images, light and section, `pointer` the values under the pointer, `painting` the brush and the
-// edits, `together` the participants and the followed view, `cursors` their pointers, `views` the
-// named views, `tours` the tours of views, `measuring` the measurement, `figures` the figures to
-// scale, `face` the face to pick, `past` the earlier states. Elements subscribe and render the parts' state; they change it
-// only through methods. The file is long because it alone connects the parts.
+// camera, `lit` the highlighted part of the surface, `layers` the layers, and `tables` the records
+// behind the layers' keys. `comments` are the comments on the surface, and `hovered` is the record
+// under a resting mouse. `appearance` contains the surface images, the light and the section.
+// `pointer` contains the values under the pointer, `painting` the brush and the edits. `together`
+// contains the participants and the followed view, `cursors` their pointers. `views` are the saved
+// views, `tours` the tours, `measuring` the measurement, and `figures` the figures to scale. `face`
+// is the face to pick, and `past` the earlier states. Elements subscribe to the parts' state and
+// render it. They change it only through methods. The file is long because it is the only one that
+// connects the parts.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -65,9 +67,9 @@ import { makeTools } from "./make-tools";
 
 export class OpenModelSession implements ModelSession {
   deleted = false;
-  signedOut = false; // the server does not recognize the session
+  signedOut = false; // the server no longer recognizes the session
   role: Role = "viewer";
-  user = ""; // this person's user name
+  user = ""; // the name of this user
   session = "";
   connectionState: ConnectionState = "connecting";
   saving: SavingState = { waiting: 0, failing: false };
@@ -97,7 +99,7 @@ export class OpenModelSession implements ModelSession {
   readonly figures: Figures;
   readonly face: FacePick;
   readonly tools: ToolManager;
-  /** Set by the stage. */
+  /** The stage sets these callbacks. */
   onFrame: (part: FrameMessage) => void = () => {};
   onResetFrames: () => void = () => {};
 
@@ -107,9 +109,10 @@ export class OpenModelSession implements ModelSession {
   private readonly _locks: LockWatch;
   private readonly _signals = new Signals<SessionPart>("session");
   private _wasOpen = false;
-  private _closed = false; // the page was closed
+  private _closed = false; // whether the page was closed
   private _toldLeft = false;
-  private _thenWithoutAck: number | null = null; // a frame of the second view
+  // a frame of the second view without an acknowledgment
+  private _thenWithoutAck: number | null = null;
 
   constructor(
     readonly api: Api,
@@ -169,7 +172,7 @@ export class OpenModelSession implements ModelSession {
     });
     this.pointer = new PointerWatch({
       camera: () => this.view.camera,
-      // Values are those of the newest state.
+      // The server returns values only for the newest state.
       ready: () => this.connectionState === "open" && !this.past.isActive,
       ask: (id, { x, y }) => this._connection.pick(id, x, y),
       showOthers: (pointer) => this.together.show(this.shownAt(pointer)),
@@ -388,8 +391,8 @@ export class OpenModelSession implements ModelSession {
   }
 
   /**
-   * The page was closed. Unsaved edits are still sent: the connection stays open until all are
-   * saved.
+   * Closes the session when the page is closed. The connection stays open until all unsaved edits
+   * are saved.
    */
   close(): void {
     this._closed = true;
@@ -417,7 +420,7 @@ export class OpenModelSession implements ModelSession {
     this.tellLeftBehind();
   }
 
-  /** Ends the connection; unsaved changes are sent when the same person opens the model again. */
+  /** Ends the connection. Unsaved changes are sent when the same user opens the model again. */
   discard(): void {
     forget(this);
     this.saving = { waiting: 0, failing: false };
@@ -442,7 +445,7 @@ export class OpenModelSession implements ModelSession {
     return this._locks.target;
   }
 
-  /** The tool, the layer or its lock has changed. */
+  /** Call this when the tool, the layer or its lock has changed. */
   private targetChanged(part: "layers" | "tools"): void {
     this._locks.lookAgain();
     this.changed(part);
@@ -466,7 +469,11 @@ export class OpenModelSession implements ModelSession {
     this.tools.choose(name);
   }
 
-  /** Shows a notice to viewers, after the model was opened, and to everybody in the past. */
+  /**
+   * Returns whether the user cannot make changes, and shows a notice about the reason. While an
+   * earlier state is shown, no user can make changes. Viewers get the notice only after the model
+   * was opened.
+   */
   private refusesChanges(): boolean {
     if (this.past.isActive) {
       notices.show("info", texts.past.paint_refused);
@@ -476,7 +483,7 @@ export class OpenModelSession implements ModelSession {
     return !this.canPaint;
   }
 
-  /** Sends the next drawings to this column of the record. */
+  /** Adds the next drawings to this column of the record. */
   drawMarks(layer: Layer, key: number, column: Column): void {
     if (layer.table === undefined || this.refusesChanges()) return;
     this.layers.select(layer);
@@ -485,7 +492,7 @@ export class OpenModelSession implements ModelSession {
     this.tools.choose(column.kind === "line" ? "line" : "point");
   }
 
-  /** Undoes strokes; with tools that add to records, changes of the table. */
+  /** Undoes a stroke. With tools that add to records, undoes a change to the table. */
   undo(): void {
     if (this.refusesChanges()) return;
     if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
@@ -497,7 +504,7 @@ export class OpenModelSession implements ModelSession {
     else this.painting.redo();
   }
 
-  /** Background of the model; null: the server's default. */
+  /** Sets the background of the model. Null restores the server's default. */
   setBackground(background: Background | null): void {
     this._connection.setBackground(background);
   }
@@ -509,7 +516,8 @@ export class OpenModelSession implements ModelSession {
   }
   thenDrawn(part: FrameMessage): void {
     if (!this.past.compares) {
-      // The server draws no more of this view until it is shown again.
+      // Without an acknowledgment, the server draws no further frames of this view until it is
+      // shown again.
       this._thenWithoutAck = part.header.frame;
       return;
     }
@@ -517,7 +525,7 @@ export class OpenModelSession implements ModelSession {
     this.past.frameDrawn(part);
   }
 
-  /** Selects a layer that this person has created. */
+  /** Adds and selects a layer that this user has created. */
   addCreated(layer: Layer): void {
     this.layers.put(layer);
     this.layers.select(layer);
@@ -526,14 +534,14 @@ export class OpenModelSession implements ModelSession {
   }
 
   /**
-   * A new computed layer is hidden by default, so that it does not cover other people's view; its
-   * author sees it at once.
+   * Shows a new computed layer to its author. It is hidden by default, so it does not cover the
+   * views of other users.
    */
   private showToMaker(layer: Layer): void {
     if (!this.layers.visible(layer)) this.layers.setVisible(layer, true);
   }
 
-  /** Shows layers that a job made for this person, and selects the first one. */
+  /** Shows the layers that a job made for this user, and selects the first one. */
   showMade(ids: readonly number[]): void {
     const layer = this.layers.find(ids[0] ?? null);
     if (layer) this.layers.select(layer);
@@ -564,7 +572,7 @@ export class OpenModelSession implements ModelSession {
   private onState(state: ConnectionState): void {
     this.connectionState = state;
     if (state !== "open") {
-      this._thenWithoutAck = null; // frames of that connection
+      this._thenWithoutAck = null; // the frame belonged to the lost connection
       this.editors.left();
       this.together.disconnected();
       this.cursors.reset();
@@ -578,7 +586,10 @@ export class OpenModelSession implements ModelSession {
     this.changed();
   }
 
-  /** A refused socket gives no reason; the same request over HTTP does. */
+  /**
+   * Determines why the connection was lost. A refused socket gives no reason, but a request over
+   * HTTP does.
+   */
   private async findWhyLost(): Promise<void> {
     try {
       await this._model.read();
@@ -608,7 +619,10 @@ export class OpenModelSession implements ModelSession {
     this.changed("saving");
   }
 
-  /** Once, and only if the saving takes long: usually it takes a moment. */
+  /**
+   * Shows a notice about unsaved changes after the page was closed. It is shown only once, and only
+   * while the server is not connected, because saving is usually fast.
+   */
   private tellLeftBehind(): void {
     if (this._toldLeft || this.connectionState === "open") return;
     this._toldLeft = true;
@@ -654,7 +668,10 @@ export class OpenModelSession implements ModelSession {
     void this.visits.welcome(message.user, message.model.sequence);
   }
 
-  /** The brush radius is sent as its size on the surface. */
+  /**
+   * Returns the pointer for other participants. The brush radius is sent as a length on the
+   * surface.
+   */
   private shownAt(pointer: PointerSample | null): Shown {
     if (!pointer) return { pointer: null };
     const { active } = this.tools;
@@ -672,7 +689,7 @@ export class OpenModelSession implements ModelSession {
   }
 
   private reloadAfterChange(): void {
-    // with the version that later changes need
+    // The new version is required for later changes.
     this.reloadModel().catch((error: unknown) => notices.error(error));
   }
 

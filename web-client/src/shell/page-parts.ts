@@ -1,6 +1,6 @@
 // Parts of the page that are loaded at their first use, or when the page is idle. Their elements
-// are rendered only after the load: an element that is defined later is connected before its
-// properties are set.
+// are rendered only after the load, because an element that is defined later is connected before
+// its properties are set.
 
 import { notices } from "../ui/notices";
 import { texts } from "../texts";
@@ -20,7 +20,7 @@ export type PagePart =
   | "kiosks"
   | "preferences";
 
-/** The import of each part. It is injected, because a part may request another one. */
+/** The import of each part. It is injected, because a part may request another part. */
 export type PartLoads = Readonly<Record<PagePart, () => Promise<unknown>>>;
 
 let loads: PartLoads;
@@ -42,9 +42,9 @@ function load(part: PagePart): Promise<void> {
 }
 
 /**
- * Whether the part can be rendered. If not, it is loaded, and `host` is rendered again after that.
- * Files belong to one build: a page from before an update of the server may miss a part, and its
- * user must reload it.
+ * Whether the part can be rendered. If not, the part is loaded, and `host` is rendered again after
+ * that. Files belong to one build. If the server was updated after the page was loaded, a part may
+ * be missing, and the user must reload the page.
  */
 export function hasPart(part: PagePart, host: { requestUpdate(): void }): boolean {
   if (here.has(part)) return true;
@@ -63,17 +63,17 @@ export function hasPart(part: PagePart, host: { requestUpdate(): void }): boolea
   return false;
 }
 
-/** The exports of a loaded part. */
+/** Returns the exports of a loaded part. */
 export const partOf = (part: PagePart): unknown => here.get(part);
 
 /**
- * Loads a part when the page is idle. A failure is not reported: the part is requested again when
- * it is needed.
+ * Loads a part when the page is idle. A failure is not reported, because the part is requested
+ * again when it is needed.
  */
 export function loadPartLater(part: PagePart): void {
   const begin = (): void => {
     if (!here.has(part)) load(part).catch(() => {});
   };
   if ("requestIdleCallback" in window) requestIdleCallback(begin, { timeout: 5000 });
-  else setTimeout(begin, 500); // Safari
+  else setTimeout(begin, 500); // for Safari
 }

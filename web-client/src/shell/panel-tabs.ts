@@ -1,4 +1,4 @@
-// The tabs of the side panel. This browser keeps which one is chosen.
+// The tabs of the side panel. The browser stores the chosen tab.
 
 import { html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 import { formatCount } from "../core/locale";
@@ -47,7 +47,7 @@ export class PanelTabs {
     this._host.requestUpdate();
   }
 
-  /** `panel`: id of the element with the content of the chosen tab. */
+  /** Renders the tabs. `panel` is the id of the element with the content of the chosen tab. */
   render(session: OpenModelSession, panel: string): TemplateResult {
     return tabList({
       label: texts.model.panel,

@@ -1,22 +1,25 @@
-// A bar between two parts of a window: dragging it or the arrow keys set the size of one part,
-// which the browser keeps.
+// A bar between two parts of a window. The user sets the size of one part by dragging the bar or
+// with the arrow keys. The browser stores the size.
 
 import { html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 
-const kStep = 20; // by an arrow key
+const kStep = 20; // change by an arrow key
 
 export interface SplitterOptions {
   label: string;
-  /** Key of the stored size. */
+  /** The key of the stored size. */
   key: string;
   first: number;
   least: number;
   most(): number;
   /** The largest size, for screen readers. */
   largest?: number;
-  /** The bar is horizontal, with its part below; otherwise vertical, with its part at the right. */
+  /**
+   * Whether the bar is horizontal with its part below. Otherwise it is vertical with its part on
+   * the right.
+   */
   isAcross?: boolean;
-  /** The size for a bar at the pointer. */
+  /** Returns the size of the part if the bar is at the pointer. */
   sizeAt(pointer: PointerEvent): number;
 }
 

@@ -1,5 +1,5 @@
-// <strata-stage>: the streamed picture, the pointer's gestures, and the overlay: brush footprint,
-// pointers of other participants, scale bar.
+// <strata-stage>: the streamed frames, the gestures of the pointer, and an overlay. The overlay
+// shows the brush footprint, the pointers of other participants and the scale bar.
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -85,7 +85,7 @@ export class StrataStage extends LitElement {
         pointer-events: none;
       }
       canvas {
-        object-fit: contain; /* until a picture of the new size arrives after a resize */
+        object-fit: contain; /* after a resize, until a frame with the new size arrives */
       }
       svg.over {
         overflow: visible;
@@ -211,7 +211,7 @@ export class StrataStage extends LitElement {
     if (this._input) this._input.orbitHeld = held;
   }
 
-  /** Data attributes describe the canvas, for tests and tools. */
+  /** Describes the canvas in data attributes, for tests and tools. */
   private onDrawn(part: FrameMessage): void {
     this.session.frameDrawn(part);
     const { dataset } = this._canvas;
@@ -271,7 +271,7 @@ export class StrataStage extends LitElement {
       }`;
   }
 
-  /** Hatching over the lit part of the surface. */
+  /** Draws hatching over the highlighted part of the surface. */
   private litArea(): TemplateResult | typeof nothing {
     const { picture, dims } = this.session.lit;
     return picture
@@ -280,7 +280,7 @@ export class StrataStage extends LitElement {
       : nothing;
   }
 
-  /** The footprint in the picture: exactly the pixels that the stroke covers. */
+  /** Draws the brush footprint on the frame: exactly the pixels that the stroke covers. */
   private brushCursor(): TemplateResult {
     const { session } = this;
     const { at } = session.pointer;
@@ -320,8 +320,8 @@ export class StrataStage extends LitElement {
   }
 
   /**
-   * The same for a shape from a picture: a tint with a dark rim, in the layer's color or
-   * transparent.
+   * Draws the footprint of a brush shape from an image: a tint with a dark rim, in the layer's
+   * color or transparent.
    */
   private shapeCursor(
     tool: number,

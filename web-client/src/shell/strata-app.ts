@@ -1,5 +1,5 @@
-// <strata-app>: the signed-in user, the page of the address, and functions of all pages: import of
-// dropped scans, and the report of unsaved changes.
+// <strata-app>: the root element. It handles the signed-in user and the page for the address. It
+// also imports dropped scans and warns about unsaved changes.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -39,7 +39,7 @@ import { checkConnections, discardUnsaved, keepViews, unsavedChanges } from "../
 import { sharedStyles } from "../ui/styles";
 import { loadLaterTexts, texts } from "../texts";
 
-/** A part whose texts are not loaded with the page. */
+/** Wraps the load of a part whose texts are not loaded with the page. */
 const later = (load: () => Promise<unknown>) => async (): Promise<unknown> => {
   await loadLaterTexts();
   return load();
@@ -80,7 +80,7 @@ export class StrataApp extends LitElement {
   @state() private _route: Route = routeOf(pathNow());
   @state() private _me: Me | null = null;
   @state() private _projects: readonly Project[] = [];
-  @state() private _chosenProject = ""; // slug for imports
+  @state() private _chosenProject = ""; // slug of the project for imports
   @state() private _session: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private _problem = "";
   @state() private _dialog: "account" | "people" | "kiosks" | "preferences" | null = null;
@@ -163,20 +163,20 @@ export class StrataApp extends LitElement {
     this._me = me;
   }
 
-  /** This person's role may have changed, or the session may have ended. */
+  /** Reads the user again, because the role may have changed or the session may have ended. */
   private readonly refreshMe = async (): Promise<void> => {
     if (this._session !== "signed-in") return;
     try {
       await this.takeMe(await this._api.json("GET /me"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.status === 401) this.signedOut(); // others are reported where they matter
+      if (error.status === 401) this.signedOut(); // the failing request itself reports other errors
     }
   };
 
   /**
-   * `next`: the page that shows the change. If the current page was deleted, it replaces the
-   * history entry.
+   * Reads the projects again and opens `next`, the page that shows the change. If the current page
+   * was deleted, `next` replaces the history entry.
    */
   private async takeProjects(next: string | null): Promise<void> {
     await this.refreshMe();
@@ -209,7 +209,7 @@ export class StrataApp extends LitElement {
       await this._api.send("POST /logout");
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 401) {
-        notices.error(error); // the page must not look signed out if the user is not
+        notices.error(error); // the page must not look signed out while the user is signed in
         return;
       }
     }
@@ -241,10 +241,10 @@ export class StrataApp extends LitElement {
     }
     const isModel = this._route.page === "model";
     if (!hasPart(isModel ? "model" : "home", this)) return nothing;
-    if (!isModel) loadPartLater("model"); // most people open a model next
+    if (!isModel) loadPartLater("model"); // most users open a model next
     return this._route.page === "model"
       ? keyed(
-          this._route.model, // no state is shared between models
+          this._route.model, // the pages of two models have no common state
           html`<strata-model-page
             .api=${this._api}
             .me=${me}
@@ -321,11 +321,14 @@ export class StrataApp extends LitElement {
     return this.into ? null : texts.import.not_allowed;
   }
 
-  /** Projects in which the person can import scans. */
+  /** The projects in which the user can import scans. */
   private get curated(): readonly Project[] {
     return this._projects.filter(curates);
   }
-  /** The project for imports, which is the open one; null: imports are not allowed. */
+  /**
+   * The project for imports. This is the open project, if there is one. Null if imports are not
+   * allowed.
+   */
   private get into(): Project | null {
     const bySlug = (slug: string): Project | undefined =>
       this.curated.find((project) => project.slug === slug);
@@ -362,9 +365,10 @@ export class StrataApp extends LitElement {
   ): Promise<void> {
     const { model, problem } = await ending;
     this._imported += 1;
-    if (problem && this._route.page !== "home") notices.problem(problem); // the home page lists it
+    // the home page lists the problem
+    if (problem && this._route.page !== "home") notices.problem(problem);
     if (model === null) return;
-    // does not interrupt work on another model
+    // Work on another model is not interrupted.
     const opens = alone && this._route.page === "home";
     const link = { href: pathOfModel(model), label: texts.import.open };
     notices.show("success", texts.import.ready(name), "", opens ? null : link);
@@ -379,9 +383,9 @@ export class StrataApp extends LitElement {
   };
   private readonly onDragOver = (event: DragEvent): void => {
     if (!hasFiles(event)) return;
-    // an element of the page may take the file
+    // An element of the page may accept the file.
     this._dropping = !event.defaultPrevented && this.importRefusal === null;
-    event.preventDefault(); // otherwise the browser opens the file instead of the page
+    event.preventDefault(); // otherwise the browser would open the file in place of the page
   };
   private readonly onDragLeave = (): void => {
     this._dragDepth = Math.max(0, this._dragDepth - 1);

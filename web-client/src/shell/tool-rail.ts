@@ -1,4 +1,4 @@
-// <strata-tool-rail>: tools, undo and redo.
+// <strata-tool-rail>: the tools, undo and redo.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -13,7 +13,7 @@ import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
 import type { StepName } from "../features/onboarding/onboarding-steps";
 
-/** The steps of the tour for tools. */
+/** The steps of the page's tour that point to tools. */
 const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "values" };
 
 @customElement("strata-tool-rail")
@@ -80,12 +80,13 @@ export class StrataToolRail extends LitElement {
           --from: 0px;
           --to: 0px;
           --turns: 0px; /* width of the fixed part */
-          scroll-padding-inline: var(--fade) calc(var(--fade) + var(--turns)); /* focus in view */
+          /* keeps the focus visible */
+          scroll-padding-inline: var(--fade) calc(var(--fade) + var(--turns));
         }
         :host([paints]) {
           --turns: calc(3 * 2.75rem + 1.125rem);
         }
-        /* Undo and redo are always needed: they stay while the tools scroll below them. */
+        /* Undo and redo stay visible, and the tools scroll below them. */
         .turns {
           position: sticky;
           z-index: 1;
@@ -203,7 +204,10 @@ export class StrataToolRail extends LitElement {
       </button>`;
   }
 
-  /** Whether the tool is shown: line and point only if the layer's table has columns for them. */
+  /**
+   * Whether the tool is shown. The line and point tools are shown only if the layer's table has
+   * columns for lines or points.
+   */
   private shows(name: ToolName): boolean {
     const { session } = this;
     if (kChangingTools.includes(name) && !session.canPaint) return false;

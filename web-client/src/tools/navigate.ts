@@ -1,25 +1,25 @@
-// Rotates and pans with the tool's button.
+// Tools that rotate and pan with the tool button.
 
 import type { PointerSample } from "../ui/input";
 import type { Tool } from "./tool";
 
-/** Moves the camera and reports it to the server. */
+/** Moves the camera and sends it to the server. */
 export interface Navigator {
   orbit(dx: number, dy: number): void;
   pan(dx: number, dy: number): void;
-  /** A press and release at one place. */
+  /** Handles a press and release at the same position. */
   tap(sample: PointerSample): void;
 }
 
-const kTapReach = 7; // window pixels of movement by a hand with a mouse or pen
+const kTapReach = 7; // window pixels; a mouse or pen may move by this distance in a tap
 
 export abstract class DragTool {
   private _last: PointerSample | null = null;
-  private _start: PointerSample | null = null; // null: dragged out of reach
+  private _start: PointerSample | null = null; // null: dragged too far for a tap
 
   constructor(
     protected readonly _navigator: Navigator,
-    /** Window pixels from the press within which a release is a tap. */
+    /** The distance in window pixels from the press within which a release is a tap. */
     private readonly _tapReach: () => number = () => kTapReach,
   ) {}
 

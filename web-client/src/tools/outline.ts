@@ -1,45 +1,45 @@
-// Polygon and lasso: an outline in the picture whose inside is selected, to be painted or measured.
-// During drawing the camera stays fixed, because the points are pixels of the camera at the start.
-// Lines are drawn in the same way.
+// Polygon and lasso: an outline on the frame. Its inside is selected, to be painted or measured.
+// The camera does not move during drawing, because the points are pixels of the camera at the
+// start. Lines are drawn in the same way.
 
 import type { Point } from "../net/stroke";
 import type { PointerSample } from "../ui/input";
 import type { Outline, Tool } from "./tool";
 
 export interface OutlineHost {
-  /** Returns false if nothing can be painted; the host has then shown the reason. */
+  /** Returns false if painting is not possible. The host has then shown the reason. */
   beginOutline(at: PointerSample): boolean;
   /**
-   * An area has at least three points, a line two. `corners`: they were set one by one, so they can
-   * be changed.
+   * An area has at least three points, a line at least two. `corners` is true if the points were
+   * set one by one, so the user can change them.
    */
   finishOutline(path: Point[], corners: boolean): void;
-  /** Called after `beginOutline` returned true, when the outline was finished or canceled. */
+  /** Called when an outline for which `beginOutline` returned true is finished or canceled. */
   outlineEnded(): void;
-  /** Window pixels per CSS pixel. */
+  /** The number of window pixels per CSS pixel. */
   scale(): number;
   outlineChanged(): void;
-  /** The selection of finished outlines, if they are not used at once. */
+  /** The selection of finished outlines, if they are not used immediately. */
   readonly selection?: FinishedOutlines;
 }
 
 /** Finished outlines whose corners can be moved. */
 export interface FinishedOutlines {
-  /** Returns true if there is a corner to move at the press. */
+  /** Returns true if a corner that can be moved is at this position. */
   grab(at: PointerSample): boolean;
   drag(to: PointerSample): void;
-  /** Ends the drag; `keep` false: the corner returns to its place. */
+  /** Ends the drag. If `keep` is false, the corner returns to its old position. */
   release(keep: boolean): void;
   key(key: string): boolean;
 }
 
 export const kMostPoints = 4096;
-export const kSnapPx = 11; // CSS pixels within which a press counts as on a point
+export const kSnapPx = 11; // a press within this distance in CSS pixels is on a point
 const kSpacingPx = 2; // CSS pixels
 
 export abstract class OutlineTool {
   protected points: Point[] = [];
-  protected grabbed = false; // a corner of a finished outline
+  protected grabbed = false; // whether a corner of a finished outline is dragged
   private _spacing = kSpacingPx;
 
   constructor(
@@ -59,12 +59,12 @@ export abstract class OutlineTool {
     this.giveUp();
   }
 
-  /** Takes a corner of a finished outline instead of beginning another outline. */
+  /** Grabs a corner of a finished outline, if one is there. Otherwise a new outline can begin. */
   protected grab(at: PointerSample): boolean {
     this.grabbed = this.points.length === 0 && (this.host.selection?.grab(at) ?? false);
     return this.grabbed;
   }
-  /** Returns whether the press holds a corner. */
+  /** Drags a grabbed corner. Returns whether a corner is grabbed. */
   protected dragGrabbed(samples: PointerSample[]): boolean {
     const last = samples[samples.length - 1];
     if (this.grabbed && last) this.host.selection?.drag(last);
@@ -85,7 +85,7 @@ export abstract class OutlineTool {
     return true;
   }
 
-  /** Continues the outline along the drag. */
+  /** Adds the points of the drag to the outline. */
   protected follow(samples: PointerSample[]): void {
     for (const { x, y } of samples) {
       const [lastX, lastY] = this.points[this.points.length - 1]!;
@@ -120,7 +120,7 @@ export abstract class OutlineTool {
   }
 }
 
-/** A drag around the area to paint. */
+/** The lasso: a drag around the area to paint. */
 export class LassoTool extends OutlineTool implements Tool {
   readonly name = "lasso";
 
@@ -146,7 +146,7 @@ export class LassoTool extends OutlineTool implements Tool {
   }
 }
 
-/** For an outline set click by click, with a segment to the pointer. */
+/** A tool for outlines that are set click by click, with a segment to the pointer. */
 export abstract class PlacesTool extends OutlineTool {
   protected pointer: Point | null = null;
 
@@ -167,7 +167,7 @@ export abstract class PlacesTool extends OutlineTool {
   protected enter(): void {
     this.finish();
   }
-  /** Keeps the first `points` places. */
+  /** Keeps only the first `points` points. */
   protected takeBack(points: number): void {
     if (points < 1) {
       this.giveUp();
@@ -179,12 +179,12 @@ export abstract class PlacesTool extends OutlineTool {
 }
 
 /**
- * A click sets a corner; a click on the first corner, a second one on the last, or Enter closes the
- * polygon.
+ * The polygon tool. A click sets a corner. A click on the first corner, a second click on the last
+ * corner, or Enter closes the polygon.
  */
 export class PolygonTool extends PlacesTool implements Tool {
   readonly name = "polygon";
-  private _added = false; // by the current press
+  private _added = false; // whether the current press added a corner
 
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
@@ -230,7 +230,7 @@ export class PolygonTool extends PlacesTool implements Tool {
     this.release(true);
   }
 
-  /** A second finger touched: the press of the first one is undone. */
+  /** Undoes the press of the first finger, because a second finger touched. */
   cancel(): void {
     this.release(false);
     if (this._added) this.takeBack(this.points.length - 1);

@@ -1,4 +1,4 @@
-// Keeps one tool active, and sends the stage's drags to it.
+// Manages the active tool, and sends the drags on the stage to it.
 
 import type { PointerSample } from "../ui/input";
 import type { Outline } from "./tool";
@@ -7,7 +7,7 @@ import type { Tool, ToolName } from "./tool";
 export class ToolManager {
   private readonly _tools = new Map<ToolName, Tool>();
   private _active: Tool;
-  private _before: Tool | null = null; // the chosen tool while another one is borrowed
+  private _before: Tool | null = null; // the chosen tool while another tool is borrowed
   private _dragging = false;
 
   constructor(
@@ -35,7 +35,7 @@ export class ToolManager {
     this._changed(name);
   }
 
-  /** Activates another tool temporarily; the chosen tool is kept. */
+  /** Activates another tool temporarily, until giveBack(). */
   borrow(name: ToolName): void {
     if (this._before) return;
     this.cancel();

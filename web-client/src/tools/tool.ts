@@ -1,4 +1,4 @@
-// A tool handles the left button, the pen or one finger on the stage.
+// The interface of tools. A tool handles the left button, the pen or one finger on the stage.
 
 import type { PointerSample } from "../ui/input";
 import type { Point } from "../net/stroke";
@@ -19,7 +19,7 @@ export type ToolName =
   | "face"
   | "part";
 
-/** The tools of the tool rail, in its order. */
+/** The tools of the tool rail, in their order. */
 export const kRailTools: readonly Exclude<ToolName, "face" | "part">[] = [
   "orbit",
   "pan",
@@ -34,9 +34,9 @@ export const kRailTools: readonly Exclude<ToolName, "face" | "part">[] = [
   "measure",
   "comment",
 ];
-/** Tools that add to a record of the layer's table. */
+/** Tools that add marks to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
-/** Tools during which a selected area stays: those that select, and those that look. */
+/** Tools that keep a selected area: tools that select, and tools that only look at the model. */
 export const kSelectingTools: readonly ToolName[] = [
   "polygon",
   "lasso",
@@ -54,7 +54,7 @@ export const kPaintingTools: readonly ToolName[] = [
   "bucket",
   ...kMarkingTools,
 ];
-/** Tools for people with more rights than a viewer. */
+/** Tools for users with more rights than a viewer. */
 export const kChangingTools: readonly ToolName[] = [...kPaintingTools, "comment"];
 
 export interface Tool {
@@ -64,29 +64,29 @@ export interface Tool {
   down(sample: PointerSample): void;
   move(samples: PointerSample[]): void;
   up(): void;
-  /** Ends the action of `down` without finishing it. */
+  /** Cancels the action that `down` began. */
   cancel(): void;
-  /** The pointer moves without a pressed button; null: it left. */
+  /** The pointer moves without a pressed button. Null means that it has left the stage. */
   hover?(sample: PointerSample | null): void;
-  /** Returns false if the tool does not use the key now. */
+  /** Handles a key. Returns false if the tool does not use the key at the moment. */
   key?(key: string): boolean;
   /** The current drawing. */
   readonly outline?: Outline | null;
 }
 
-/** A drawing over the picture. */
+/** A drawing over the frame. */
 export interface Outline {
   points: readonly Point[];
-  /** Points that were clicked one by one. */
+  /** The points that were set click by click. */
   corners: readonly Point[];
-  /** The pointer's position, if a segment leads to it. */
+  /** The position of the pointer, if a segment leads to it. */
   pointer: Point | null;
-  /** A click at the first point closes it. */
+  /** Whether a click on the first point closes the outline. */
   closable: boolean;
-  /** Whether it encloses an area; otherwise it is a line. */
+  /** Whether the drawing encloses an area. Otherwise it is a line. */
   area: boolean;
 }
 
-/** Whether the side panel has options of the tool, at the top of the layers. */
+/** Whether the side panel shows options of the tool, above the layers. */
 export const hasOptions = (tool: ToolName): boolean =>
   kPaintingTools.includes(tool) || tool === "measure";

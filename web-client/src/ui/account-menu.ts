@@ -1,5 +1,5 @@
 // <strata-account-menu>: the initials of the signed-in user, and a menu of account commands. The
-// event "account" reports the chosen one.
+// event "account" reports the chosen command.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -13,7 +13,7 @@ import { texts } from "../texts";
 
 export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "sign-out";
 
-/** Bubbles to the element of the page that handles it. */
+/** Dispatches an account request, which bubbles to the element that handles it. */
 export const askAccount = (from: EventTarget, detail: AccountRequest): boolean =>
   from.dispatchEvent(
     new CustomEvent<AccountRequest>("account", { detail, bubbles: true, composed: true }),

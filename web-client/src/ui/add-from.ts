@@ -1,4 +1,4 @@
-// A choice of several items with a button that adds the chosen one.
+// A choice of items with a button that adds the chosen item.
 
 import { css, html, type TemplateResult } from "lit";
 import { icon } from "./icons";
@@ -16,7 +16,7 @@ export const addFromStyles = css`
   }
 `;
 
-/** `label`: of the choice and of the button. */
+/** `label` is the label of the choice and of the button. */
 export function addFrom(
   label: string,
   options: readonly { value: string; name: string }[],

@@ -1,4 +1,5 @@
-// Places a box with information about a place next to the place, so that the box does not cover it.
+// Positions a box with information about a point next to the point, so the box does not cover the
+// point.
 
 export interface Size {
   width: number;
@@ -6,8 +7,8 @@ export interface Size {
 }
 
 /**
- * Top left corner of a box in a frame: right of the place, else left, else below or above it. Null:
- * each position covers it.
+ * Returns the top left corner of a box inside a frame: right of the point, otherwise left,
+ * otherwise below or above. Returns null if the box covers the point at each position.
  */
 export function beside(
   [x, y]: readonly [number, number],
@@ -32,9 +33,9 @@ export interface Box extends Size {
 }
 
 /**
- * Top left corner of a box next to a bar, at the height (or width) of an element in that bar:
- * right, left, below or above, at the first position that fits. If none fits, the box gets the
- * larger room of below and above, with at most `mostHeight`.
+ * Returns the top left corner of a box next to a bar, aligned with an element in that bar. The box
+ * is right, left, below or above, at the first position that fits. If no position fits, the box is
+ * below or above, on the side with more room, with a height of at most `mostHeight`.
  */
 export function besideBar(
   thing: Box,

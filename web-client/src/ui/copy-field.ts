@@ -10,7 +10,7 @@ import { texts } from "../texts";
 export class StrataCopyField extends LitElement {
   @property() label = "";
   @property() text = "";
-  /** Takes the keyboard focus at the start, because it replaces a finished form. */
+  /** Whether the field takes the initial focus, because it replaces a finished form. */
   @property({ attribute: "follows_form", type: Boolean }) followsForm = false;
   @state() private _told = "";
   @query("input") private _input!: HTMLInputElement;
@@ -19,7 +19,7 @@ export class StrataCopyField extends LitElement {
     sharedStyles,
     css`
       :host {
-        position: relative; /* for visually hidden content */
+        position: relative; /* contains visually hidden content */
         display: flex;
         gap: var(--space-2);
       }
@@ -49,15 +49,15 @@ export class StrataCopyField extends LitElement {
   private async copy(): Promise<void> {
     const copied = await copyText(this.text, () => {
       this._input.select();
-      return () => {}; // keeps the selection for manual copying
+      return () => {}; // keeps the selection, so the user can copy it
     });
     this._told = copied ? texts.copy.copied : texts.copy.by_hand;
   }
 }
 
 /**
- * Returns whether the text was copied. `select`: selects the text in the page, which also works
- * over plain HTTP; returns a function that removes the selection.
+ * Copies a text. Returns whether it was copied. `select` selects the text in the page, and returns
+ * a function that removes the selection. Copying a selection also works over plain HTTP.
  */
 export async function copyText(text: string, select: () => () => void): Promise<boolean> {
   const bySelection = (): boolean => {

@@ -1,5 +1,5 @@
-// <strata-dialog>: a modal dialog with a heading, content and a row of buttons: first the one that
-// leaves it, then its actions (slot "actions").
+// <strata-dialog>: a modal dialog with a heading, content and a row of buttons. The first button
+// leaves the dialog. The others are its actions (slot "actions").
 
 import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -10,14 +10,17 @@ import { texts } from "../texts";
 
 const openDialogs = new Set<HTMLDialogElement>();
 
-/** Keys that reach the page while a dialog is open without focus are not shortcuts of the page. */
+/**
+ * Whether a modal dialog is open. Keys that reach the page in this state are not shortcuts of the
+ * page.
+ */
 export const modalIsOpen = (): boolean => openDialogs.size > 0;
 
 const dockedDialogs = new Set<HTMLDialogElement>();
 
 /**
- * A dialog next to the picture is open: the page stays usable, but shows nothing that demands
- * attention.
+ * Whether a dialog next to the stage is open. The page stays usable, but should not distract the
+ * user.
  */
 export const dockedIsOpen = (): boolean => dockedDialogs.size > 0;
 
@@ -25,36 +28,37 @@ export const dockedIsOpen = (): boolean => dockedDialogs.size > 0;
 export class StrataDialog extends LitElement {
   @property() heading = "";
   /**
-   * Text of the button that leaves the dialog without a change; empty: only the cross closes it.
+   * The text of the button that leaves the dialog without a change. If it is empty, only the cross
+   * closes the dialog.
    */
   @property({ attribute: "way_out" }) wayOut = "";
   @property({ type: Boolean, reflect: true }) wide = false;
-  /** For tables. */
+  /** A broad dialog, for tables. */
   @property({ type: Boolean, reflect: true }) broad = false;
-  /** For an editor of many parts. */
+  /** The widest dialog, for an editor with many parts. */
   @property({ type: Boolean, reflect: true }) vast = false;
-  /** Mostly text and hardly a control: keys also scroll it. */
+  /** For content that is mostly text, which keys also scroll. */
   @property({ type: Boolean }) prose = false;
-  /** Long text: two columns on wall displays. */
+  /** For long text, which has two columns on wall displays. */
   @property({ type: Boolean, reflect: true }) long = false;
-  /** Keeps the picture behind it visible, for questions about it. */
+  /** Keeps the model behind the dialog visible, for questions about it. */
   @property({ type: Boolean, reflect: true }) aside = false;
   /**
-   * Placed next to the picture, which is neither dimmed nor blocked: for questions that need a look
-   * at the model.
+   * Places the dialog next to the stage, which is neither dimmed nor blocked, for questions about
+   * the model.
    */
   @property({ type: Boolean, reflect: true }) docked = false;
-  /** Stays near the top of the window while its content changes height. */
+  /** Keeps the dialog near the top of the window while its height changes. */
   @property({ type: Boolean, reflect: true }) top = false;
   /**
-   * Called before a person closes the dialog by Escape, its cross or a click outside; null: it
-   * closes. close() does not call it.
+   * Called before the user closes the dialog with Escape, the cross or a click outside. Null means
+   * that the dialog may always close. close() does not call this function.
    */
   @property({ attribute: false }) mayClose: (() => Promise<boolean>) | null = null;
-  @state() private _acts = false; // the "actions" slot has buttons
+  @state() private _acts = false; // whether the slot "actions" has buttons
   private _asking = false;
-  private _closes = false; // `mayClose` agreed, or is not needed
-  private _used = false; // with keys or the pointer
+  private _closes = false; // `mayClose` has agreed or is not called
+  private _used = false; // the user has used keys or the pointer
 
   @query("dialog") private _dialog!: HTMLDialogElement;
   @query(".content") private _content!: HTMLElement;
@@ -73,7 +77,7 @@ export class StrataDialog extends LitElement {
         background: var(--surface);
         color: var(--ink);
         box-shadow: var(--shadow);
-        outline: none; /* focused when no content is focusable */
+        outline: none; /* the dialog has the focus if no content is focusable */
       }
       dialog[open] {
         display: flex;
@@ -100,7 +104,7 @@ export class StrataDialog extends LitElement {
         margin: 4.125rem var(--space-3) auto auto;
       }
       :host([aside]) dialog::backdrop {
-        background: transparent; /* dims nothing that is asked about */
+        background: transparent; /* does not dim the content behind the dialog */
       }
       :host([docked]) dialog {
         position: fixed;
@@ -133,7 +137,7 @@ export class StrataDialog extends LitElement {
         outline-offset: -2px;
       }
       .content.begun:focus-visible {
-        outline: none; /* just opened: the focused element is the whole content */
+        outline: none; /* after opening, the focused element is the whole content */
       }
       footer {
         display: flex;
@@ -174,7 +178,7 @@ export class StrataDialog extends LitElement {
         }
         :host([docked]) dialog {
           inset: auto 0 0 0;
-          max-height: 62dvh; /* the subject stays visible above it */
+          max-height: 62dvh; /* the model stays visible above the dialog */
         }
       }
     `,
@@ -192,8 +196,9 @@ export class StrataDialog extends LitElement {
   }
 
   /**
-   * Sets the initial focus: to the element that requests it, else to the first control, else to the
-   * way out; never to the cross, the browser's default.
+   * Sets the initial focus: to the element that requests it, otherwise to the first control,
+   * otherwise to the button that leaves the dialog. It is never on the cross, which would be the
+   * browser's default.
    */
   private async begin(): Promise<void> {
     const asks = this.querySelector<HTMLElement>("[autofocus]");
@@ -204,7 +209,7 @@ export class StrataDialog extends LitElement {
     (first && !opensKeyboard(first) ? first : this._dialog).focus();
   }
 
-  /** Content from the server has arrived. */
+  /** Sets the initial focus again, after content from the server has arrived. */
   private onContent(): void {
     if (!this._used && this._dialog.open) void this.begin();
   }
@@ -215,13 +220,13 @@ export class StrataDialog extends LitElement {
     dockedDialogs.delete(this._dialog);
   }
 
-  /** Closes and fires "closed", on which the owner removes the element. */
+  /** Closes the dialog and fires "closed". The owner then removes the element. */
   close(): void {
     this._closes = true;
     this._dialog.close();
   }
 
-  /** Closes as on a person's request. */
+  /** Closes the dialog as if the user had requested it. */
   async leave(): Promise<void> {
     if (this._asking) return;
     this._asking = true;
@@ -236,7 +241,7 @@ export class StrataDialog extends LitElement {
     const used = (): void => void (this._used = true);
     const onKey = (event: KeyboardEvent): void => {
       used();
-      // the browser handles other dialogs
+      // The browser handles Escape in other dialogs.
       if (!this.docked || event.key !== "Escape" || event.defaultPrevented) return;
       event.preventDefault();
       event.stopPropagation();
@@ -281,7 +286,7 @@ export class StrataDialog extends LitElement {
   }
 
   private onCancel(event: Event): void {
-    // a file field also fires "cancel"
+    // A file field also fires "cancel".
     if (!this.mayClose || event.target !== this._dialog) return;
     event.preventDefault();
     void this.leave();
@@ -289,7 +294,7 @@ export class StrataDialog extends LitElement {
 
   private onClose(): void {
     if (this.mayClose && !this._closes) {
-      this._dialog.showModal(); // browsers close it at a second Escape, even against the page
+      this._dialog.showModal(); // at a second Escape, browsers always close a dialog
       void this.leave();
       return;
     }
@@ -299,13 +304,14 @@ export class StrataDialog extends LitElement {
   }
 
   private onClick(event: MouseEvent): void {
-    if (event.target === this._dialog && !this.docked) void this.leave(); // the backdrop
+    // the click was on the backdrop
+    if (event.target === this._dialog && !this.docked) void this.leave();
   }
 }
 
 const kStops = "a[href], button, input, select, textarea, summary, [tabindex]";
 
-/** The first control in Tab order, including shadow roots and slots. */
+/** Returns the first control in Tab order, including those in shadow roots and slots. */
 async function firstStop(root: Element): Promise<HTMLElement | null> {
   const isStop =
     root instanceof HTMLElement &&
@@ -324,11 +330,11 @@ async function firstStop(root: Element): Promise<HTMLElement | null> {
   return null;
 }
 
-/** On touch screens, a focused field opens a keyboard that covers half of the dialog. */
+/** Whether the focus on an element opens an on-screen keyboard, which covers half of the dialog. */
 const opensKeyboard = (element: HTMLElement): boolean =>
   hasFingers() && element.matches("input[type=text], input[type=password], textarea");
 
-/** A question with two answers, for ask(). */
+/** The dialog of ask(): a question with two answers. */
 @customElement("strata-question")
 class StrataQuestion extends LitElement {
   @property() heading = "";
@@ -377,7 +383,7 @@ export function ask(question: {
   });
 }
 
-/** A question for one line of text, for askText(). */
+/** The dialog of askText(): a question for one line of text. */
 @customElement("strata-text-question")
 class StrataTextQuestion extends LitElement {
   @property() heading = "";
@@ -416,7 +422,7 @@ class StrataTextQuestion extends LitElement {
   }
 }
 
-/** The text; null: canceled. */
+/** Asks for a text. Resolves to the text, or to null if the user cancels. */
 export function askText(question: {
   heading: string;
   label: string;

@@ -1,18 +1,18 @@
-// Drags a row of a list by its grip to another place. For the mouse; menus or buttons do the same
-// for keys and fingers.
+// Drags a row of a list by its grip to another position. Only the mouse can drag rows. Menus or
+// buttons move them with keys and fingers.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 
 export class DragOrder<Id extends number | string> implements ReactiveController {
   dragged: Id | null = null;
-  /** Index of the row after the drop position. */
+  /** The index of the row after the drop position. */
   before: number | null = null;
-  /** The row under the pointer. */
+  /** The index of the row under the pointer. */
   over: number | null = null;
 
   /**
-   * `move`: to an index of the list without the row. `over`: the row under the pointer, in the list
-   * with it; null: none.
+   * `move` moves a row to an index of the list without this row. `over` is the index of the row
+   * under the pointer, in the list with the moved row, or null.
    */
   constructor(
     private readonly _host: ReactiveControllerHost,
@@ -26,7 +26,7 @@ export class DragOrder<Id extends number | string> implements ReactiveController
     this.dragged = this.before = null;
   }
 
-  /** Classes of a row, with a mark at the drop position. */
+  /** Returns the classes of a row, including the mark of the drop position. */
   classes(id: Id, index: number): string {
     return `${this.dragged === id ? "dragged" : ""} ${this.before === index ? "drop-before" : ""}`;
   }
@@ -49,7 +49,7 @@ export class DragOrder<Id extends number | string> implements ReactiveController
   readonly overList = (event: DragEvent): void => {
     if (this.dragged === null) return;
     event.preventDefault();
-    if (event.target === event.currentTarget) this.over = null; // between rows
+    if (event.target === event.currentTarget) this.over = null; // the pointer is between rows
   };
 
   readonly drop = (event: DragEvent): void => {

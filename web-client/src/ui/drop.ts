@@ -1,10 +1,11 @@
-// Dropped files, including those in folders with their paths; and elements that accept drops.
+// Reads dropped files, including those in folders with their paths, and makes elements accept
+// drops.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 
 export interface DroppedFile {
   file: File;
-  path: string; // with folders, by which files of one scan refer to each other
+  path: string; // includes folders; files of a scan refer to each other by path
 }
 
 const kMostFiles = 2000;
@@ -15,7 +16,10 @@ export const withoutFolders = (files: readonly File[]): DroppedFile[] =>
 export const hasFiles = (event: DragEvent): boolean =>
   event.dataTransfer?.types.includes("Files") ?? false;
 
-/** Call this while the event is handled: its data are invalid afterwards. */
+/**
+ * Returns the dropped files. Call this while the event is handled, because its data are invalid
+ * afterwards.
+ */
 export function droppedFiles(data: DataTransfer): Promise<DroppedFile[]> {
   const entries = [...data.items].map((item) => item.webkitGetAsEntry?.() ?? null);
   if (!entries.some((entry) => entry?.isDirectory))
@@ -27,7 +31,7 @@ async function allFiles(entries: FileSystemEntry[]): Promise<DroppedFile[]> {
   const found: DroppedFile[] = [];
   const waiting = [...entries];
   for (let entry = waiting.shift(); entry && found.length < kMostFiles; entry = waiting.shift()) {
-    if (entry.name.startsWith(".")) continue; // hidden system files
+    if (entry.name.startsWith(".")) continue; // skips hidden system files
     if (entry.isDirectory) waiting.push(...(await entriesIn(entry as FileSystemDirectoryEntry)));
     else
       found.push({
@@ -41,7 +45,10 @@ async function allFiles(entries: FileSystemEntry[]): Promise<DroppedFile[]> {
 const fileOf = (entry: FileSystemFileEntry): Promise<File> =>
   new Promise((resolve, reject) => entry.file(resolve, reject));
 
-/** A reader returns one part at a time, and an empty one at the end. */
+/**
+ * Returns the entries in a folder. A reader returns one part at a time, and an empty part at the
+ * end.
+ */
 async function entriesIn(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
   const reader = folder.createReader();
   const all: FileSystemEntry[] = [];
@@ -54,11 +61,16 @@ async function entriesIn(folder: FileSystemDirectoryEntry): Promise<FileSystemEn
   }
 }
 
-/** Makes an element a drop target for files. Among nested targets the innermost one takes them. */
+/**
+ * Makes an element a drop target for files. Among nested targets, the innermost one receives the
+ * files.
+ */
 export class FileDrop implements ReactiveController {
   private _over = false;
 
-  /** `may`: whether it accepts files now; otherwise an outer target gets them. */
+  /**
+   * `may` returns whether the element accepts files now. Otherwise an outer target receives them.
+   */
   constructor(
     private readonly _host: ReactiveControllerHost & EventTarget,
     private readonly _take: (files: File[]) => void,
@@ -70,7 +82,7 @@ export class FileDrop implements ReactiveController {
     _host.addEventListener("drop", (event) => this.onDrop(event as DragEvent));
   }
 
-  /** Whether files are dragged over it. */
+  /** Whether files are dragged over the element. */
   get over(): boolean {
     return this._over;
   }

@@ -1,5 +1,5 @@
-// <strata-file-choice>: the files of a dialog: a button, and a drop target next to it. The event
-// "files" carries them.
+// <strata-file-choice>: the choice of files in a dialog: a button and a drop target next to it. The
+// event "files" contains the files.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -15,12 +15,14 @@ const words = texts.file_choice;
 export class StrataFileChoice extends LitElement {
   /** A description of the expected files. */
   @property() label = "";
-  /** File extensions, as in <input accept>. */
+  /** The accepted file extensions, as in <input accept>. */
   @property() accept = "";
-  /** Accepts files that belong together; otherwise the first one counts. */
+  /**
+   * Whether several files that belong together are accepted. Otherwise only the first file is used.
+   */
   @property({ type: Boolean }) multiple = false;
   @property({ type: Boolean }) disabled = false;
-  /** Names of the accepted files. */
+  /** The names of the accepted files. */
   @property({ attribute: false }) names: readonly string[] = [];
   @query("input") private _input!: HTMLInputElement;
   private readonly _drop = new FileDrop(this, (files) => this.take(files));
@@ -87,7 +89,7 @@ export class StrataFileChoice extends LitElement {
 
   private readonly onChosen = (): void => {
     const files = [...(this._input.files ?? [])];
-    this._input.value = ""; // so that the same file can be chosen again after a correction
+    this._input.value = ""; // allows the user to choose a corrected file again
     this.take(files);
   };
 }

@@ -1,10 +1,12 @@
-// Text is larger in the windows of wall displays (page.css). Pixel layouts around it scale with it.
+// The text size is larger on wall displays (page.css). Pixel layouts around the text scale with it.
 
 const kUsualSizePx = 16;
 
-/** Ratio to the default size. */
+/** Returns the ratio of the text size to the default size. */
 export const growth = (): number =>
   parseFloat(getComputedStyle(document.documentElement).fontSize) / kUsualSizePx;
 
-/** A CSS length that scales with the text, from pixels at the default text size. */
+/**
+ * Converts a length in pixels at the default text size to a CSS length that scales with the text.
+ */
 export const growing = (lengthPx: number): string => `${lengthPx / kUsualSizePx}rem`;

@@ -1,4 +1,4 @@
-// Line drawings on a 24 × 24 grid; the style `svg.glyph` sets size and color.
+// Icons as line drawings on a 24 × 24 grid. The style `svg.glyph` sets their size and color.
 
 import { html, svg, type SVGTemplateResult, type TemplateResult } from "lit";
 

@@ -1,59 +1,64 @@
-// Mouse, touch and pen on the stage → gestures. Positions are window pixels of the camera (CSS
-// pixels × scale), not of the page. Independent of tools: the listener decides on the effect of a
-// drag with the tool button.
+// Converts mouse, touch and pen input on the stage to gestures. Positions are window pixels of the
+// camera (CSS pixels × scale), not of the page. This file does not depend on tools. The listener
+// decides on the effect of a drag with the tool button.
 //
-// A hand that holds a pen rests on the glass. While a pen touches or is in range, and for a moment
-// afterwards, all touches count as that hand: existing ones are dropped, new ones ignored, each
-// until it is lifted. After the first use of a pen, only the pen paints and fingers rotate.
+// A hand that holds a pen rests on the screen. While a pen touches the screen or is in range, and
+// for a moment afterwards, all touches count as this hand. Existing touches are dropped and new
+// ones are ignored until they are lifted. After the first use of a pen, only the pen paints, and
+// fingers rotate.
 
 export interface PointerSample {
   x: number;
   y: number;
-  /** For a pen: 0…1. */
+  /** The pressure of a pen, 0…1. */
   pressure?: number;
-  /** Keys that are held while the button is pressed. */
+  /** Whether these keys are held while the button is pressed. */
   shift?: boolean;
   alt?: boolean;
 }
 
 export interface GestureHandler {
-  /** The tool's drag: left button, pen or one finger. */
+  /** A drag of the tool, with the left button, a pen or one finger. */
   toolDown(sample: PointerSample): void;
   toolMove(samples: PointerSample[]): void;
   toolUp(): void;
   /**
-   * A second finger touched, or the system canceled the pointer. The tool's work so far is kept.
+   * A second finger touched, or the system canceled the pointer. The effect of the tool so far is
+   * kept.
    */
   toolCancel(): void;
   orbit(dx: number, dy: number): void;
   pan(dx: number, dy: number): void;
-  /** factor < 1 zooms in; (x, y) stays in place. */
+  /** A factor less than 1 zooms in. The point at (x, y) keeps its position. */
   zoom(factor: number, x: number, y: number): void;
-  /** Rotation by two fingers, radians clockwise on the screen. */
+  /** A rotation by two fingers, in radians clockwise on the screen. */
   twist(angle: number): void;
   hover(sample: PointerSample | null): void;
-  /** A mouse moves without a pressed button; null: it left, or another pointer is in use. */
+  /**
+   * A mouse moves without a pressed button. Null means that the mouse has left, or that another
+   * pointer is used.
+   */
   freeMouse(sample: PointerSample | null): void;
-  /** Whether only a pen can use the tool; then one finger rotates instead. */
+  /** Whether only a pen can use the tool. One finger then rotates the model. */
   toolIsForPen(): boolean;
 }
 
 type Drag = "tool" | "orbit" | "pan";
 
-// A finger starts the tool after this movement or time, so that two fingers that touch together
-// paint nothing. A later second finger ends the stroke, which is kept and can be undone.
+// A finger starts the tool after this movement or time, so two fingers that touch at the same time
+// do not paint. A later second finger ends the stroke, which is kept and can be undone.
 const kTouchSlop = 6; // CSS pixels
 const kTouchDelayMs = 140;
-const kPenLingerMs = 400; // between two strokes, the pen is lifted and the hand stays
-// a pen in range sends events all the time; without any, it has left without an event
+const kPenLingerMs = 400; // between two strokes, only the pen is lifted
+// A pen in range sends events continuously. After this time without events, the pen has left.
 const kPenSilenceMs = 3000;
-const kWheelStep = 0.0016; // per scrolled pixel
+const kWheelStep = 0.0016; // zoom per scrolled pixel
 
 export class StageInput {
-  /** While space is pressed, the tool button rotates. */
+  /** While Space is pressed, the tool button rotates the model. */
   orbitHeld = false;
 
-  private readonly _pointers = new Map<number, PointerSample>(); // CSS pixels in the element
+  private readonly _pointers = new Map<number, PointerSample>(); // in CSS pixels of the element
   private _drag: { kind: Drag; pointer: number; last: PointerSample } | null = null;
   private _waitingTouch: {
     pointer: number;
@@ -61,18 +66,18 @@ export class StageInput {
     timer: ReturnType<typeof setTimeout>;
   } | null = null;
   private _pinch: { distance: number; angle: number; middle: PointerSample } | null = null;
-  private _penNear = false; // in range now or a moment ago
+  private _penNear = false; // in range now or recently
   private _penTimer: ReturnType<typeof setTimeout> | null = null;
   private _penUsed = false;
-  private readonly _fingers = new Set<number>(); // subset of _pointers
-  // ignored touches, until they are lifted
+  private readonly _fingers = new Set<number>(); // a subset of _pointers
+  // Touches that are ignored until they are lifted.
   private readonly _palms = new Set<number>();
   private readonly _listeners: [string, (event: never) => void, AddEventListenerOptions?][] = [];
 
   constructor(
     private readonly _element: HTMLElement,
     private readonly _handler: GestureHandler,
-    /** Window pixels per CSS pixel. */
+    /** The number of window pixels per CSS pixel. */
     private readonly _scale: () => number,
   ) {
     this.listen("pointerdown", (event: PointerEvent) => this.onDown(event));
@@ -96,7 +101,10 @@ export class StageInput {
     if (this._penTimer) clearTimeout(this._penTimer);
   }
 
-  /** `forMs`: ends after this time without another event; null: stays. */
+  /**
+   * Marks the pen as near for `forMs` after its last event, or without a time limit if `forMs` is
+   * null.
+   */
   private penIsNear(forMs: number | null): void {
     if (this._penTimer) clearTimeout(this._penTimer);
     this._penTimer = forMs === null ? null : setTimeout(() => (this._penNear = false), forMs);
@@ -105,7 +113,10 @@ export class StageInput {
     this.dropFingers();
   }
 
-  /** They belong to the hand with the pen. Their effect so far is kept. */
+  /**
+   * Ignores the current touches, which belong to the hand with the pen. Their effect so far is
+   * kept.
+   */
   private dropFingers(): void {
     if (this._fingers.size === 0) return;
     this.forgetWaitingTouch();
@@ -141,7 +152,7 @@ export class StageInput {
     return { x: css.x * scale, y: css.y * scale };
   }
 
-  /** Position, held keys and, for a pen, pressure. */
+  /** Returns the position, the held keys and, for a pen, the pressure. */
   private pressed(event: PointerEvent): PointerSample {
     return {
       ...this.toWindow(this.cssPosition(event)),
@@ -250,7 +261,7 @@ export class StageInput {
     }
     if (this._waitingTouch?.pointer === event.pointerId) {
       if (cancelled) this.forgetWaitingTouch();
-      else this.startTouchTool(); // a tap: one dab of the tool
+      else this.startTouchTool(); // a tap paints one dab
     }
     if (this._drag?.pointer !== event.pointerId) return;
     const { kind } = this._drag;
@@ -291,7 +302,7 @@ export class StageInput {
     event.preventDefault();
     const at = this.toWindow(this.cssPosition(event));
     const pixels = event.deltaY * (event.deltaMode === 1 ? 33 : event.deltaMode === 2 ? 400 : 1);
-    const pinchBoost = event.ctrlKey ? 6 : 1; // a touchpad pinch arrives as small ctrl-wheel steps
+    const pinchBoost = event.ctrlKey ? 6 : 1; // a touchpad pinch sends small wheel steps with Ctrl
     const step = Math.max(-240, Math.min(240, pixels * pinchBoost));
     this._handler.zoom(Math.exp(step * kWheelStep), at.x, at.y);
   }

@@ -1,4 +1,4 @@
-// <strata-labels-field>: the names of an item in other languages, a row for each.
+// <strata-labels-field>: the names of an item in other languages, with one row for each language.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -24,13 +24,13 @@ const offered = kCommonLanguages
 
 @customElement("strata-labels-field")
 export class StrataLabelsField extends LitElement {
-  /** The initial labels; the field keeps later input. */
+  /** The initial labels. The field itself stores later input. */
   @property({ attribute: false }) labels: Labels = {};
-  /** For items with a description in each language. */
+  /** The initial descriptions, for items with a description in each language. */
   @property({ attribute: false }) descriptions: Labels | null = null;
   @state() private _rows: LabelRow[] = [];
   @state() private _problem = "";
-  @state() private _wrong: number[] = []; // indexes of the rows with the problem
+  @state() private _wrong: number[] = []; // indexes of the invalid rows
 
   static override styles = [
     sharedStyles,
@@ -120,12 +120,12 @@ export class StrataLabelsField extends LitElement {
     </div>`;
   }
 
-  /** The descriptions that belong to read(). */
+  /** The descriptions for the labels of read(). */
   get writtenDescriptions(): Labels {
     return descriptionsOf(this._rows);
   }
 
-  /** Null: a row is invalid and shows the problem. */
+  /** Returns the labels. If a row is invalid, shows the problem and returns null. */
   read(): Labels | null {
     this.tell("", []);
     const read = labelsOf(this._rows);
@@ -135,8 +135,8 @@ export class StrataLabelsField extends LitElement {
   }
 
   /**
-   * Shows the server's problem. It marks the rows with an invalid language tag, since the server
-   * refuses those.
+   * Shows the server's problem and marks the rows with an invalid language tag, because the server
+   * refuses these tags.
    */
   refuse(problem: string): void {
     this.tell(

@@ -1,5 +1,5 @@
-// <strata-light-pad>: a round pad whose handle sets the direction of raking light, by dragging or
-// with the arrow keys.
+// <strata-light-pad>: a round pad with a handle that sets the direction of raking light. The user
+// drags the handle or presses the arrow keys.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// <strata-made-link>: a new link or secret to copy, which is shown only once. Slotted content is
-// below it. A button named `done` closes it and fires "done".
+// <strata-made-link>: shows a new link or secret once, so the user can copy it. Slotted content is
+// below it. The button with the text `done` fires "done".
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// <strata-menu>: a button that opens a list of commands, given as slotted buttons. Content in the
-// slot "face" replaces the button's glyph.
+// <strata-menu>: a button that opens a list of commands. The commands are slotted buttons. Content
+// in the slot "face" replaces the button's icon.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -12,7 +12,7 @@ export class StrataMenu extends LitElement {
   @property() glyph: IconName = "more";
   @property({ type: Boolean }) quiet = true;
   @property({ type: Boolean, reflect: true }) small = false;
-  /** As wide as its face. */
+  /** Whether the button is as wide as its face. */
   @property({ type: Boolean, reflect: true }) wide = false;
   @property() side: "below" | "right" = "below";
 
@@ -59,7 +59,7 @@ export class StrataMenu extends LitElement {
         white-space: normal !important;
       }
       ::slotted([slot="face"]) {
-        pointer-events: none; /* clicks belong to the button */
+        pointer-events: none; /* the button receives the clicks */
       }
       ::slotted(hr) {
         margin: var(--space-1) 0;
@@ -86,7 +86,7 @@ export class StrataMenu extends LitElement {
 
   constructor() {
     super();
-    // The browser closes the list; nothing behind it must close, too.
+    // The browser closes the list. Escape must not also close elements behind it.
     this.addEventListener("keydown", (event) => {
       if (event.key === "Escape" && this._list.matches(":popover-open")) event.stopPropagation();
     });
@@ -111,13 +111,14 @@ export class StrataMenu extends LitElement {
   };
 
   /**
-   * Commands change while the list is open: in a narrower window the menu includes more of them.
+   * Positions the list again when its commands change. In a narrower window, the menu contains more
+   * commands.
    */
   private readonly _grown = new ResizeObserver(this.place);
 
   /**
-   * Runs before the command's handler: a dialog that the command opens later returns the focus to
-   * this menu's button, which must have it by then.
+   * Closes the list before the command's handler runs. The menu's button then has the focus, and a
+   * dialog that the command opens later returns the focus to the button.
    */
   private readonly _closing = { handleEvent: (): void => this._list.hidePopover(), capture: true };
 
@@ -126,8 +127,8 @@ export class StrataMenu extends LitElement {
   }
 
   /**
-   * The browser does not return the focus from slotted buttons, which are not descendants of the
-   * list.
+   * Returns the focus to the button. The browser does not do this for slotted buttons, because they
+   * are not descendants of the list.
    */
   private onBeforeToggle(event: ToggleEvent): void {
     if (event.newState === "closed" && this.items().some((item) => item.matches(":focus")))

@@ -14,14 +14,14 @@ export interface Called {
   text: string;
 }
 
-/** A yes/no option, in addition to name and text. */
+/** A checkbox in addition to the name and the text. */
 export interface NamingOption {
   label: string;
   hint: string;
   checked: boolean;
 }
 
-/** Labels of the fields, and the message for a missing name. */
+/** The labels of the fields, and the message for a missing name. */
 export interface NamingWords {
   name: string;
   name_hint: string;
@@ -38,17 +38,17 @@ const optionField = ({ label, hint, checked }: NamingOption): TemplateResult =>
 export class StrataNamingDialog extends LitElement {
   @property() heading = "";
   @property() lead = "";
-  /** Text of the button. */
+  /** The text of the button. */
   @property() yes = "";
   /** As in <strata-dialog>. */
   @property({ type: Boolean }) aside = false;
   @property({ attribute: false }) words!: NamingWords;
-  /** The current name and text; null: a new item. */
+  /** The current name and text. Null for a new item. */
   @property({ attribute: false }) called: Called | null = null;
   @property({ attribute: false }) option: NamingOption | null = null;
   /**
-   * Returns the problem; an empty text: success, and the dialog closes. `key`: the idempotency key,
-   * the same for all attempts at the same input.
+   * Saves the input. Returns the problem, or an empty text after success. The dialog then closes.
+   * `key` is the idempotency key, which is the same for all attempts with the same input.
    */
   @property({ attribute: false }) save!: (
     called: Called,

@@ -1,4 +1,5 @@
-// Messages to the person, shown by <strata-notices>. A notice states the event and the next step.
+// Messages to the user, which <strata-notices> shows. A notice describes the event and the next
+// step.
 
 import { ApiError } from "../net/api-error";
 import type { ProblemBody } from "../core/types";
@@ -34,9 +35,9 @@ class Notices {
     return () => this._listeners.delete(listener);
   }
 
-  /** Returns the notice's id. */
+  /** Shows a notice and returns its id. */
   show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): number {
-    // notices with actions are kept
+    // A notice replaces an earlier one with the same text, unless that has an action.
     const same = this._notices.find(
       (notice) =>
         notice.title === title &&

@@ -1,26 +1,26 @@
-// A field for one number in the format of the page's language. The browser's number fields use the
-// browser's language and discard invalid characters: "1,5" typed into an English one becomes 15.
+// A field for one number in the format of the page's language. The browser's own number fields use
+// the browser's language and discard invalid characters. In an English field, "1,5" becomes 15.
 
 import { html, noChange, type TemplateResult } from "lit";
 import { ifDefined } from "lit/directives/if-defined.js";
 import { readNumber, typedNumber } from "../core/locale";
 
 export interface NumberInput {
-  /** A text: as typed. NaN keeps the field's content. */
+  /** The number, or a text as typed. NaN keeps the field's content. */
   value: number | string;
   name?: string;
-  /** For a field without a surrounding <label>. */
+  /** The accessible name of a field without a surrounding <label>. */
   label?: string;
   title?: string;
   placeholder?: string | number;
-  /** Limit for the arrow keys; the listener checks typed values. */
+  /** The limits for the arrow keys. The listener checks typed values. */
   min?: number;
   max?: number;
   wrong?: boolean;
   disabled?: boolean;
   /** Called with the field's text, for readNumber(). */
   typed?(text: string): void;
-  /** Called after the field loses the focus, or on Enter. */
+  /** Called when the field loses the focus, or on Enter. */
   changed?(text: string, input: HTMLInputElement): void;
 }
 
@@ -44,7 +44,7 @@ export function numberInput(field: NumberInput): TemplateResult {
   />`;
 }
 
-/** The arrow keys change the number by one. */
+/** Changes the number by one with the arrow keys. */
 function onStep(event: KeyboardEvent, { min = -Infinity, max = Infinity }: NumberInput): void {
   const step = event.key === "ArrowUp" ? 1 : event.key === "ArrowDown" ? -1 : 0;
   const input = event.target as HTMLInputElement;

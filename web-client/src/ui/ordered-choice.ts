@@ -1,5 +1,5 @@
-// <strata-ordered-choice>: some of several items, in a chosen order. The owner provides further
-// content for each.
+// <strata-ordered-choice>: a choice of items in an order that the user sets. The owner can provide
+// further content for each item.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -21,14 +21,14 @@ const words = texts.ordered_choice;
 @customElement("strata-ordered-choice")
 export class StrataOrderedChoice extends LitElement {
   @property() label = "";
-  /** Text of the button. */
+  /** The text of the button. */
   @property({ attribute: "add_label" }) addLabel = "";
   @property({ attribute: false }) things: readonly OrderedThing[] = [];
   @property({ attribute: false }) chosen: readonly string[] = [];
   @property({ type: Number }) most = Infinity;
-  /** Values with a problem. */
+  /** The values with a problem. */
   @property({ attribute: false }) wrong: readonly string[] = [];
-  /** Content below the name of each chosen item. */
+  /** Returns the content below the name of a chosen item. */
   @property({ attribute: false }) more: ((value: string) => unknown) | null = null;
 
   static override styles = [

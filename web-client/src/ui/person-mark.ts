@@ -1,4 +1,4 @@
-// The initials of a person, in their color.
+// The initials of a user, in the color of the user's account.
 
 import { css, html, type TemplateResult } from "lit";
 import { initials, type Named } from "../domain/people";

@@ -1,5 +1,5 @@
-// This person's settings for the page in this browser: language, theme, and whether they have seen
-// the tour. The server does not receive them.
+// The user's settings for the page in this browser: the language, the theme, and whether the tour
+// is completed. They are not sent to the server.
 
 import { kPageLanguages, type PageLanguage } from "../core/locale";
 import type { Background } from "../core/protocol.gen";
@@ -12,13 +12,13 @@ const kTourKey = "strata.tour_over";
 export const kThemes = ["system", "light", "dark", "contrast"] as const;
 export type Theme = (typeof kThemes)[number];
 
-/** Null: the browser's language. */
+/** Returns the chosen language. Null means the browser's language. */
 export function chosenLanguage(): PageLanguage | null {
   const kept = localStorage.getItem(kLanguageKey);
   return kPageLanguages.find((language) => language === kept) ?? null;
 }
 
-/** Takes effect at the next load of the page. */
+/** Stores the language. It applies after the next load of the page. */
 export function keepLanguage(language: PageLanguage | null): void {
   if (language === null) localStorage.removeItem(kLanguageKey);
   else localStorage.setItem(kLanguageKey, language);
@@ -29,14 +29,16 @@ export function chosenTheme(): Theme {
   return kThemes.find((theme) => theme === kept) ?? "system";
 }
 
-/** Takes effect at once. */
+/** Stores the theme. It applies immediately. */
 export function keepTheme(theme: Theme): void {
   if (theme === "system") localStorage.removeItem(kThemeKey);
   else localStorage.setItem(kThemeKey, theme);
   showTheme();
 }
 
-/** The effective theme: a system setting for more contrast takes precedence over a dark one. */
+/**
+ * Returns the effective theme. A system setting for more contrast takes precedence over a dark one.
+ */
 export const themeOf = (
   chosen: Theme,
   system: { dark: boolean; contrast: boolean },
@@ -54,13 +56,13 @@ function showTheme(): void {
 
 const listeners = new Set<() => void>();
 
-/** Calls `listener` after each change of the theme; returns a function that unsubscribes. */
+/** Calls `listener` after each change of the theme. Returns a function that unsubscribes. */
 export function onTheme(listener: () => void): () => void {
   listeners.add(listener);
   return () => listeners.delete(listener);
 }
 
-/** The theme's background of the model; null: the server's default. */
+/** Returns the theme's background of the model. Null means the server's default. */
 export function stageBackground(): Background | null {
   const style = getComputedStyle(document.documentElement);
   const [top, bottom] = [
@@ -70,7 +72,7 @@ export function stageBackground(): Background | null {
   return top && bottom ? { top, bottom } : null;
 }
 
-/** Shows the theme, and follows the system setting from then on. */
+/** Applies the theme, and applies it again whenever the system setting changes. */
 export function followTheme(): void {
   for (const query of [dark, contrast]) matchMedia(query).addEventListener("change", showTheme);
   showTheme();
@@ -79,7 +81,7 @@ export function followTheme(): void {
 const keptTour = (): Kept<boolean> => new Kept(() => localStorage, kTourKey, false);
 const tourOfPage = keptTour();
 
-/** Skipped or completed, in this or another window. */
+/** Whether the tour was skipped or completed, in this or another window. */
 export const tourIsOver = (): boolean => tourOfPage.value || keptTour().value;
 export function keepTourOver(): void {
   tourOfPage.value = true;

@@ -1,4 +1,5 @@
-// One choice among several, as buttons: a single Tab stop, with arrow keys to choose.
+// A choice between several values, as buttons. It is a single Tab stop, and arrow keys choose a
+// value.
 
 import { html, type TemplateResult } from "lit";
 import { arrowStep } from "./keyboard";
@@ -10,7 +11,7 @@ export interface RadioChoice<T> {
 }
 
 export interface RadioGroup<T> {
-  /** The question: a text, or the id of the element with the text. */
+  /** The accessible name: a text, or the id of the element with the text. */
   label: string | { id: string };
   class: string;
   choices: readonly RadioChoice<T>[];
@@ -25,7 +26,7 @@ export function radioGroup<T>({
   chosen,
   choose,
 }: RadioGroup<T>): TemplateResult {
-  // also without a chosen value
+  // There is a Tab stop even without a chosen value.
   const stop = Math.max(
     0,
     choices.findIndex((choice) => choice.value === chosen),

@@ -1,4 +1,4 @@
-// Moves an item of a list to another place, for everyone.
+// Moves an item of a list to another position, for all users.
 
 interface Ordered {
   id: number;
@@ -6,15 +6,15 @@ interface Ordered {
 }
 
 export interface ReorderHost<T> {
-  /** Shown before the server confirms. */
+  /** Shows the new order before the server confirms it. */
   show(all: T[]): void;
   /** Saves the item's new order on the server. */
   save(each: T): Promise<void>;
-  /** The server's list; after a failure some items may have moved already. */
+  /** Returns the server's list. After a failure, some items may already have moved. */
   reload(): Promise<T[]>;
 }
 
-/** Moves `one` to the place `index` of the list, which is bottom to top. */
+/** Moves `one` to the position `index` of the list, which is ordered from bottom to top. */
 export async function reorder<T extends Ordered>(
   all: readonly T[],
   one: T,

@@ -1,7 +1,10 @@
-// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for invited people;
+// The addresses of the page: /, /projects/{slug}, /models/{id}, and /join#SECRET for invited users.
 // /kiosk/SECRET is another page (kiosk/).
 
-/** `project`: the project with the listed models; null: all. */
+/**
+ * The route of an address. `project` is the project with the listed models. Null lists the models
+ * of all projects.
+ */
 export type Route =
   { page: "home"; project: string | null } | { page: "join" } | { page: "model"; model: string };
 
@@ -19,7 +22,7 @@ export function routeOf(path: string): Route {
   }
 }
 
-/** For a screen in an exhibition; loads nothing of this page. */
+/** Whether the address is that of a kiosk, which loads no code of this page. */
 export const isKiosk = (path: string): boolean => path.startsWith("/kiosk/");
 
 export const pathNow = (): string => location.pathname;
@@ -27,14 +30,14 @@ const addressNow = (): string => location.pathname + location.search + location.
 export const pathOfProject = (slug: string): string => `/projects/${encodeURIComponent(slug)}`;
 export const pathOfModel = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
 
-/** The comment of an address. */
+/** Returns the id of the comment in an address. */
 export function commentOf(hash: string): number | null {
   const found = /^#comment=([1-9]\d{0,15})$/.exec(hash);
   return found ? Number(found[1]) : null;
 }
 export const hashOfComment = (id: number): string => `#comment=${id}`;
 
-/** The named view of an address: its slug or id. */
+/** Returns the slug or id of the saved view in an address. */
 export function viewOf(hash: string): string | null {
   const found = /^#view=([^&]{1,400})$/.exec(hash);
   try {
@@ -57,7 +60,7 @@ function arrive(): void {
   listeners.forEach((each) => each());
 }
 
-/** Sets the address of the displayed content, without navigation. */
+/** Changes the address to that of the displayed content, without navigation. */
 export function putHash(hash: string): void {
   if (hash === location.hash) return;
   history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);
@@ -73,8 +76,8 @@ export function onNavigate(listener: () => void): void {
 }
 
 /**
- * `mayLeave`: called before the page shows something else and loses unsaved input. Returns a
- * function that removes it.
+ * Calls `mayLeave` before the page shows other content and loses unsaved input. Returns a function
+ * that removes `mayLeave`.
  */
 export function holdPage(mayLeave: Question): () => void {
   held = mayLeave;
@@ -83,7 +86,7 @@ export function holdPage(mayLeave: Question): () => void {
   };
 }
 
-/** For reasons other than navigation to close the page. */
+/** Asks whether the page may close for a reason other than navigation. */
 export const mayLeavePage = async (): Promise<boolean> => held === null || held();
 
 async function leave(go: () => void): Promise<void> {
@@ -91,7 +94,7 @@ async function leave(go: () => void): Promise<void> {
   asking = true;
   try {
     if (!(await mayLeavePage())) return;
-    held = null; // the input is already given up
+    held = null; // the user has already discarded the input
     go();
   } finally {
     asking = false;
@@ -102,7 +105,7 @@ const withoutPlace = (address: string): string => address.split(/[?#]/)[0]!;
 const isHeldFrom = (path: string): boolean =>
   held !== null && withoutPlace(path) !== withoutPlace(shown);
 
-/** Back and forward: the browser navigates before the event. */
+/** Handles back and forward. The browser has already navigated when it sends the event. */
 function onHistory(): void {
   if (!isHeldFrom(location.pathname)) return arrive();
   history.pushState(null, "", shown);
@@ -124,7 +127,7 @@ export function replaceAddress(path: string): void {
   arrive();
 }
 
-/** For links: navigates without a reload, except for requests of a new tab. */
+/** Handles a click on a link. Navigates without a reload, unless the user requests a new tab. */
 export function follow(event: MouseEvent): void {
   if (
     event.defaultPrevented ||

@@ -1,5 +1,5 @@
-// The list of a dialog: the name, description and commands of each item, and the result of the last
-// command.
+// The list of a dialog. It shows the name, description and commands of each item, and the result of
+// the last command.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { repeat } from "lit/directives/repeat.js";
@@ -11,20 +11,21 @@ export interface Note {
 
 export interface ListedRow {
   name: unknown;
-  /** Accessible name of the row. */
+  /** The accessible name of the row. */
   label?: string;
-  /** Before the name. */
+  /** The content before the name. */
   glyph?: unknown;
-  /** After the name. */
+  /** The content after the name. */
   beside?: unknown;
-  /** Below the name. */
+  /** The content below the name. */
   about?: unknown;
   tools?: unknown;
   note?: Note | null;
 }
 
 /**
- * With `rowListStyles`. `label`: the list's accessible name, or the id of an element with the name.
+ * Renders a list. Use it with `rowListStyles`. `label` is the accessible name of the list, or the
+ * id of an element with the name.
  */
 export const rowList = <T extends { id: number | string }>(
   things: readonly T[],

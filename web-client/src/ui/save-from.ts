@@ -6,9 +6,9 @@ export function saveFrom(address: string, name: string): void {
   link.click();
 }
 
-/** The same for data of the page. */
+/** Saves data of the page as a file. */
 export function saveBlob(blob: Blob, name: string): void {
   const address = URL.createObjectURL(blob);
   saveFrom(address, name);
-  setTimeout(() => URL.revokeObjectURL(address), 60_000); // after the browser has begun to read it
+  setTimeout(() => URL.revokeObjectURL(address), 60_000); // the browser has then begun to read it
 }

@@ -1,10 +1,13 @@
-// A scrolling row of buttons fades at each end with more content.
+// Fades a scrolling row of buttons at each end that has more content.
 
 import type { LitElement, ReactiveController } from "lit";
 
-const kReachedPx = 2; // tolerance at the ends: browsers round
+const kReachedPx = 2; // tolerance at the ends, because browsers round
 
-/** The ends with more content, for a length `all` with `seen` visible from `at` on. */
+/**
+ * Returns the ends with more content, for a row of length `all` with a visible part of length
+ * `seen` that starts at `at`.
+ */
 export const hiddenEnds = (
   at: number,
   seen: number,
@@ -16,7 +19,7 @@ export const hiddenEnds = (
 
 /**
  * Tracks the horizontal scroll position of an element in the attributes `more-before` and
- * `more-after`; the element's own styles draw the fade.
+ * `more-after`. The element's own styles draw the fade.
  */
 export class ScrollFade implements ReactiveController {
   private readonly _sized = new ResizeObserver(() => this.mark());
@@ -33,7 +36,7 @@ export class ScrollFade implements ReactiveController {
     this._host.removeEventListener("scroll", this.mark);
     this._sized.disconnect();
   }
-  /** The buttons may have changed. */
+  /** Updates the attributes, because the buttons may have changed. */
   hostUpdated(): void {
     this.mark();
   }

@@ -1,4 +1,4 @@
-// Uploads of a dialog: progress and problems.
+// Handles the uploads of a dialog, with progress and problems.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 import { ApiError } from "../net/api-error";
@@ -8,12 +8,12 @@ import { texts } from "../texts";
 export type Begin<T> = (progress: (share: number) => void) => Upload<T>;
 
 /**
- * One upload at a time: a new one replaces the previous one. An upload is canceled when the element
- * is removed, if `givesUp` is set.
+ * Handles one upload at a time. A new upload replaces the previous one. If `givesUp` is set, an
+ * upload is canceled when the element is removed.
  */
 export class Sending implements ReactiveController {
   busy = false;
-  share: number | null = null; // of the bytes; null: unknown
+  share: number | null = null; // fraction of the sent bytes, or null if unknown
   problem = "";
   givesUp = true;
   private _upload: Upload<unknown> | null = null;
@@ -36,7 +36,7 @@ export class Sending implements ReactiveController {
     this.put({ problem });
   }
 
-  /** Null: refused, or replaced by another upload. */
+  /** Runs an upload. Returns null if it was refused or replaced by another upload. */
   async run<T>(begin: Begin<T>): Promise<T | null> {
     this.cancel();
     this.put({ busy: true, problem: "" });

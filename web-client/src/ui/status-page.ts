@@ -1,4 +1,5 @@
-// <strata-blank>: a whole page with only a message: not found, unreachable.
+// <strata-blank>: a whole page with only a message, for example if a model is not found or the
+// server is unreachable.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// Sets style properties one by one through the style object of an element. Lit's own styleMap
-// writes a style attribute at first, which the content security policy forbids.
+// Sets style properties individually through the style object of an element. Lit's own styleMap
+// first writes a style attribute, which the content security policy forbids.
 
 import { noChange, type ElementPart } from "lit";
 import { directive, Directive, PartType, type PartInfo } from "lit/directive.js";
@@ -31,5 +31,5 @@ class StyledDirective extends Directive {
   }
 }
 
-/** In a template: `<div ${styled({ width: "12px" })}>`. */
+/** A directive for templates: `<div ${styled({ width: "12px" })}>`. */
 export const styled = directive(StyledDirective);

@@ -1,4 +1,4 @@
-// Styles that several elements share.
+// Styles for several elements.
 
 import { css } from "lit";
 
@@ -170,7 +170,7 @@ export const sharedStyles = css`
     margin: 0;
     accent-color: var(--accent);
   }
-  /* A well of color: the color fills the whole control. */
+  /* The color fills the whole control. */
   input[type="color"] {
     width: var(--control);
     height: var(--control);
@@ -356,7 +356,7 @@ export const sharedStyles = css`
   }
 `;
 
-/** Fields of a dialog, one below the other. */
+/** The fields of a dialog, one below the other. */
 export const formStyles = css`
   form {
     display: grid;
@@ -365,7 +365,7 @@ export const formStyles = css`
 `;
 
 /**
- * A form inside a dialog that makes a link, and the link, which is shown once. The dialog sets the
+ * A form in a dialog that makes a link, and the new link, which is shown once. The dialog sets the
  * number of fields in a row.
  */
 export const linkMakingStyles = css`
@@ -382,7 +382,7 @@ export const linkMakingStyles = css`
   }
 `;
 
-/** Fields of a dialog, two in a row. */
+/** The fields of a dialog, two in a row. */
 export const choicesStyles = css`
   .choices {
     display: grid;
@@ -399,7 +399,7 @@ export const choicesStyles = css`
   }
 `;
 
-/** A number with its unit inside the field, for a unit of any length: the border is around both. */
+/** A number field with its unit inside the border. The unit can have any length. */
 export const numberFieldStyles = css`
   .number {
     display: flex;
@@ -477,7 +477,7 @@ export const dragStyles = css`
   }
 `;
 
-/** A word or two about the adjacent content. */
+/** A chip with one or two words about the adjacent content. */
 export const chipStyles = css`
   .chip {
     padding: var(--space-half) var(--space-2);
@@ -490,7 +490,10 @@ export const chipStyles = css`
   }
 `;
 
-/** A dialog that uploads files: their contents, the numbers of their placement, the progress. */
+/**
+ * A dialog that uploads files. It shows their content, the numbers of their placement, and the
+ * progress.
+ */
 export const filesStyles = css`
   .part {
     display: grid;

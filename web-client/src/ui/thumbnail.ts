@@ -1,5 +1,5 @@
-// <strata-thumbnail>: a small rendered picture of a model or a named view, requested when it
-// becomes visible.
+// <strata-thumbnail>: a small rendered image of a model or a saved view. It is requested when the
+// element becomes visible.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -13,11 +13,11 @@ import { whenSeen } from "./when-seen";
 
 const kWidth = 640;
 const kHeight = 480;
-const kSmallWidth = 240; // also for screens with two device pixels per CSS pixel
+const kSmallWidth = 240; // sufficient for two device pixels per CSS pixel
 const kSmallHeight = 180;
 const kViewSide = 256;
-const kSamples = 4; // of each pixel: smooth edges at this size
-// one picture at a time, so that a gallery does not slow down other users
+const kSamples = 4; // samples per pixel, for smooth edges at this size
+// Images are requested one at a time, so a gallery does not slow down other users.
 let busy: Promise<void> = Promise.resolve();
 
 @customElement("strata-thumbnail")
@@ -30,12 +30,12 @@ export class StrataThumbnail extends LitElement {
       now?.id !== before?.id || now?.version !== before?.version,
   })
   view: View | null = null;
-  /** Small, and with this up direction instead of the model's own. */
+  /** The up direction of a smaller image, instead of the model's own. */
   @property() up: Model["up"] | null = null;
   @state() private _state: "waiting" | "drawn" | "failed" = "waiting";
   @query("canvas") private _canvas!: HTMLCanvasElement;
   private _wanted: AbortController | null = null; // cancels the wait or the request
-  private _settled = false; // drawn, or failed
+  private _settled = false; // whether the request has succeeded or failed
 
   static override styles = [
     sharedStyles,
@@ -68,7 +68,10 @@ export class StrataThumbnail extends LitElement {
     `,
   ];
 
-  /** Elements that a list moves leave the page for a moment. */
+  /**
+   * Requests the image again if necessary, because a list that moves an element removes it
+   * temporarily.
+   */
   override connectedCallback(): void {
     super.connectedCallback();
     if (this._wanted && !this._settled) this.want();
@@ -103,8 +106,8 @@ export class StrataThumbnail extends LitElement {
       bitmap.close();
       this._state = "drawn";
     } catch {
-      if (signal.aborted) return; // the picture is not needed now
-      this._state = "failed"; // the card shows it; the model itself may still open
+      if (signal.aborted) return; // the image is no longer needed
+      this._state = "failed"; // the card shows the failure; the model itself may still open
     }
     if (!signal.aborted) this._settled = true;
   }

@@ -1,5 +1,5 @@
-// <strata-bin-dialog>: the trash of a project: deleted items, to restore or to erase. Opened by
-// openTrash().
+// <strata-bin-dialog>: the trash of a project, in which users restore or erase deleted items.
+// openTrash() opens it.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -115,7 +115,7 @@ export class StrataTrashDialog extends LitElement {
       path: { project: this.project.slug },
       query: { limit: kAtOnce, offset: known.length },
     });
-    const ids = new Set(known.map(({ id }) => id)); // new items may have shifted the page
+    const ids = new Set(known.map(({ id }) => id)); // new items may have shifted the entries
     this._trash = {
       ...next,
       entries: [...known, ...next.entries.filter(({ id }) => !ids.has(id))],
@@ -149,7 +149,7 @@ export class StrataTrashDialog extends LitElement {
     });
   }
 
-  /** Moves the focus to the result, for keyboard users. */
+  /** Removes an item from the list. Moves the focus to the result, for keyboard users. */
   private takeOut({ id }: BinEntry, text: string): void {
     if (this._trash)
       this._trash = {
@@ -173,7 +173,7 @@ export class StrataTrashDialog extends LitElement {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this._note = { kind: "error", text: error.message };
-      // another person was faster
+      // Another user may have restored or erased the item first.
       if (error.status === 404 && this._trash) await this.read().catch(() => {});
     } finally {
       this._busy = false;
@@ -186,7 +186,7 @@ export class StrataTrashDialog extends LitElement {
   }
 }
 
-/** Resolves to whether an item was restored or erased. */
+/** Opens the trash of a project. Resolves to whether an item was restored or erased. */
 export function openTrash(api: Api, project: Pick<Project, "slug" | "name">): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataTrashDialog();
@@ -195,7 +195,7 @@ export function openTrash(api: Api, project: Pick<Project, "slug" | "name">): Pr
   });
 }
 
-/** The trash of the open model's project. */
+/** Opens the trash of the open model's project. */
 export async function openTrashOf({
   api,
   model,

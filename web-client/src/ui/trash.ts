@@ -1,4 +1,4 @@
-// Deletion to the trash of a project: the question before, and the offer to undo it.
+// Moves items to the trash of a project: asks the user before, and offers to undo it.
 
 import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
@@ -9,14 +9,14 @@ import { texts } from "../texts";
 
 export interface Deletable {
   kind: BinKind;
-  entry: string; // its id in the trash
+  entry: string; // id of the entry in the trash
   name: string;
-  project: string; // its slug
+  project: string; // slug of the project
 }
 
 /**
- * Resolves to the person's decision. The question includes the server's retention time of the
- * trash.
+ * Asks whether to move an item to the trash. The question includes the server's retention time of
+ * the trash. Resolves to the user's decision.
  */
 export async function askToTrash(
   api: Api,
@@ -41,8 +41,8 @@ export async function askToTrash(
 }
 
 /**
- * Shows a notice about the deletion, with a button that restores the item. `cameBack`: called after
- * that.
+ * Shows a notice about the deletion, with a button that restores the item. `cameBack` is called
+ * after the restoration.
  */
 export function tellTrashed(
   api: Api,

@@ -1,5 +1,5 @@
-// The visibility of a layer, column or file: the choice in dialogs, and the badge for a restricted
-// one.
+// The visibility of a layer, column or file: the choice in dialogs, and the badge of restricted
+// items.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { Visibility } from "../core/protocol.gen";
@@ -10,7 +10,7 @@ import { texts } from "../texts";
 export const kVisibilities: readonly Visibility[] = ["public", "team", "private"];
 const kIcons: Record<Visibility, IconName> = { public: "eye", team: "people", private: "shield" };
 
-/** Includes an explanation of the choice. */
+/** Renders the choice of a visibility, with an explanation. */
 export function visibilityChoice(
   chosen: Visibility,
   choose: (visibility: Visibility) => void,
@@ -32,7 +32,7 @@ export function visibilityChoice(
   </div>`;
 }
 
-/** Empty for public items. */
+/** Renders the badge of an item. Public items have no badge. */
 export function visibilityBadge(visibility: Visibility): TemplateResult | typeof nothing {
   if (visibility === "public") return nothing;
   const says = texts.visibility.says[visibility];

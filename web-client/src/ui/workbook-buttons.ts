@@ -1,4 +1,4 @@
-// Commands for a table of numbers: copy it for a spreadsheet, or save it as a file.
+// Commands for a table of numbers, which copy it for a spreadsheet or save it as a file.
 
 import { html, type TemplateResult } from "lit";
 import { csvSeparator, pageLocale } from "../core/locale";
@@ -15,8 +15,8 @@ export const workbookQuery = (f: WorkbookQuery["f"]): WorkbookQuery => ({
 });
 
 /**
- * `rows`: of texts. Tabs and line breaks in cells are replaced, since they would split the cells at
- * the paste.
+ * Converts rows of texts to a text that can be pasted into a spreadsheet. Tabs and line breaks in
+ * cells are replaced, because they would split the cells.
  */
 export const asPasted = (rows: readonly (readonly string[])[]): string =>
   rows.map((row) => row.map((cell) => cell.replaceAll(/[\t\r\n]+/g, " ")).join("\t")).join("\n");
@@ -28,7 +28,7 @@ async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): 
     field.value = text;
     field.style.position = "fixed";
     field.style.opacity = "0";
-    holder.after(field); // in the dialog: outside of it, nothing can be selected
+    holder.after(field); // inside the dialog, because text outside it cannot be selected
     field.select();
     return () => field.remove();
   });

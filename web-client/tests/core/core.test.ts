@@ -151,7 +151,7 @@ describe("palettes", () => {
     const colors = [0, 1, 2, 7, 300, 70_000, 4_294_967_295].map((key) =>
       colorOf(classesWithoutPoints, key),
     );
-    // from generatedColor() in server/core/palette.cpp
+    // the same values as in generatedColor() in server/core/palette.cpp
     expect(colors).toEqual([
       "#d96262ff",
       "#3c6ad9ff",
@@ -260,7 +260,7 @@ describe("HTTP", () => {
     ]);
     expect(changed.palette.points).toEqual([]);
     calls.length = 0;
-    // the given version, even if it is outdated
+    // the request has the given version, even if that is outdated
     await changeLayer(api, 1, 7, { name: "y" }, '"2"');
     expect(calls).toEqual([["PATCH", "/api/v1/models/1/layers/7", '"2"']]);
   });

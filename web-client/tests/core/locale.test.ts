@@ -30,7 +30,8 @@ describe("the language of the page", () => {
     expect(pageLanguage("es", ["de"])).toBe("es");
     expect(pageLanguage(null, ["fr"])).toBe("en");
     expect(pageLanguage(null, [])).toBe("en");
-    expect(pageLanguage("tlh", ["de"])).toBe("de"); // stored by a page with more languages
+    // a page with more languages stored this setting
+    expect(pageLanguage("tlh", ["de"])).toBe("de");
   });
 
   it("is written as in the browser's variety of it, and data are called by it first where it was chosen", () => {
@@ -113,7 +114,7 @@ describe("moments and lists", () => {
   });
 });
 
-/** All texts with their paths; for functions, their results. */
+/** Returns all texts with their paths. A function's texts are its results. */
 function leaves(from: unknown, path = ""): [string, string][] {
   if (typeof from === "string") return [[path, from]];
   if (typeof from === "function") {
@@ -152,7 +153,7 @@ describe("the texts", () => {
   it("are there in each language, none empty, and none left in English", async () => {
     const english = await inLanguage("en");
     expect(english.size).toBeGreaterThan(900);
-    // Texts that are the same in two languages: names, symbols, examples of input.
+    // texts that may be the same in two languages: names, symbols, examples of input
     const alike =
       /^(product|brush\.width_|account\.token_line|expressions\.functions|areas\.grammar|tables\.examples|view\.sections|labels\.language_example|help\.\w+\.\d+\.0)/;
     for (const language of ["de", "es"] as const) {

@@ -13,7 +13,10 @@ interface Phrase {
 
 const kPhrases = new URL("../../../tests/words/avoid.json", import.meta.url);
 
-/** Phrases to avoid in all texts (tests/words), and those for the short texts of a page. */
+/**
+ * Phrases to avoid in all texts (tests/words), and further phrases to avoid in the page's short
+ * texts.
+ */
 const kAvoided: readonly [RegExp, string][] = [
   ...(JSON.parse(readFileSync(kPhrases, "utf8")) as Phrase[]).map((phrase): [RegExp, string] => [
     new RegExp(phrase.avoid, phrase.case ? "m" : "im"),
@@ -35,7 +38,7 @@ const kAvoided: readonly [RegExp, string][] = [
 
 type Texts = { readonly [name: string]: unknown };
 
-/** Undefined if the function takes another kind of argument. */
+/** Returns undefined if the function takes another kind of argument. */
 function textOf(make: unknown, argument: unknown): unknown {
   try {
     return (make as (...all: unknown[]) => unknown)(...Array(5).fill(argument));
@@ -44,7 +47,7 @@ function textOf(make: unknown, argument: unknown): unknown {
   }
 }
 
-/** All texts with their paths, for one item and for several. */
+/** Yields all texts with their paths, for one item and for several. */
 function* sentences(of: unknown, at: string): Generator<[string, string]> {
   if (typeof of === "string") yield [at, of];
   else if (typeof of === "function")

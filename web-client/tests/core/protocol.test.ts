@@ -1,4 +1,4 @@
-// The server's tests read the same fixtures (tests/unit/protocol_messages_test.cpp): both must
+// The server's tests read the same fixtures (tests/unit/protocol_messages_test.cpp). Both must
 // agree.
 import Ajv from "ajv";
 import { readdirSync, readFileSync } from "node:fs";
@@ -14,7 +14,10 @@ interface Fixture {
   schema: string;
   json?: unknown;
   text?: string;
-  /** Refused by the server although the schema cannot express the reason (singular matrices). */
+  /**
+   * Whether the schema accepts a message that the server refuses. A schema cannot describe some
+   * reasons, such as singular matrices.
+   */
   schema_passes?: boolean;
 }
 

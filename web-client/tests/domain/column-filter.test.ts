@@ -1,4 +1,4 @@
-// The choices in the filter of a column, and their text form.
+// The choices in a column's filter, and their text form.
 import { describe, expect, it } from "vitest";
 import {
   chosenIn,
@@ -19,7 +19,7 @@ const note = column("note", "text");
 const above = column("above", "relation");
 const kind = column("kind", "term");
 const dug = column("dug", "date");
-const number = column("2-no", "integer"); // begins with a digit
+const number = column("2-no", "integer"); // the name begins with a digit
 
 const chosen: [ReturnType<typeof column>, ColumnFilter, string][] = [
   [soil, { is: "one_of", values: ["clay"], empty: false }, "soil = 'clay'"],

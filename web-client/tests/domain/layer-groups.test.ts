@@ -11,7 +11,7 @@ interface L {
   id: number;
   group?: string;
 }
-/** "a1" is layer 1 in the group a; "2" has none. */
+/** "a1" is layer 1 in group a. "2" is layer 2 without a group. */
 const layers = (text: string): L[] =>
   text.split(" ").map((each) => {
     const group = each.replace(/\d/g, "");
@@ -77,7 +77,7 @@ describe("A moved layer", () => {
   };
 
   it("is the only one that changes its place among all", () => {
-    // listed: a(1 3) 2 4
+    // the list shows a(1 3) 2 4
     expect(moved("a1 2 a3 4", 4, 2)).toBe("a1 4 2 a3");
     expect(moved("a1 2 a3 4", 4, 0)).toBe("4 a1 2 a3");
     expect(moved("a1 2 a3 4", 2, 3)).toBe("a1 a3 4 2");

@@ -6,7 +6,7 @@ import type { Mark, MarkPlace } from "../../src/core/protocol.gen";
 
 const line = (model: number, ...coordinates: MarkPlace[]): Mark => ({ model, coordinates });
 const one = (): number => 1;
-/** Along x, in steps. */
+/** Returns points along x, in steps of 1. */
 const row = (from: number, to: number, z = 0): MarkPlace[] =>
   Array.from({ length: to - from + 1 }, (_, at) => [from + at, 0, z]);
 

@@ -176,7 +176,8 @@ describe("a plot", () => {
     ];
     const plot = plotOf({ yUnit: "", parts });
     expect(plot.curves).toHaveLength(3);
-    expect(plot.curves[1]).toMatch(/^M[\d.]+ [\d.]+h0\.01$/); // a single point is visible
+    // a curve with a single point is visible
+    expect(plot.curves[1]).toMatch(/^M[\d.]+ [\d.]+h0\.01$/);
     expect(plot.breaks).toEqual([plot.xAt(3)]);
   });
 

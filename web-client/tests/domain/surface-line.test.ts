@@ -11,8 +11,8 @@ import {
   type Step,
 } from "../../src/domain/surface-line";
 
-// Seen along -z, a pixel of the picture has length 1: an upright cylinder around the y axis, and a
-// wall behind it.
+// An upright cylinder around the y axis, and a wall behind it. The view direction is -z, and a
+// pixel of the image has length 1.
 const kRadius = 100;
 const kWall = -140;
 const measures: Measures = { pixelAt: () => 1, scale: 1 };
@@ -26,7 +26,7 @@ const cylinder: Seen = (x, y) => {
 };
 const beforeAWall: Seen = (x, y) =>
   Math.abs(x) < kRadius ? cylinder(x, y) : { place: [x, y, kWall], normal: [0, 0, 1] };
-/** As on the server: the nearer one of cylinder and wall. */
+/** Like the server, returns points on the cylinder or on the wall, whichever is nearer. */
 const nearestAlong =
   (wall: boolean): NearestAlong =>
   (from, to, step) => {
@@ -45,7 +45,7 @@ const nearestAlong =
     return Promise.resolve(places);
   };
 
-/** Pixel by pixel along a drawing. */
+/** Returns the steps along a drawing, pixel by pixel. */
 function drawn(path: (t: number) => Point, seen: Seen): Step[] {
   const steps: Step[] = [];
   let last: Point | null = null;
@@ -67,7 +67,7 @@ describe("a line that is drawn over a surface", () => {
     const steps = drawn((t) => [-95 + 190 * t, 50 * t], cylinder);
     const pieces = await lineOnSurface(steps, measures, nearestAlong(false));
     expect(pieces).toHaveLength(1);
-    // A helix around the cylinder is not straight in the picture: its length is summed in fine
+    // A helix around the cylinder is not straight in the image, so its length is summed in fine
     // steps.
     let analytic = 0;
     for (let i = 0; i < 1e5; ++i) {
@@ -83,14 +83,15 @@ describe("a line that is drawn over a surface", () => {
     ["a wall", beforeAWall, true],
   ] as const) {
     it(`stays one line along the edge that it crosses again and again, before ${what}`, async () => {
-      // Along the silhouette, five times 9 pixels beyond it and 13 on it.
+      // The line follows the silhouette. It alternates five times between 9 pixels outside and 13
+      // inside.
       const steps = drawn((t) => [98 + 11 * Math.sin(t * Math.PI * 10) - 2, 300 * t], seen);
       const pieces = await lineOnSurface(steps, measures, nearestAlong(wall));
       expect(pieces).toHaveLength(1);
       expect(offTheCylinder(pieces[0]!)).toBeLessThan(0.5);
-      // no part of the wall
+      // the line contains no part of the wall
       expect(Math.min(...pieces[0]!.map(([, , z]) => z))).toBeGreaterThan(-30);
-      // Where it is on the cylinder, along the drawing; elsewhere along the edge.
+      // on the cylinder the line follows the drawing, elsewhere it follows the edge
       let analytic = 0;
       let last: MarkPlace | null = null;
       for (let t = 0; t <= 1; t += 1e-5) {

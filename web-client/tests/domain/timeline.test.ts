@@ -67,7 +67,7 @@ describe("a timeline", () => {
   it("knows the interval of an edit and its neighbors", () => {
     expect(intervalOf(timeline, 0)).toBeNull();
     expect(intervalOf(timeline, 7)?.number).toBe(3);
-    expect(intervalOf(timeline, 11)?.number).toBe(3); // an edit of a layer that is not seen
+    expect(intervalOf(timeline, 11)?.number).toBe(3); // an edit to an invisible layer
     expect(nextInterval(timeline, 9, true)?.number).toBe(9);
     expect(nextInterval(timeline, 7, true)?.number).toBe(3);
     expect(nextInterval(timeline, 7, false)?.number).toBe(0);

@@ -1,4 +1,4 @@
-// The design of kiosks: its colors, and which of them are refused.
+// The design of kiosks: its colors, and the colors that are refused.
 import { describe, expect, it } from "vitest";
 import {
   contrast,

@@ -15,7 +15,8 @@ const step = (last: number, layer = 1): UndoStep => ({
 });
 const lasts = (steps: readonly UndoStep[]): number[] => steps.map(({ last }) => last);
 
-// Strokes 1, 3 and 5 on layer 1, 2 and 4 on layer 2; 5 and then 3 were undone.
+// Strokes 1, 3 and 5 are on layer 1, strokes 2 and 4 on layer 2. Stroke 5 and then stroke 3 were
+// undone.
 const steps: UndoSteps = {
   done: [step(4, 2), step(2, 2), step(1)],
   undone: [step(3), step(5)],

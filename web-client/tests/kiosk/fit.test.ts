@@ -1,4 +1,4 @@
-// The camera of a stop: the object as large as the kiosk's window permits.
+// The camera of a stop shows the object as large as the kiosk's window permits.
 import { describe, expect, it } from "vitest";
 import { OrbitCamera } from "../../src/math/camera";
 import { placeLike } from "../../src/math/fit-to-window";
@@ -20,7 +20,10 @@ const corners = Array.from({ length: 8 }, (_, corner): Vec3 => [
   (corner & 2 ? bounds.max : bounds.min)[1],
   (corner & 4 ? bounds.max : bounds.min)[2],
 ]);
-/** Sides of the object in the window, as shares of it: 0…1 is inside. */
+/**
+ * Returns the sides of the object in the window, as shares of the window's size. Values from 0 to 1
+ * are inside.
+ */
 function sides(camera: OrbitCamera) {
   const seen = corners.map((corner) => camera.project(corner)!);
   const x = seen.map((at) => at.x / camera.width);
@@ -35,7 +38,7 @@ describe("the object of a stop", () => {
       it(`fills an ${name} window in ${perspective ? "perspective" : "parallel"}, whatever room the view has around it`, () => {
         const saved = cameraOn(1600, 1000, perspective);
         saved.orbit(0.3, 0.2);
-        saved.zoomAt(1.6, 800, 500); // much room
+        saved.zoomAt(1.6, 800, 500); // a large margin around the object
         const own = cameraOn(width, height);
         Object.assign(own, placeOfObject(saved.message(), own));
         const [left, right, top, bottom] = sides(own);

@@ -3,7 +3,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { fillScreen, keepOnPage, stayAwake } from "../../src/kiosk/guard";
 
 /**
- * As in browsers: on the document, wheel and touch listeners can cancel events only if they are
+ * As in browsers, wheel and touch listeners on the document can cancel events only if they are
  * registered with `passive: false`.
  */
 class FakeDocument extends EventTarget {
@@ -25,7 +25,9 @@ let page: FakeDocument;
 beforeEach(() => vi.stubGlobal("document", (page = new FakeDocument())));
 afterEach(() => void vi.unstubAllGlobals());
 
-/** Whether the page prevents the default of an event with this name and these properties. */
+/**
+ * Returns whether the page prevents the default of an event with this name and these properties.
+ */
 function refuses(name: string, properties: object = {}, cancelable = true): boolean {
   const event = Object.assign(new Event(name, { cancelable }), properties);
   const prevent = vi.spyOn(event, "preventDefault");
@@ -57,7 +59,7 @@ describe("what keeps visitors on the page", () => {
 
   it("refuses two fingers that zoom, where they can be refused, and lets one scroll", () => {
     expect(refuses("touchmove", { touches: [1, 2] })).toBe(true);
-    // browsers would report an error
+    // browsers would report an error for an event that cannot be canceled
     expect(refuses("touchmove", { touches: [1, 2] }, false)).toBe(false);
     expect(refuses("touchmove", { touches: [1] })).toBe(false);
   });

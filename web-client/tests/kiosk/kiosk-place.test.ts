@@ -1,4 +1,4 @@
-// The name that a tap in a kiosk shows.
+// The name that a kiosk shows after a tap on the model.
 import { describe, expect, it } from "vitest";
 import type { Layer } from "../../src/core/types";
 import { layerThere, wordsOfPlace } from "../../src/kiosk/place";

@@ -1,4 +1,4 @@
-// The life cycle of a kiosk without a browser: a server of fixed answers, sockets without a
+// The life cycle of a kiosk without a browser: a server with fixed responses, sockets without a
 // network, and a fake clock.
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
@@ -362,7 +362,7 @@ describe("the kiosk", () => {
     site.away = true;
     const { session } = make(site, told());
     await settle();
-    // no worker here that stores the views
+    // this test has no worker that stores the views
     expect([session.tour?.name, session.ready]).toEqual(["T", false]);
     site.away = false;
     await vi.advanceTimersByTimeAsync(31_000);
@@ -421,10 +421,11 @@ describe("the kiosk", () => {
       session.touched();
       session.step(1);
       session.chooseLanguage("de");
-      await vi.advanceTimersByTimeAsync(300_000); // question, timeout, automatic tour
+      // time for the question, the timeout and the automatic tour
+      await vi.advanceTimersByTimeAsync(300_000);
       expect(session.resting).toBe(true);
       sockets[0]!.sent.length = 0;
-      // Without the server's signs of life, the connection correctly ends.
+      // The server sends no sign of life here, so the connection correctly ends.
       if (sockets.length > 1) sockets.splice(0, sockets.length - 1);
       rounds.push(vi.getTimerCount());
     }

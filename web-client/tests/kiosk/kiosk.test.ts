@@ -332,7 +332,7 @@ describe("the card of a record", () => {
         { label: "What is wrong", text: "Verlust" },
       ],
     });
-    // browsers cannot display the other, and its link would leave the page
+    // browsers cannot display the other picture, and its link would leave the page
     expect(card?.pictures.map(({ name }) => name)).toEqual(["b.jpg"]);
     expect(card?.pictures[0]?.small).toBe("/api/v1/attachments/6?thumbnail=256&as=kiosk");
   });

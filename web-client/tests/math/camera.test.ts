@@ -12,7 +12,7 @@ import {
   type Vec4,
 } from "../../src/math/vector";
 
-// A building in UTM coordinates: doubles must resolve millimeters there.
+// A building in UTM coordinates. Doubles must resolve millimeters there.
 const site = { min: [500_000, 4_100_000, 600] as Vec3, max: [500_040, 4_100_020, 612] as Vec3 };
 const middle: Vec3 = [500_020, 4_100_010, 606];
 
@@ -35,8 +35,8 @@ function expectClose(actual: readonly number[], wanted: readonly number[], toler
 }
 
 describe("standard views", () => {
-  // For each up axis: the world direction from which "front" looks, and right and up in its
-  // picture.
+  // For each up axis, the direction to the eye of the view "front", and the directions right and up
+  // in its image.
   const fronts: Record<UpAxis, { eye: Vec3; right: Vec3; up: Vec3 }> = {
     z: { eye: [0, -1, 0], right: [1, 0, 0], up: [0, 0, 1] },
     y: { eye: [0, 0, 1], right: [1, 0, 0], up: [0, 1, 0] },

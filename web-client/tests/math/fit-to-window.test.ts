@@ -4,7 +4,7 @@ import { between, OrbitCamera, placeOf, type UpAxis } from "../../src/math/camer
 import { hasArrived, placeLike } from "../../src/math/fit-to-window";
 import { add, length, scale, subtract, type Vec3 } from "../../src/math/vector";
 
-// A building in UTM coordinates: doubles must resolve millimeters there.
+// A building in UTM coordinates. Doubles must resolve millimeters there.
 const site = { min: [500_000, 4_100_000, 600] as Vec3, max: [500_040, 4_100_020, 612] as Vec3 };
 
 function cameraOn(up: UpAxis, width: number, height: number): OrbitCamera {
@@ -15,7 +15,7 @@ function cameraOn(up: UpAxis, width: number, height: number): OrbitCamera {
   return camera;
 }
 
-/** Points at the corners of a camera's window, at some depth in front of the eye. */
+/** Returns points at the corners of a camera's window, at some depth in front of the eye. */
 const corners = (camera: OrbitCamera): Vec3[] =>
   [
     [0, 0],
@@ -82,7 +82,7 @@ describe("looking with somebody", () => {
   it("on the way there the eye goes straight, once both turn around the same depth", () => {
     const [them, me] = [cameraOn("z", 800, 600), cameraOn("z", 800, 600)];
     Object.assign(me, placeOf(them));
-    me.turnAround(3); // the same picture, with a nearer center
+    me.turnAround(3); // the image stays the same, although the center is nearer
     expect(length(subtract(me.eye(), them.eye()))).toBeLessThan(1e-6);
     const to = placeLike(them.message(), me);
     me.turnAround(to.distance);

@@ -7,7 +7,7 @@ import { add, cross, length, scale, subtract, type Vec3 } from "../../src/math/v
 const number = fc.double({ min: -50, max: 50, noNaN: true });
 const place = fc.tuple(number, number, number);
 
-/** Two perpendicular directions of length 1. */
+/** Returns two perpendicular directions of length 1. */
 function frameOf(seed: Vec3): [Vec3, Vec3] {
   const across = cross(seed, Math.abs(seed[0]) < Math.abs(seed[1]) ? [1, 0, 0] : [0, 1, 0]);
   const first = scale(across, 1 / length(across));
@@ -15,7 +15,7 @@ function frameOf(seed: Vec3): [Vec3, Vec3] {
   return [first, scale(second, 1 / length(second))];
 }
 
-/** The shoelace formula in a plane, as an independent computation of the area. */
+/** Computes the area with the shoelace formula in a plane, as an independent reference. */
 const shoelace = (points: readonly (readonly [number, number])[]): number =>
   Math.abs(
     points.reduce(
@@ -45,7 +45,7 @@ describe("places that are measured between", () => {
 
 describe("the flat polygon through places", () => {
   it("has the area and perimeter that are calculated by hand", () => {
-    // 60 wide, and 40 up a roof with a slope of 3 in 4: 50 deep.
+    // the roof is 60 wide, and 40 in plan with a slope of 3 in 4, which is 50 along the slope
     const roof = flatPolygon([
       [0, 0, 0],
       [60, 0, 0],
@@ -107,7 +107,7 @@ describe("the flat polygon through places", () => {
         place,
         (points, seed, origin) => {
           const [first, second] = frameOf(seed);
-          // as in a national grid
+          // coordinates of the size of a national grid
           const far: Vec3 = add(scale(origin, 1000), [400_000, 4_600_000, 0]);
           const polygon = flatPolygon(
             points.map(([x, y]) => add(far, add(scale(first, x), scale(second, y)))),

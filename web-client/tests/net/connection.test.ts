@@ -24,7 +24,7 @@ let callbacks: {
   [Name in keyof ConnectionCallbacks]: ReturnType<typeof vi.fn<ConnectionCallbacks[Name]>>;
 };
 let connection: Connection;
-let shelved: ChangeMessage[]; // the browser's storage, which survives the page
+let shelved: ChangeMessage[]; // the browser's storage, which remains when the page closes
 
 const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const draw = (): void => frames.splice(0).forEach((frame) => frame());
@@ -169,7 +169,7 @@ describe("cameras", () => {
     socket().lose();
     vi.advanceTimersByTime(300);
     socket().open();
-    // 8 was deleted in the meantime: the server would have refused the whole message
+    // layer 8 was deleted in the meantime, and the server would have refused the whole message
     socket().receive({ ...welcome(), layers: [{ id: 7 } as Layer] });
     expect(
       socket()
@@ -230,7 +230,7 @@ describe("strokes", () => {
   });
 
   it("a long path is split at the server's limit of points", () => {
-    connect(); // path_points: 4
+    connect(); // path_points is 4
     connection
       .beginStroke(strokeOptions)!
       .extend(Array.from({ length: 9 }, (_, i): [number, number] => [i, 0]));
@@ -315,7 +315,7 @@ describe("a lost connection", () => {
     before.lose();
     expect(saving()).toEqual({ waiting: 3, failing: false });
     vi.advanceTimersByTime(300);
-    connect([{ stroke: stroke.stroke, n: 1 }]); // the answer for 1 was lost
+    connect([{ stroke: stroke.stroke, n: 1 }]); // the response for batch 1 was lost
     const again = socket().sent.filter((message) => message.op !== "hello");
     const wanted = before.sent.filter(
       (message) => message.op !== "hello" && !(message.op === "stroke.extend" && message.n <= 1),
@@ -379,7 +379,7 @@ describe("a lost connection", () => {
       { op: "stroke.extend", id: "e1", stroke: "s", n: 1, path: [[2, 2]] },
       { op: "undo", id: "u", layer: 7 },
     ];
-    connect([{ stroke: "s", n: 0 }]); // the earlier page did not receive its answer
+    connect([{ stroke: "s", n: 0 }]); // the earlier page did not receive the response to this batch
     connection.sendChange({ op: "redo", id: "mine", layer: 7 });
     await vi.advanceTimersByTimeAsync(0);
     expect(callbacks.takenUp.mock.calls).toEqual([[3]]);
@@ -444,7 +444,7 @@ describe("a lost connection", () => {
   });
 
   it("resends no faster than the server takes, and new changes stay behind the old ones", () => {
-    connect(); // messages_per_second: 200
+    connect(); // messages_per_second is 200
     const stroke = connection.beginStroke(strokeOptions)!;
     for (let i = 0; i < 250; ++i) stroke.extend([[i, i]]);
     socket().lose();

@@ -5,7 +5,7 @@ import { describe, expect, it } from "vitest";
 
 const kSource = join(__dirname, "../../src");
 
-/** Parts that an element changes but does not show. */
+/** Parts of the session that an element changes but does not show. */
 const kOnlyChanged: Readonly<Record<string, readonly string[]>> = {
   "features/past/past-bar.ts": ["lit"],
   "features/tables/table-panel.ts": ["painting"],
@@ -20,7 +20,7 @@ function parse(code: string): ts.SourceFile {
   return ts.createSourceFile("element.ts", code, ts.ScriptTarget.Latest, true);
 }
 
-/** The names in `SessionPart`, without those of the session itself. */
+/** Returns the names in `SessionPart`, without those of the session itself. */
 function partsOfSession(): Set<string> {
   const parts = new Set<string>();
   const code = readFileSync(join(kSource, "session/model-session.ts"), "utf8");
@@ -36,7 +36,10 @@ function partsOfSession(): Set<string> {
   return parts;
 }
 
-/** `session.<part>` and `const { <part> } = session`; null: it follows no part, or all. */
+/**
+ * Finds `session.<part>` and `const { <part> } = session`. Returns null if the element follows no
+ * part, or all.
+ */
 function elementOf(code: string, parts: ReadonlySet<string>): Element | null {
   const follows = new Set<string>();
   const reads = new Set<string>();

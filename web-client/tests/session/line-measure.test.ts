@@ -10,7 +10,7 @@ const kLongMs = 10_000;
 type PlacesSeen = readonly (MarkPlace | null)[];
 
 let asked: (readonly Point[])[];
-// answers the last request; by default the surface is the picture plane
+// responds to the last request; by default the surface is the image plane
 let answer: (places?: PlacesSeen) => void;
 let refuse: () => void;
 let measure: LineMeasure<MarkPlace | null>;
@@ -77,7 +77,7 @@ describe("the length of a line that is being drawn", () => {
     );
     answer();
     await settle();
-    expect(measure.metres).toBeNull(); // the segment to the pointer is missing
+    expect(measure.metres).toBeNull(); // the length misses the segment to the pointer
     answer();
     await settle();
     expect(measure.metres).toBe(15);

@@ -76,7 +76,7 @@ describe("The commands", () => {
     expect(new Set(ids).size).toBe(ids.length);
     const keys = all().flatMap(({ keys: own = [] }) => own);
     expect(new Set(keys).size).toBe(keys.length);
-    // letters are the same with Shift unless a command says otherwise
+    // letters have the same effect with Shift unless a command defines another one
     expect(keys.length).toBeGreaterThan(50);
   });
 

@@ -1,5 +1,5 @@
-// Draws the tokens of theme.css as a picture: the colors of each theme, the sizes of texts, the
-// spaces and the corners.
+// Draws the design tokens of theme.css as an image: the colors of each theme, the sizes of texts,
+// the spaces and the corners.
 
 const kThemes = [
   ["light", "\n:root {"],
@@ -11,7 +11,7 @@ const kRowPx = 30;
 const kTopPx = 56;
 const kEdgePx = 24;
 
-/** The declarations of the block that begins with `head`. */
+/** Returns the declarations of the block that begins with `head`. */
 function blockOf(css: string, head: string): [name: string, value: string][] {
   const start = css.indexOf(head) + head.length;
   const block = css.slice(start, css.indexOf("\n}", start)).replace(/\/\*[^]*?\*\//g, "");
@@ -22,10 +22,10 @@ const isColor = (value: string): boolean => /^#[0-9a-f]{6}$/.test(value);
 const px = (value: string): number =>
   value.endsWith("rem") ? parseFloat(value) * 16 : parseFloat(value);
 
-/** Returns the text of an SVG. `css`: the text of theme.css. */
+/** Returns the text of an SVG file. `css` is the text of theme.css. */
 export function designSheet(css: string): string {
   const light = new Map(blockOf(css, kThemes[0][1]).filter(([, value]) => isColor(value)));
-  // The marks are the same in each theme, and belong to the picture of the model.
+  // the marks are the same in each theme, and are drawn over the model
   const names = [...light.keys()].filter((name) => !/^(mark|ball|logo)-/.test(name));
   const measures = blockOf(css.slice(css.indexOf("/* Measures")), "\n:root {");
   const of = (kind: string): [string, string][] =>

@@ -1,4 +1,5 @@
-// Texts that are loaded later must not be read by what is shown first: they would be missing.
+// Some texts are loaded later. The code that the page shows first must not read them, because they
+// would be missing.
 
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -6,7 +7,7 @@ import { describe, expect, it } from "vitest";
 import { laterTexts } from "../../src/texts/later-en";
 
 const kSource = join(__dirname, "../../src");
-/** The parts that strata-app.ts loads without later(). */
+/** The modules that strata-app.ts loads without later(). */
 const kFirst = [
   "shell/main.ts",
   "shell/strata-app.ts",
@@ -16,7 +17,7 @@ const kFirst = [
   "features/account/join-page.ts",
 ];
 
-/** Imports at run time, without those that load a part later. */
+/** Returns the imports at run time. Omits modules that are loaded later. */
 function importsOf(file: string): string[] {
   const code = readFileSync(file, "utf8");
   const found = code.matchAll(/^(?:import|export)\s+(?!type\b)(?:[^;"]*?from\s+)?"(\.[^"]+)"/gm);

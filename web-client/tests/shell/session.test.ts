@@ -44,11 +44,11 @@ const layer = (id: number, order: number): Layer => ({
 });
 
 let sockets: FakeSocket[];
-let answers: Map<string, [status: number, body: unknown]>; // by method and path
+let answers: Map<string, [status: number, body: unknown]>; // keyed by method and path
 let session: OpenModelSession;
 let told: string[];
 let unsubscribe: () => void;
-let kept: unknown[]; // the layers' settings
+let kept: unknown[]; // the stored settings of the layers
 
 const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
@@ -62,7 +62,7 @@ function join(role: Role = "owner", layers = [layer(7, 0), layer(8, 1)]): void {
   socket().open();
   socket().receive({ ...welcome(), role, model, layers });
 }
-/** A dab in the selected layer, not saved yet. Returns a function that saves it. */
+/** Paints a dab in the selected layer, which is not saved yet. Returns a function that saves it. */
 function paint(): () => void {
   session.chooseTool("brush");
   session.gestures.toolDown({ x: 5, y: 5 });
@@ -96,7 +96,7 @@ beforeEach(() => {
 });
 afterEach(() => {
   discardUnsaved();
-  vi.advanceTimersByTime(60_000); // closes notices
+  vi.advanceTimersByTime(60_000); // time after which the notices close
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
@@ -224,7 +224,7 @@ describe("leaving a model", () => {
     socket().lose();
     await settle();
     expect(session.signedOut).toBe(true);
-    session.close(); // the page shows the sign-in
+    session.close(); // the page shows the sign-in form
     checkConnections();
     join();
     expect(session.signedOut).toBe(false);
@@ -286,7 +286,7 @@ describe("edits of whole areas", () => {
       session.gestures.toolUp();
       session.gestures.zoom(0.5, 9, 9);
     }
-    session.tools.key("Enter"); // closes it
+    session.tools.key("Enter"); // closes the outline
     expect(edits()).toEqual([]);
     session.gestures.zoom(0.5, 9, 9);
     expect(session.view.camera.message()).not.toEqual(camera);
@@ -477,7 +477,7 @@ describe("roles", () => {
     expect(changes()).toEqual(untilNow);
     expect(untilNow.at(-1)).toBe("stroke.end");
     expect(told).toEqual([texts.layers.locked]);
-    // The server also refuses the pending messages; these problems show nothing new.
+    // The server also refuses the pending messages. These problems cause no new notice.
     socket().receive({
       op: "problem",
       title: "Locked, says the server",
@@ -490,7 +490,7 @@ describe("roles", () => {
     session.layers.select(session.layers.find(7)!);
     expect(session.lockedTarget).toBe(null);
     session.layers.select(session.layers.find(8)!);
-    session.chooseTool("orbit"); // a viewing tool is not affected by a lock
+    session.chooseTool("orbit"); // a lock does not affect a tool for viewing
     expect(session.lockedTarget).toBe(null);
     lock(8, false);
     paint()();
@@ -575,7 +575,7 @@ describe("how a person shows the layers", () => {
     await settle();
     expect(kept.at(-1)).toEqual({ layers: [{ layer: 8, opacity: 0.4 }] });
     session.layers.resetOverrides();
-    session.close(); // at once
+    session.close(); // immediately
     await settle();
     expect(kept.at(-1)).toEqual({ layers: [] });
   });
@@ -600,7 +600,7 @@ describe("how a person shows the layers", () => {
     ]);
     expect(toldServer()).toEqual([{ layer: 7, visible: false, order: 4 }]);
     session.layers.setVisible(session.layers.find(7)!, true);
-    await vi.advanceTimersByTimeAsync(1000); // refused: the server is unreachable
+    await vi.advanceTimersByTimeAsync(1000); // the request fails because the server is unreachable
     socket().lose();
     await vi.advanceTimersByTimeAsync(1000);
     answers.set(kKeep, [200, { layers: [] }]);

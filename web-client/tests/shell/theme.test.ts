@@ -7,14 +7,14 @@ import { designSheet } from "./design-sheet";
 
 const kSource = join(__dirname, "../../src");
 const css = readFileSync(join(kSource, "shell", "theme.css"), "utf8");
-/** The files of the page; the kiosk has separate colors. */
+/** The files of the page. The kiosk has separate colors. */
 const pageFiles = ["ui", "session", "features", "shell"].flatMap((folder) =>
   readdirSync(join(kSource, folder), { recursive: true, encoding: "utf8" }).map((name) =>
     join(kSource, folder, name),
   ),
 );
 
-/** The colors of a theme, including those inherited from the light one. */
+/** Returns the colors of a theme, including those inherited from the light theme. */
 function colorsOf(theme: "light" | "dark" | "contrast"): Map<string, string> {
   const block = (head: string): [string, string][] => {
     const start = css.indexOf(head);
@@ -29,7 +29,7 @@ function colorsOf(theme: "light" | "dark" | "contrast"): Map<string, string> {
   ]);
 }
 
-/** WCAG 2.2, contrast ratio. */
+/** Returns the contrast ratio of WCAG 2.2. */
 function contrast(a: string, b: string): number {
   const luminance = (hex: string): number => {
     const [red, green, blue] = [1, 3, 5].map((at) => {
@@ -42,13 +42,13 @@ function contrast(a: string, b: string): number {
   return (brighter! + 0.05) / (darker! + 0.05);
 }
 
-/** The ground of texts over the picture. */
+/** Returns the background color of texts over the 3D view. */
 function sheerOf(theme: "light" | "dark" | "contrast"): string {
   const head = theme === "light" ? "\n:root {" : `:root[data-theme="${theme}"] {`;
   return /--on-stage-ground: ([^;]+);/.exec(css.slice(css.indexOf(head)))![1]!;
 }
 
-/** A color such as "rgb(18 19 19 / 0.76)" or "#ffffff", over an opaque one. */
+/** Blends a color such as "rgb(18 19 19 / 0.76)" or "#ffffff" over an opaque one. */
 function over(sheer: string, beneath: string): string {
   const parts = /^rgb\((\d+) (\d+) (\d+) \/ ([\d.]+)\)$/.exec(sheer);
   if (!parts) return sheer;
@@ -61,7 +61,7 @@ function over(sheer: string, beneath: string): string {
   return `#${channel(0)}${channel(1)}${channel(2)}`;
 }
 
-/** The declarations in the styles of a file. */
+/** Returns the declarations in the styles of a file. */
 function declarationsOf(path: string): [name: string, value: string][] {
   const text = readFileSync(path, "utf8");
   const styles = path.endsWith(".css")
@@ -74,7 +74,10 @@ function declarationsOf(path: string): [name: string, value: string][] {
   );
 }
 
-/** A length below 48 px, or a duration below 300 ms, outside of a function. */
+/**
+ * Returns whether the value has a length below 48 px, or a duration below 300 ms, outside of a
+ * function.
+ */
 function strayIn(value: string): boolean {
   let plain = value;
   while (plain !== (plain = plain.replace(/[a-z-]+\([^()]*\)/g, "")));

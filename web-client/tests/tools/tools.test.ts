@@ -83,7 +83,8 @@ describe("brush", () => {
       { x: 10, y: 0, pressure: 0.2 },
     ]);
     brush.up();
-    expect(widths()).toEqual([[0.25], [0.5, 0.1]]); // also with a pressure change in place
+    // a change of pressure counts without a movement
+    expect(widths()).toEqual([[0.25], [0.5, 0.1]]);
     messages = [];
     brush.down({ x: 0, y: 0 });
     brush.up();
@@ -366,7 +367,7 @@ describe("outlines", () => {
   it("a drag is a line, finished when it is let go", () => {
     const tool = new LineTool(outlineHost);
     tool.down({ x: 0, y: 0 });
-    tool.move([{ x: 4, y: 0 }]); // a trembling hand
+    tool.move([{ x: 4, y: 0 }]); // the movement of an unsteady hand
     tool.move([
       { x: 30, y: 0 },
       { x: 31, y: 0 },

@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { StageInput, type GestureHandler } from "../../src/ui/input";
 
-// A fake element: keeps listeners and sends events to them.
+// A fake element that stores listeners and sends events to them.
 class FakeElement {
   listeners = new Map<string, (event: unknown) => void>();
   addEventListener = (name: string, listener: (event: unknown) => void): void =>

@@ -65,7 +65,7 @@ describe("a place for files", () => {
     };
     return Object.assign(new Event(type, { cancelable: true }), { dataTransfer });
   };
-  /** The drop target, and functions that send events to it. */
+  /** Returns the drop target, and functions that send events to it. */
   function place(may = true): {
     host: Place;
     drop: FileDrop;

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-/** The history of a browser tab, which reports a navigation only after it is done. */
+/** The history of a browser tab. It reports a navigation only after the navigation is complete. */
 class FakeHistory {
   entries = ["/"];
   at = 0;

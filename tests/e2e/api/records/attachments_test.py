@@ -1,6 +1,6 @@
 """Files of records over HTTP: upload and download of photos and documents, thumbnails, ranges, undo
-and earlier states, a gigabyte in little memory, a full disk, and a folder of photos that is matched
-to records."""
+and earlier states. Also a gigabyte with little memory, a full disk, and a folder of photos that is
+matched to records."""
 import hashlib
 import http.client
 import os
@@ -355,8 +355,8 @@ def test_a_full_disk(server):
 
 
 def test_a_gigabyte_in_little_memory(server):
-    """A gigabyte is streamed in, as a body and in a form, and out again: the server's memory hardly
-    grows."""
+    """A gigabyte is uploaded, as a body and in a form, and downloaded as streams. The server's
+    memory hardly grows."""
     pieces = [hashlib.sha256(bytes([n])).digest() * (PIECE // 32) for n in range(256)]
     wanted = hashlib.sha256()
     for n in range(GIGABYTE // PIECE):

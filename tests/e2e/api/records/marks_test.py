@@ -1,5 +1,5 @@
-"""Lines and points of records on the surface: cracks by the meter, samples by number; over HTTP, in
-pictures, in tables, and on another version of the scan."""
+"""Lines and points of records on the surface, such as cracks by the meter and samples by number.
+The file tests them over HTTP, in frames, in tables, and on another version of the scan."""
 import csv
 import io
 import math
@@ -11,7 +11,7 @@ from support.live_client import LiveClient
 from support.meshes import folded_grid
 from support.pictures import pixels
 
-M, T = "/models/sheet", "/tables/damage"  # nearly flat, x and y from 0 to 100 mm
+M, T = "/models/sheet", "/tables/damage"  # a nearly flat sheet, x and y from 0 to 100 mm
 L = M + "/layers/damage"
 RED, BLUE = (220, 0, 0), (0, 0, 220)
 
@@ -135,7 +135,7 @@ def test_write(server, model):
 
 
 def test_tables(server):
-    """The data for spreadsheets and reports, and its import."""
+    """Exports the data for spreadsheets and reports, and imports it."""
     text = server.ok("GET", T + "/records?f=csv").body.decode("utf-8-sig")
     rows = list(csv.DictReader(io.StringIO(text)))
     near(float(rows[0]["length_m"]), 0.080)
@@ -171,7 +171,7 @@ def test_tables(server):
         )
         assert sheet[-1]["class"] == "total" and sheet[-1]["point_count"] == "2", sheet
         near(float(sheet[-1]["length_m"]), 0.080)
-    # The unit belongs to the model: lengths change with it, and no record is rewritten.
+    # the unit belongs to the model: lengths change with it, and no record is written again
     etag = server.get(M).headers["ETag"]
     etag = server.ok("PATCH", M, {"unit": "cm"}, headers={"If-Match": etag}).headers["ETag"]
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.80)
@@ -179,7 +179,7 @@ def test_tables(server):
 
 
 def test_extents(server):
-    """The extent of records that have lines and points, and no texels."""
+    """The extent of records that have lines and points but no texels."""
     extent = server.ok("POST", L + "/extent", {"keys": [1]}).json()
     assert (extent["records"], extent["painted"], extent["marked"], extent["area_m2"]) == (
         1,
@@ -197,7 +197,7 @@ def test_extents(server):
     }, both
     nowhere = server.ok("POST", L + "/extent", {"keys": [3]}).json()
     assert (nowhere["records"], nowhere["marked"]) == (1, 0) and "bounds" not in nowhere, nowhere
-    # Together with texels.
+    # the extent together with texels
     server.ok(
         "POST",
         L + "/readings?radius_mm=2",
@@ -246,7 +246,7 @@ def test_pictures(server, camera):
 
 
 def test_live(server, model):
-    """People on the model receive a line that another person writes."""
+    """Participants at the model receive a line that another user writes."""
     with LiveClient(server, "sheet") as viewer:
         viewer.hello(dpr=1, accept=["jpeg"])
         server.ok(
@@ -275,7 +275,7 @@ def test_history(server):
 
 
 def test_past_pictures(server, camera):
-    """A picture of an earlier time shows the lines of that time."""
+    """A frame of an earlier time shows the lines of that time."""
 
     def dab(x):
         return server.ok(
@@ -306,8 +306,8 @@ def test_past_pictures(server, camera):
 
 
 def test_transfer(server):
-    """A second scan of half the wall: lines and points on its half are transferred and snapped to
-    its surface."""
+    """The second scan contains half of the wall. Lines and points on that half are transferred and
+    snapped to its surface."""
     half = folded_grid(size=60.0, fold=0.001)
     server.import_model(half, "half.ply", name="Half", unit="mm")
     other = server.get("/models/half").json()["id"]
@@ -335,7 +335,7 @@ def test_transfer(server):
     server.ok("POST", T + "/undo")
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
     server.ok("DELETE", "/models/half")
-    # restores lines on a deleted model: they are not counted, and do no harm
+    # restores lines on a deleted model, which are not counted and have no other effect
     server.ok("POST", T + "/redo")
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
     server.ok("PATCH", T + "/records/1", {"values": {"code": "C one"}})

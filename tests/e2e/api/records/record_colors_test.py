@@ -1,4 +1,4 @@
-"""Records on the surface: colors by a column, highlighted records, their extents; over HTTP and in
+"""Records on the surface: colors by a column, highlighted records, their extents, over HTTP and in
 a live view."""
 import math
 import urllib.parse
@@ -9,7 +9,7 @@ from support.live_client import LAST_RECTANGLE, LiveClient
 from support.meshes import folded_grid
 from support.pictures import pixels
 
-M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 L = M + "/layers/pieces"
 UNLIT = {"mode": "unlit"}
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
@@ -27,9 +27,9 @@ def dab(server, value, x, y, radius=10):
 
 
 def color_at(rows, key):
-    """Returns the color at the record's place. The camera is perpendicular to the sheet of 100 mm
-    and shows 110 % of its diagonal, independent of its side: the scale comes from the outermost
-    painted pixels."""
+    """Returns the color at the record's point. The camera is perpendicular to the sheet of 100 mm
+    and shows 110 % of its diagonal, from every side. The scale comes from the outermost painted
+    pixels."""
     x, y = PLACES[key]
     height, width = len(rows), len(rows[0])
     return rows[round((0.5 - (y - 50) / 100 * SCALE) * height)][
@@ -41,8 +41,8 @@ SCALE = None
 
 
 def find_scale(server, camera):
-    """Returns the sheet's side relative to the picture's height, from the width of the surface in
-    the middle row."""
+    """Returns the sheet's side relative to the frame's height, from the width of the surface in the
+    middle row."""
     rows = pixels(
         server.ok(
             "POST", M + "/frame", {"camera": camera, "layers": [], "light": UNLIT, "format": "png"}
@@ -175,7 +175,7 @@ def test_columns(server, camera):
     assert set_palette(server, BY_STATE)["others"] == "#0000ffff"
     shown = colors(server, camera)
     assert [shown[key] for key in (1, 2, 3, 4)] == [RED, GREEN, RED, BLUE], shown
-    # Numbers: classes and a gradient; half transparent gray without a value.
+    # numbers as classes and as a gradient; records without a value are gray and half transparent
     set_palette(
         server,
         {
@@ -201,7 +201,7 @@ def test_columns(server, camera):
         and shown[2] == (255, 255, 255)
         and near(shown[3], (64, 64, 64))
     ), shown
-    # A change of a record changes the picture; a dropped column is reported.
+    # a change to a record changes the frame, and a dropped column is reported
     set_palette(server, BY_STATE)
     server.ok("PATCH", "/tables/pieces/records/2", {"values": {"state": "loose"}})
     assert colors(server, camera)[2] == RED
@@ -306,7 +306,7 @@ def test_highlight(server, camera):
     assert answer.status == 422 and "stores numbers" in answer.json()["detail"], answer
 
     extent = server.ok("POST", L + "/extent", {"filter": "state = 'loose' or state is null"}).json()
-    assert (extent["records"], extent["painted"]) == (4, 3), extent  # the fifth is painted nowhere
+    assert (extent["records"], extent["painted"]) == (4, 3), extent  # record 5 is not painted
     assert abs(extent["area_m2"] / (3 * math.pi * 1e-4) - 1) < 0.02, extent
     low, high = extent["bounds"]["min"], extent["bounds"]["max"]
     assert near(low[:2], (20, 20), 0.2) and near(high[:2], (80, 80), 0.2), extent
@@ -324,8 +324,8 @@ def test_highlight(server, camera):
 
 
 def test_live(server, camera):
-    """A person's highlighted records are private, and follow the records. (The page's test checks
-    the look.)"""
+    """A user's highlighted records are private, and follow changes to the records. (The page's test
+    checks the colors.)"""
     set_palette(server, BY_STATE)
     with LiveClient(server, "sheet") as live, LiveClient(server, "sheet") as other:
         for each in (live, other):
@@ -334,8 +334,8 @@ def test_live(server, camera):
             each.send({"op": "camera", "seq": 1, **camera})
 
         def next_picture(before, each=live):
-            """Returns a different picture; after a pause the server sends the whole picture or the
-            changed part."""
+            """Returns the next different frame. After a pause the server sends the whole frame or
+            only the changed part."""
             while True:
                 frame = each.receive_until("frame")
                 if frame["payload"] != before and frame["flags"] & LAST_RECTANGLE:
@@ -350,10 +350,10 @@ def test_live(server, camera):
         next_picture(None, other)
         highlight(filter="thickness >= 4", isolate=True)
         isolated = next_picture(colored)
-        # Another person changes a value: the third record now also matches.
+        # another user changes a value, so the third record also matches
         server.ok("PATCH", "/tables/pieces/records/3", {"values": {"thickness": 9}})
         assert next_picture(isolated) != colored
-        # Records that cannot be highlighted are reported, and the connection stays open.
+        # records that cannot be highlighted are reported, and the connection stays open
         highlight(filter="nothing = 1")
         problem = live.receive_until("problem")
         assert (problem["status"], problem["field"], problem["offset"]) == (
@@ -367,7 +367,7 @@ def test_live(server, camera):
         ):
             live.send({"op": "layers", "layers": [message]})
             assert live.receive_until("problem")["field"] == field
-        # A personal palette, by another column.
+        # a personal palette with another column
         mine = {
             "mode": "linear",
             "column": "thickness",
@@ -377,7 +377,7 @@ def test_live(server, camera):
             {"op": "layers", "light": UNLIT, "layers": [{"layer": "pieces", "palette": mine}]}
         )
         assert next_picture(isolated)
-        # The other person saw nothing of this, but the shared colors change with the records.
+        # the other user saw no effect of this, but the shared colors change with the records
         server.ok("PATCH", "/tables/pieces/records/3", {"values": {"state": "firm"}})
         assert next_picture(None, other)
     server.ok("PATCH", "/tables/pieces/records/3", {"values": {"thickness": 2, "state": "loose"}})

@@ -1,5 +1,5 @@
-"""Analysts read with SQL: areas as in the statistics, after every edit; tables under their own
-names; and nothing else."""
+"""Analysts read with SQL: areas that agree with the statistics after every edit, tables under their
+own names, and no other data."""
 import csv
 import io
 import os
@@ -21,7 +21,7 @@ def near(a, b, share):
 
 
 def check_areas(server, reader, model=M):
-    """Checks every layer of the model: by key if it has keys, and in total."""
+    """Checks every layer of the model, by key if it has keys, and in total."""
     for layer in server.get(model + "/layers").json()["layers"]:
         statistics = server.get(f"{model}/layers/{layer['id']}/statistics").json()
         rows = reader.rows(f"SELECT * FROM areas WHERE layer_id = {layer['id']}")
@@ -71,7 +71,7 @@ def reader(server, port):
 
 
 def test_areas_of_a_project_from_before_sums_were_kept(server, reader):
-    """The journal of the demo project's layers has no sums: the running server counts them once."""
+    """The journal of the demo project's layers has no sums. The running server counts them once."""
     wait_for(
         lambda: reader.rows("SELECT count(*) FROM layers WHERE NOT areas_current")[0]["count"]
         == "0",
@@ -97,7 +97,8 @@ def sheet(server):
 
 @pytest.mark.usefixtures("sheet")
 def test_edits(server, reader):
-    """After strokes, fills, erasing and undo, the areas equal those of the statistics at once."""
+    """After strokes, fills, erasing and undo, the areas immediately equal those of the
+    statistics."""
     layers = {}
     for body in (
         {"name": "Marks", "type": "u8"},
@@ -147,7 +148,8 @@ def test_edits(server, reader):
     assert [(row["op"], int(row["sequence"])) for row in history] == [
         (edit["op"], edit["sequence"]) for edit in told
     ], history
-    # A table's record and its area; the unit of the model is an ordinary number.
+    # joins the records of a table with their areas; the areas do not depend on the unit of the
+    # model
     joined = 'SELECT u."Code", a.area_m2 FROM areas a JOIN "Units" u USING (key) WHERE a.table_id = (SELECT table_id FROM tables WHERE "table" = \'Units\') ORDER BY key'
     before = reader.rows(joined)
     assert [row["Code"] for row in before] == ["SU 2", "SU 3"], before
@@ -159,7 +161,7 @@ def test_edits(server, reader):
 
 
 def test_places(server, reader):
-    """Analysts get places as text, and may call the function that makes it."""
+    """Analysts get positions as text, and may call the function that makes the text."""
     rows = reader.rows("SELECT * FROM areas WHERE model = 'Sheet'")
     assert rows and all(
         row["geometry_wkt"]
@@ -264,7 +266,7 @@ def test_tables(server, reader):
         == "1560~"
     )
 
-    # An analyst's open table does not prevent changes by people.
+    # An analyst's open table does not prevent changes by users.
     with subprocess.Popen(
         reader.command() + ["-At"],
         stdin=subprocess.PIPE,

@@ -1,6 +1,6 @@
-"""A day's work with the tables of a project, over HTTP: two trenches share their units; records are
-written by hand and as CSV; keys are painted, changed, undone, read as of earlier times, and deleted
-with their texels; and refusals of invalid input."""
+"""A day's work with the tables of a project, over HTTP. Two trenches share their units. Records are
+written by hand and as CSV. Keys are painted, changed, undone, read at earlier times, and deleted
+with their texels. The server refuses invalid input."""
 import csv
 import io
 from concurrent.futures import ThreadPoolExecutor
@@ -97,7 +97,8 @@ def live(server):
 
 
 def test_layers_of_two_models_share_a_table(server, table):
-    """Layers of two models name one table; a layer without one gets a table with its own name."""
+    """Layers of two models can show one table. A layer without a table gets one with the layer's
+    name."""
     for model in ("north", "south"):
         layer = server.ok(
             "POST",
@@ -225,7 +226,7 @@ def test_paint_live(server, cameras):
 
 
 def test_edit_together(server):
-    """Editors of a record are shown on all models of the project, until they disconnect."""
+    """The editors of a record are shown on all models of the project until they disconnect."""
     table = server.get(T).json()["id"]
     viewer = server.ok("POST", "/me/tokens", {"name": "looks on", "role": "viewer"}).json()[
         "secret"
@@ -263,12 +264,12 @@ def test_edit_together(server):
                 assert [
                     each["key"] for each in late.receive_until("record.editors")["records"]
                 ] == [1, 2]
-            edit(south, 1)  # already edited by another: no change
+            edit(south, 1)  # another user already edits the record, so nothing changes
             edit(south, 1, take_over=True)
             for live in (north, south, looks_on):
                 assert live.receive_until("record.editors")["records"][0]["session"] == own
-            edit(north, 1, editing=False)  # ends their own edit
-        # After a disconnection the rest of their edits end.
+            edit(north, 1, editing=False)  # ends this connection's edit
+        # a disconnection ends the other edits of that connection
         for live in (south, looks_on):
             assert live.receive_until("record.editors")["records"] == [{"table": table, "key": 2}]
         for message, refusal in (
@@ -304,7 +305,7 @@ def test_delete_painted(server):
     assert server.get(T + "/records/2").status == 404
     reused = server.post(T + "/records", {"key": 2, "values": {"code": "x"}})
     assert reused.status == 409 and reused.json()["title"] == "Key already used"
-    # the texels belong to the layer: undo restores them, and the record can be restored, too
+    # the texels belong to the layer; undo restores them, and the record can also be restored
     server.ok("POST", NORTH + "/undo")
     assert [each["has_record"] for each in server.ok("GET", T + "/areas").json()["areas"]] == [
         True,
@@ -328,7 +329,7 @@ def test_delete_painted(server):
     server.ok("POST", T + "/undo")
     server.ok("POST", SOUTH + "/undo")
     assert area(server, 1, SOUTH) > 0
-    # An undo that would delete a painted record is refused.
+    # an undo that would delete a painted record is refused
     server.ok("POST", T + "/records", {"key": 400, "values": {"code": "SU 400"}})
     server.ok(
         "POST", SOUTH + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 400}
@@ -340,8 +341,8 @@ def test_delete_painted(server):
 
 
 def test_delete_under_a_stroke(server, cameras):
-    """A stroke that began with a record does not paint it after its deletion, and continues after
-    its restore."""
+    """A stroke that began with a record does not paint it after its deletion. The stroke continues
+    after the record is restored."""
     camera = cameras["north"]
     server.ok("POST", T + "/records", {"key": 500, "values": {"code": "SU 500"}})
     with LiveClient(server, "north") as live:
@@ -412,7 +413,7 @@ def test_bulk(server):
         "utf-8-sig"
     )
     assert with_comma.splitlines()[0].endswith(";area_m2") and ";0,75;" in with_comma, with_comma
-    # The export can be imported again, and the answer reports no change.
+    # the export can be imported again, and the response reports no change
     unchanged = server.ok("POST", T + "/records", text, headers=CSV).json()
     assert (unchanged["unchanged"], unchanged["sequence"]) == (3, 0), unchanged
     assert (
@@ -469,7 +470,7 @@ def test_bulk(server):
 
 
 def test_a_map_brings_records(server):
-    """Names of a map that the legend lacks become records with new keys."""
+    """Names in a map that the legend lacks become records with new keys."""
     server.ok("POST", "/tables/notes/records", {"values": {"name": "by hand"}})
     features = [
         {
@@ -546,12 +547,12 @@ def test_change_columns(server):
 
 
 def test_change_at_once(server):
-    """Three people change the names, columns and records of one table."""
+    """Three users change the names, columns and records of one table at the same time."""
     server.ok("POST", "/projects/default/tables", {"name": "Busy"})
 
     def rename(n):
         answer = server.request("PATCH", "/tables/busy", {"name": f"Busy {n}"})
-        while answer.status == 412:  # another column was inserted
+        while answer.status == 412:  # another column was inserted in the meantime
             answer = server.request("PATCH", "/tables/busy", {"name": f"Busy {n}"})
         assert answer.status == 200, answer
 
@@ -581,7 +582,7 @@ def test_circles(server):
 
 
 def test_widen(server, cameras, story):
-    """A layer without free keys is widened: its texels, history and undo stay."""
+    """A layer without free keys gets a wider type. Its texels, history and undo remain."""
     camera = cameras["north"]
     path = "/models/north/layers/few"
     server.ok(

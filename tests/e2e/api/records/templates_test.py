@@ -1,10 +1,11 @@
-"""The installed templates: complete in three languages, with terms that can be told apart by code
-and by color or pattern, and with columns for lines and points wherever people draw.
+"""The installed templates are complete in three languages. Their terms differ by code, and by color
+or pattern. Tables in which users draw have columns for lines and points.
 """
 import pytest
 
 LANGUAGES = ("de", "es")
-# CIE76 in Lab. Two colors of 12 are clearly different side by side; 2 is the least that people see.
+# CIE76 in Lab. Two colors at a distance of 12 are clearly different side by side. People cannot see
+# a distance below 2.
 LEAST_DIFFERENCE = 12
 
 
@@ -111,7 +112,7 @@ def test_every_layer_of_a_template_can_take_lines_and_points(templates):
 
 
 def test_records_are_called_by_their_term_or_code(templates):
-    """The name of a record is a unique or required text, else the term of the first column."""
+    """The name of a record is a unique or required text, or else the term in the first column."""
     for template in templates:
         for table in template["tables"]:
             if table.get("terms"):

@@ -1,5 +1,5 @@
-"""Lists of terms over HTTP: import and export as CSV and SKOS, search in the tree, painting in
-their own colors; refusals of hostile files; and templates, which make tables and layers together.
+"""Lists of terms over HTTP: import and export as CSV and SKOS, search in the tree, painting in the
+terms' colors, and refusals of hostile files. Also templates, which make tables and layers together.
 """
 import pytest
 from support.cameras import camera_from
@@ -91,7 +91,8 @@ def test_import_csv(server):
 
 
 def test_import_again(server):
-    """A second import changes terms by code, keeps keys, adds a language; it is one undo step."""
+    """A second import changes terms by code, keeps their keys and adds a language. It is one undo
+    step."""
     text = (
         "code,label,label-de,parent\nsalt,Salt crystals,Salze,deposit\npitted,Pitted,Narbig,loss\n"
     )
@@ -128,7 +129,7 @@ def test_import_again(server):
         dry = server.ok("POST", LIST + "/terms?dry_run=true", text.encode(), headers=CSV).json()
         assert dry["problems"] == problems and dry["dry_run"]
     assert len(tree(server)) == 6
-    # A cycle made by hand is listed and reported, and does not hide its terms.
+    # the server lists and reports a cycle that was made by hand, and does not hide its terms
     server.ok("PATCH", LIST + "/records/1", {"values": {"parent": 2}})
     assert server.ok("GET", LIST + "/columns/parent/cycles").json()["cycles"] == [[1, 2]]
     assert len(tree(server)) == 6
@@ -158,8 +159,8 @@ def test_skos(server):
       <skos:Concept rdf:about="https://t.example/a"><skos:prefLabel xml:lang="en">A</skos:prefLabel></skos:Concept></rdf:RDF>"""
     made = server.ok("POST", PROJECT + "/terms?name=Letters", xml.encode(), headers=XML).json()
     letters = f"/tables/{made['table']['slug']}"
-    # By URI: the code changes, the key stays. Second preferred labels of one language and second
-    # broader terms are counted.
+    # Matches terms by URI: the code changes and the key remains. A second preferred label in a
+    # language and a second broader term are counted.
     more = (
         PREFIXES
         + """t:a a skos:Concept ; skos:notation "alpha" ; skos:prefLabel "A"@en, "Ah"@en .
@@ -260,8 +261,8 @@ def test_hostile(server):
 
 
 def test_colours(server, camera):
-    """A layer of terms has the terms' colors while it has no own palette, and follows their
-    changes."""
+    """A layer of terms has the terms' colors and follows their changes, as long as it has no
+    palette of its own."""
     layer = server.ok(
         "POST",
         "/models/wall/layers",
@@ -298,7 +299,7 @@ def test_colours(server, camera):
     assert (
         now.json()["palette"]["points"][0]["color"] == "#102030ff" and now.headers["ETag"] != etag
     ), now
-    # Renaming the layer does not change this; a separate palette does.
+    # renaming the layer does not change this, but a separate palette does
     server.ok("PATCH", "/models/wall/layers/stone", {"name": "Stone now"})
     server.ok("PATCH", LIST + "/records/1", {"values": {"color": "#405060"}})
     assert (
@@ -367,7 +368,7 @@ def test_templates(server):
         "Desplacado",
         "Descamación",
     ] and terms[2]["labels"]["en"] == "Flaking", terms
-    # A list has columns to draw in, after those of every list.
+    # the list has columns for drawing after the columns of every list
     kinds = [
         (each["name"], each["kind"])
         for each in server.ok("GET", "/tables/stone-condition-terms/columns").json()["columns"]
@@ -393,7 +394,7 @@ def test_templates(server):
     ]:
         answer = server.post(f"{PROJECT}/templates/{path}", body)
         assert answer.status == status, f"{what}: {answer}"
-    # The layer's name is in use, the names of the tables are not: nothing is created.
+    # the layer's name is in use and the names of the tables are free, so nothing is created
     server.ok("POST", "/models/wall/layers", {"name": "treatments"})
     refused = server.post(PROJECT + "/templates/treatment", {"model": "wall"})
     assert refused.status == 409 and "Rename or delete" in refused.json()["detail"], refused

@@ -1,5 +1,6 @@
 // Pictures and documents of records on the page: added in the form, visible in the table and on the
-// card of the surface, removed, undone; and a folder of photos whose names match records.
+// card of the surface, removed, and restored by undo. Also a folder of photos whose names match
+// records.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -19,7 +20,7 @@ const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
-/** Makes a picture of one color, so that pictures differ. */
+/** Makes an image of one color, so images differ. */
 function photo(name, red) {
   const path = join(folder, name);
   const data = Buffer.alloc(64 * 48 * 4);
@@ -40,7 +41,10 @@ const shown = (images) =>
     "thumbnails to be drawn",
   );
 let mouse = [0, 0];
-/** In shares of the stage; the pointer passes over other content on its way. */
+/**
+ * Rests the mouse at a point in shares of the stage. The pointer passes over other content on its
+ * way.
+ */
 async function rest_at(x, y) {
   const stage = await browser.stage_box();
   mouse = [stage.x + x * stage.width, stage.y + y * stage.height];
@@ -232,7 +236,7 @@ test("until the mouse rests on another, something is pressed or the view moves",
   await page.mouse.down();
   assert.equal(await glance.count(), 0);
   await page.mouse.up();
-  await card.getByText("SU 2").first().waitFor(); // the tap shows the whole card
+  await card.getByText("SU 2").first().waitFor(); // the tap opens the whole card
   await button(words.tables.card_close).click();
   await rest_at(0.37, 0.57);
   await glance.getByText("SU 1", { exact: true }).waitFor();
@@ -247,7 +251,7 @@ test("until the mouse rests on another, something is pressed or the view moves",
   for (let steps = 0; steps < 5; ++steps) await page.mouse.wheel(0, -240);
   for (const at of [
     [0.03, 0.04],
-    [0.88, 0.04], // left of the cube
+    [0.88, 0.04], // left of the view cube
     [0.03, 0.96],
     [0.97, 0.96],
   ]) {

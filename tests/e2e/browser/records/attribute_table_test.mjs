@@ -1,6 +1,6 @@
-// The table of a layer's records: ten thousand rows, sorted, edited, refused, changed by two people
-// at once, undone; new and deleted records, columns, and CSV in both directions. The test compares
-// the page with the server's data.
+// The table of a layer's records with ten thousand rows: sorted, edited, refused, changed by two
+// users at the same time, and undone. Also new and deleted records, columns, and CSV import and
+// export. The test compares the page with the server's data.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../../support/js/browser.mjs";
@@ -20,7 +20,7 @@ const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
-/** The cell of a column in the row of a record that is in sight. */
+/** The columns of the table, in their order. */
 const columns = [
   "Key",
   "Code",
@@ -112,7 +112,7 @@ test.beforeAll(async () => {
     table: "units",
     resolution: 2048,
   });
-  // The names of records to choose from arrive only after some typing.
+  // the names of the possible records arrive only after the user has typed some characters
 
   const typed = new Promise((resolve) => (let_names_go = resolve));
   are_names = (url) =>
@@ -161,7 +161,7 @@ test("a click on a column's name sorts by it, again turns the order round", asyn
 test("cells are written into by kind", async () => {
   await write(1, "Depth", "2.5");
   await stored(1, "depth", 2.5);
-  await write(1, "Note", "Charcoal", "Tab"); // to the next cell, which is a relation
+  await write(1, "Note", "Charcoal", "Tab"); // moves to the next cell, which is a relation
   await page.keyboard.type("SU 9999");
   let_names_go();
   await panel.getByRole("option", { name: /SU 9999/ }).waitFor();
@@ -182,7 +182,7 @@ test("cells are written into by kind", async () => {
   await write(1, "Sealed", "y");
   await stored(1, "sealed", true);
   await cell(2, "Note").click();
-  await page.keyboard.type("b"); // starts to edit the cell; does not select the brush
+  await page.keyboard.type("b"); // the key starts to edit the cell and does not select the brush
   await page.keyboard.type("one");
   await page.keyboard.press("Enter");
   await stored(2, "note", "bone");
@@ -296,7 +296,7 @@ test("a new record by its form, with what is wrong at the field", async () => {
   await panel.getByText(words.tables.records(10_001)).waitFor();
   await cell(kMany + 1, "Code")
     .getByText("Pit")
-    .waitFor(); // made visible, and chosen
+    .waitFor(); // the new row is visible and selected
 });
 
 test("the chosen record is painted with, and its area is seen in the table", async () => {

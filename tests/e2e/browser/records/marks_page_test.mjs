@@ -1,6 +1,6 @@
-// Lines and points on the surface: the page creates columns for them, a crack is drawn by dragging
-// and by clicks, a sample by a click; the table shows their lengths, the picture shows them, undo
-// removes them, and the form of a record can remove one and draw more.
+// Lines and points on the surface. The page creates columns for them. A crack is drawn by dragging
+// and by clicks, and a sample by a click. The table shows their lengths, the 3D view shows the
+// lines and points, and undo removes them. The form of a record can remove a line and draw more.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";
@@ -31,7 +31,7 @@ const hides = (color, what) =>
 const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
 const length_of = ({ coordinates }) =>
   coordinates.slice(1).reduce((sum, place, at) => sum + distance(place, coordinates[at]), 0);
-/** Returns the length of a page's pixel on the object, according to the scale bar. */
+/** Returns the length of one of the page's pixels on the object, according to the scale bar. */
 async function metres_per_pixel() {
   const { width } = await page.locator("strata-stage .scale i").boundingBox();
   return metres_of(await page.locator("strata-stage .scale").innerText()) / width;
@@ -275,7 +275,7 @@ test("a drag along the silhouette is one line on the surface that was begun", as
   await page.keyboard.press("Escape");
   frame = await browser.stage_box();
   const scale = camera.width / frame.width;
-  /** Returns the pot's edge in a row of the picture, in pixels of the page. */
+  /** Returns the pot's edge in a row of the 3D view, in pixels of the page. */
   const edge_at = async (y) => {
     const path = [
       [1, y * scale],
@@ -316,10 +316,10 @@ test("a drag along the silhouette is one line on the surface that was begun", as
     along_m > 0.5 * way_m && along_m < 2.5 * way_m,
     `${along_m} m where ${way_m} m were drawn`,
   );
-  // Between places the line follows the surface, which is seen at an angle: a step may be long, but
-  // passes neither through the pot nor to surfaces behind it.
+  // Between the clicked points the line follows the surface, which the camera sees at an angle. A
+  // step may be long, but passes neither through the pot nor to surfaces behind it.
   const places = along[0].coordinates;
-  const radius = ([x, y]) => Math.hypot(x, y) * metres_per; // the pot's axis is z
+  const radius = ([x, y]) => Math.hypot(x, y) * metres_per; // z is the axis of the pot
   const steps = places.slice(1).map((place, at) => [places[at], place]);
   const longest = Math.max(...steps.map(([from, to]) => distance(from, to))) * metres_per;
   assert.ok(longest < 80 * (await metres_per_pixel()), `a step of ${longest} m`);

@@ -1,5 +1,6 @@
-// Records on the model: colored by a column's values, with patterns, for this person or for all;
-// chosen rows and rows of a filter are highlighted, or shown alone, and the camera moves to them.
+// Records on the model: colored by a column's values, with patterns, for this user or for all
+// users. Selected rows and rows of a filter are highlighted, or shown alone, and the camera moves
+// to them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";
@@ -10,7 +11,7 @@ import { texts_of } from "../../support/js/texts.mjs";
 const words = texts_of("en");
 
 const kSherds = 14;
-const kEnough = 1500; // pixels of a visible sherd
+const kEnough = 1500; // minimum number of pixels of a visible sherd
 const [kLoose, kFirm] = ["#ff00ff", "#00e0ff"];
 
 const base = "/models/demo-pot";

@@ -1,4 +1,4 @@
-// Two people at the same records: each sees the record that the other has open, takes it over after
+// Two users at the same records: each sees the record that the other has open, takes it over after
 // confirming, and loses no text.
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -9,7 +9,7 @@ import { texts_of } from "../../support/js/texts.mjs";
 
 const words = texts_of("en");
 
-const kExpected = ["status of 412"]; // the browser's message about a late change
+const kExpected = ["status of 412"]; // the browser's message about a change that came too late
 
 const base = "/models/demo-pot";
 const T = "/tables/units";
@@ -45,7 +45,7 @@ async function open_form(who, key) {
   await button(who, words.tables.edit).click();
   await note(who).waitFor();
 }
-/** The button of the question, not the one that opened it. */
+/** Clicks the button of the question, not the button that opened it. */
 const agree = ({ page }, name) =>
   page.locator("strata-question").getByRole("button", { name, exact: true }).click();
 async function type_into(who, key, column, text) {

@@ -1,5 +1,6 @@
 // The table of records together with the other tools: the page's keys while the table has the
-// keyboard focus, a filter for each column, and files; areas and cross-tables as copies and files.
+// keyboard focus, a filter for each column, and files. Also areas and cross-tables as copies and
+// files.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -47,7 +48,7 @@ const saved = async (click) => {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 };
-/** The page's current tool. */
+/** Returns the page's current tool. */
 const tool = () =>
   page.locator("strata-tool-rail button[aria-pressed=true]").getAttribute("aria-label");
 
@@ -189,7 +190,7 @@ test("values of a column are chosen with how many records have them", async () =
   assert.deepEqual(await findings(page), []);
   await shot("column-filter-values");
   await sheet.getByRole("checkbox", { name: /^clay/ }).check();
-  await shown([2, 3]); // at once
+  await shown([2, 3]); // immediately
   assert.ok(await sheet.getByRole("dialog").isVisible());
   await apply();
   await shown([2, 3]);
@@ -267,7 +268,7 @@ test("by keys alone", async () => {
   await page.keyboard.press("Enter");
   await sheet.getByRole("dialog").waitFor();
   const value = sheet.getByRole("checkbox", { name: /^SU 1/ });
-  await value.waitFor(); // after the values are counted
+  await value.waitFor(); // waits until the values are counted
   await value.focus();
   await page.keyboard.press("Space");
   await page.keyboard.press("Enter");

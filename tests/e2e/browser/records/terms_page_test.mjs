@@ -1,6 +1,6 @@
-// A list of terms on the page: created by a template, chosen from the tree by typing and by keys,
-// painted in its color, with the legend's; lists from SKOS, previewed before the import, imported
-// again, saved; and refusals.
+// A list of terms on the page: created by a template, selected from the tree by typing and by keys,
+// and painted in its color, which the legend shows. Lists from SKOS are previewed before the
+// import, imported again, and saved. The file also tests refusals.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -117,7 +117,7 @@ test("a crack is drawn and a point is set at once, and the term has them", async
 });
 
 test("the brush shows the list as a tree", async () => {
-  // A long list is folded, except above the chosen term.
+  // a long list is folded, except above the selected term
   assert.equal(await term("Crack").getAttribute("aria-selected"), "true");
   await term("Detachment").locator(".fold").click();
   await term("Scaling").locator(".fold").click();
@@ -178,7 +178,7 @@ test("the arrow keys go through the tree, fold and unfold it", async () => {
           .getElementById(input.getAttribute("aria-activedescendant") ?? "")
           ?.innerText.trim() ?? "",
     );
-  await search.press("ArrowLeft"); // from the chosen term to its parent
+  await search.press("ArrowLeft"); // moves from the selected term to its parent
   assert.equal(await active(), "Scaling");
   await search.press("ArrowLeft");
   await wait_for(

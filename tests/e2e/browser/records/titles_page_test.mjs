@@ -1,4 +1,4 @@
-// A table chooses its title column, which may be one of terms; a record's form shows terms as the
+// A table selects its title column, which may contain terms. A record's form shows terms as the
 // brush does, in a list that opens on request.
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -75,7 +75,7 @@ test("records are called by the column that their table chooses, and terms open 
   const grid = page.locator("strata-table-panel");
   await grid.getByText("Zinc").first().waitFor();
 
-  // In the order of the tree, not of the codes or keys.
+  // the order is that of the tree, not of the codes or keys
   await grid
     .getByRole("columnheader", { name: /^Damage/ })
     .getByRole("button", { name: /^Damage/ })
@@ -89,7 +89,7 @@ test("records are called by the column that their table chooses, and terms open 
     "the rows in the order of the tree",
   );
 
-  // The column of terms becomes the title.
+  // the column of terms becomes the title column
   await grid
     .getByRole("columnheader", { name: /^Damage/ })
     .getByRole("button", { name: /column/i })
@@ -107,7 +107,7 @@ test("records are called by the column that their table chooses, and terms open 
     .waitFor();
   await shot("chosen");
 
-  // The form: no list opens automatically, and the list is the tree.
+  // in the form, no list opens automatically, and the list is the tree
   await grid
     .getByRole("button", { name: words.tables.edit })
     .or(grid.locator(".chosen").getByRole("button").nth(1))

@@ -1,4 +1,4 @@
-// Checks of a page for people with a keyboard, a screen reader, strong light or a small window.
+// Checks of a page for users with a keyboard, a screen reader, strong light or a small window.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
@@ -9,7 +9,10 @@ const kAxe = readFileSync(
 );
 load_module("axe-core");
 
-/** Returns the serious and critical findings of axe-core, one per line. `rules`: only these. */
+/**
+ * Returns the serious and critical findings of axe-core, one per line. `rules` limits them to these
+ * rules.
+ */
 export async function findings(page, rules = null) {
   if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
   const violations = await page.evaluate(
@@ -36,8 +39,8 @@ export async function findings(page, rules = null) {
 }
 
 /**
- * Returns all findings of these rules, of any severity, also of rules that axe-core does not apply
- * by default, one per line.
+ * Returns all findings of these rules, of any severity, one per line. Includes rules that axe-core
+ * does not apply by default.
  */
 export async function violations(page, rules) {
   if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
@@ -56,7 +59,7 @@ export async function violations(page, rules) {
   );
 }
 
-/** Also searches in shadow roots. */
+/** Functions that also search in shadow roots. */
 const kDeep = `
   const deep_all = (root = document) => [...root.querySelectorAll("*")].flatMap((each) => [each, ...(each.shadowRoot ? deep_all(each.shadowRoot) : [])]);
   const deep_active = () => { let at = document.activeElement; while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement; return at; };
@@ -67,7 +70,7 @@ const evaluate = (page, body) => page.evaluate(`(() => { ${kDeep} ${body} })()`)
 
 /**
  * Returns the elements that are wider than their container: the document, whole dialogs and menus,
- * words outside their control, and buttons of a dialog or of the tour in more than one row.
+ * texts outside their control, and buttons of a dialog or of the introduction in more than one row.
  */
 export const overflows = (page) =>
   evaluate(
@@ -101,7 +104,8 @@ export const overflows = (page) =>
        }
        const inside = each.closest("dialog[open]");
        if (inside && each.matches(".content, footer") && each.scrollWidth > each.clientWidth + 1) found.push(told(each) + ": " + each.scrollWidth + " in " + each.clientWidth);
-       const reach = Math.max(0, -parseFloat(getComputedStyle(each, "::before").right) || 0); // what is pressed may be larger than what is seen
+       // the target of a press may be larger than its visible part
+       const reach = Math.max(0, -parseFloat(getComputedStyle(each, "::before").right) || 0);
        if (each.matches("button") && !each.querySelector("slot") && each.scrollWidth > each.clientWidth + 1 + reach && !each.querySelector(".ellipsis") && getComputedStyle(each).overflowX === "visible")
          found.push(told(each) + " has " + each.scrollWidth + " in " + each.clientWidth);
      }
@@ -112,7 +116,7 @@ export const active = (page) =>
   evaluate(page, "const at = deep_active(); return at === document.body ? '' : told(at);");
 
 /**
- * Visits all stops of the Tab key; returns the controls that it does not reach, and those without
+ * Visits all stops of the Tab key. Returns the controls that it does not reach, and those without
  * visible focus. Elements that disappear during the walk, such as notices, are not required.
  */
 export async function walk(page) {
@@ -143,7 +147,7 @@ export async function walk(page) {
        if (at && at !== document.body) {
          if (window.reached.has(at) && window.wanted.every((each) => window.reached.has(each) || !each.isConnected)) return true;
          window.reached.add(at);
-         // On itself, on the field around it, or on its cell that has the keyboard.
+         // The focus may be visible on the element, on the field around it, or on its active cell.
          const shown = [at, at.parentElement, at.parentElement?.parentElement, at.querySelector(".cell.active")].filter(Boolean).map((each) => getComputedStyle(each));
          const ring = ({ outlineStyle, outlineWidth, boxShadow }) => (outlineStyle !== "none" && parseFloat(outlineWidth) >= 2) || boxShadow.includes("2px inset");
          if (!shown.some(ring)) window.unseen.push(told(at));

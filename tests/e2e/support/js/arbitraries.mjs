@@ -1,12 +1,12 @@
-// Values for fast-check from JSON Schemas, valid and invalid ones. Valid values follow members,
-// types and limits; the caller gives values that a schema cannot describe (existing layers, the
-// syntax of a condition): `words.by_name` for members and parameters, `words.by_schema` for the
-// contract's components.
+// Values for fast-check from JSON Schemas, valid and invalid ones. Valid values respect members,
+// types and limits. The caller provides values that a schema cannot describe, such as existing
+// layers or the syntax of a condition: `words.by_name` for members and parameters,
+// `words.by_schema` for the contract's components.
 import { load_module } from "./modules.mjs";
 
 export const fc = load_module("fast-check");
 
-// in addition to the minimum of a schema: other tests cover the limits of long lists
+// added to the minimum of a schema; other tests cover the limits of long lists
 const kManyItems = 3;
 const kStrangeTexts = [
   "",
@@ -126,8 +126,8 @@ function number_of({ type, minimum = -1e6, exclusiveMinimum, maximum = 1e6 }) {
 }
 
 /**
- * Objects with some of the optional members, rarely with all: most of them exclude one another in
- * ways that a schema does not describe.
+ * Makes objects with some of the optional members, and rarely with all. Most of them exclude one
+ * another in ways that a schema does not describe.
  */
 function object_of(contract, schema, words) {
   const members = Object.entries(schema.properties ?? {});
@@ -167,7 +167,7 @@ function object_of(contract, schema, words) {
 }
 
 /**
- * `oneOf` and `anyOf` next to `properties` list the allowed combinations of members: each choice
+ * `oneOf` and `anyOf` next to `properties` list the allowed combinations of members. Each choice
  * becomes a separate schema.
  */
 function choices_of(contract, schema) {
@@ -219,7 +219,7 @@ export function arbitrary_of(contract, schema, words) {
   }
 }
 
-/** Returns every place in a JSON value, as the path to it. */
+/** Returns the path to every value in a JSON value. */
 function places_of(value, way = []) {
   if (value === null || typeof value !== "object") return [way];
   return [way, ...Object.entries(value).flatMap(([name, item]) => places_of(item, [...way, name]))];
@@ -234,7 +234,7 @@ function with_change(value, [name, ...rest], change) {
   return copy;
 }
 
-/** The value with one error: another value, a missing member, or an additional one. */
+/** Makes values with one error: another value, a missing member, or an additional one. */
 export function damaged(arbitrary) {
   return fc
     .tuple(

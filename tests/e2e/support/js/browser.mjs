@@ -1,5 +1,5 @@
 // Real Chromium with the real page. Without Chromium or playwright-core the tests are skipped
-// loudly by hand and fail in CI.
+// visibly by hand, and fail in CI.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -28,10 +28,10 @@ function load_playwright() {
   return load_module("playwright-core");
 }
 
-/** Call it first, so that a missing program leaves no data behind. */
+/** Call this first. A missing program then leaves no data behind. */
 export const require_browser = () => void load_playwright();
 
-/** Console messages after a test stops the server, in any state of the connections. */
+/** Console messages after a test stops the server, for every state of the connections. */
 export const kOfLostServer = [
   "WebSocket connection",
   "ERR_CONNECTION_REFUSED",
@@ -41,22 +41,22 @@ export const kOfLostServer = [
   "ERR_CONNECTION_CLOSED",
 ];
 
-/** Redoc's message about two schemas of the contract at `/docs`; it leaves out a part of them. */
+/** Redoc's message about two schemas of the contract at `/docs`. Redoc omits a part of them. */
 export const kOfRedoc = ["oneOf and anyOf are not supported on the same level"];
 
-/** Runs in the page, before the page's own scripts. */
+/** Runs in the page before the page's own scripts. */
 function seen_tour() {
   try {
     localStorage.setItem("strata.tour_over", "true");
   } catch {
-    // A page without storage, such as about:blank.
+    // a page without storage, such as about:blank
   }
 }
 
 export class Browser {
   /**
-   * `tour`: the page offers the tour of the model's page, as on a first visit; otherwise this
-   * person has seen it.
+   * With `tour` the page offers the introduction to the model's page, as on a first visit.
+   * Otherwise this user has seen it.
    */
   static async open({ tour = false, ...options } = {}) {
     const { chromium } = load_playwright();
@@ -92,13 +92,13 @@ export class Browser {
     rmSync(this.folder, { recursive: true, force: true });
   }
 
-  /** `expected`: parts of console messages that the test's own faults cause. */
+  /** `expected` are parts of console messages that the test's own faults cause. */
   assert_no_complaints(expected = []) {
     const bad = this.complaints.filter((text) => !expected.some((part) => text.includes(part)));
     if (bad.length > 0) throw new Error(`the page complained:\n${bad.join("\n")}`);
   }
 
-  /** `secret`: the owner's token, or a person of `server.add_person`. */
+  /** `secret` is the owner's token, or a user of `server.add_person`. */
   async sign_in(server, secret) {
     const data =
       typeof secret === "string"
@@ -112,7 +112,7 @@ export class Browser {
     await this.page.getByRole("heading", { name: /^(Models|Projects)$/ }).waitFor();
   }
 
-  /** Opens the model page and waits for its first picture. */
+  /** Opens the model page and waits for its first frame. */
   async drawn() {
     await wait_for(() => this.frames().then((count) => count > 0), "the first picture");
   }
@@ -135,7 +135,9 @@ export class Browser {
     return decode_png(await this.page.screenshot(clip ? { clip } : {}));
   }
 
-  /** Waits until the page has no open request, the results are drawn, and the stage is still. */
+  /**
+   * Waits until the page has no open request, the results are drawn, and the stage does not change.
+   */
   async idle() {
     await this.page.waitForFunction(async () => {
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
@@ -148,7 +150,7 @@ export class Browser {
     );
   }
 
-  /** Returns a screenshot of the stable page: two in a row are the same. */
+  /** Returns a screenshot of the stable page, when two consecutive screenshots are the same. */
   async settled(take = () => this.page.screenshot()) {
     await this.idle();
     let last = null;
@@ -177,7 +179,7 @@ export class Browser {
     await this.page.mouse.up();
   }
 
-  /** Closes the notices, which cover the stage; some close automatically. */
+  /** Closes the notices, which cover the stage. Some of them close automatically. */
   async close_notices() {
     const close = this.page.locator("strata-notices").getByRole("button", { name: "Close" });
     await wait_for(async () => {

@@ -1,6 +1,6 @@
-// Calls of the contract's operations by fast-check: most are valid, others have an error. A call
-// describes its content in words, so that a failing one is readable: {path: {model: "wall"}, query:
-// [["at", "3"]], headers, body: {json} | {text} | {hex} | {file} | null}.
+// Requests of the contract's operations, made by fast-check. Most are valid, and others have an
+// error. The object describes the request, so a failing request is readable: {path: {model:
+// "wall"}, query: [["at", "3"]], headers, body: {json} | {text} | {hex} | {file} | null}.
 import { arbitrary_of, damaged, fc, strange_number, strange_text } from "./arbitraries.mjs";
 import {
   content_of,
@@ -13,10 +13,12 @@ import {
   words,
 } from "./vocabulary.mjs";
 
-/** Once in `times` cases; otherwise null. */
+/** Returns a value once in `times` cases, and null otherwise. */
 const once_in = (times, arbitrary) =>
   fc.oneof({ weight: times - 1, arbitrary: fc.constant(null) }, { weight: 1, arbitrary });
-/** For addresses, whose heads have at most 8 KiB; longer ones reach no operation. */
+/**
+ * For addresses. The headers of a request have at most 8 KiB, so longer ones reach no operation.
+ */
 const strange_word = fc.oneof(
   strange_text.map((text) => text.slice(0, 300)),
   strange_number.map(String),
@@ -45,7 +47,7 @@ function body_of(contract, operation, { words: own = words, content = {} }) {
     : fc.oneof(fc.constant({ type: null, body: null }), ...kinds);
 }
 
-/** Operations with dependent parameters have some matching combinations. */
+/** Operations with dependent parameters have some combinations that belong together. */
 function query_of(operation, own) {
   const parameters = operation.parameters.filter((each) => each.in === "query");
   const each = parameters.map(({ name, schema, required }) => {
@@ -72,7 +74,7 @@ function headers_of(operation) {
     .map(([headers, accept]) => ({ ...headers, Accept: accept }));
 }
 
-/** One error of the whole call. */
+/** An error that affects the whole request. */
 const mishap = fc.oneof(
   fc.record({ what: one("a parameter replaced"), n: fc.nat(), text: strange_word }),
   fc.record({ what: one("a parameter dropped", "a parameter twice"), n: fc.nat() }),

@@ -1,5 +1,5 @@
-// Cases in a real browser, which @playwright/test runs: the cases of a file are one sequence on one
-// server, in their order; the first failure ends it.
+// Cases in a real browser, which @playwright/test runs. The cases of a file are one sequence on one
+// server, in their order. The first failure ends the sequence.
 import { Browser, require_browser } from "./browser.mjs";
 import { load_module } from "./modules.mjs";
 import { StrataServer } from "./strata-server.mjs";
@@ -8,7 +8,7 @@ require_browser();
 const playwright = load_module("@playwright/test");
 
 export const test = playwright.test.extend({
-  demo: [true, { scope: "worker", option: true }], // the server has the demo project
+  demo: [true, { scope: "worker", option: true }], // whether the server has the demo project
   server: [
     async ({ demo }, use) => {
       const server = new StrataServer({ demo });
@@ -21,7 +21,7 @@ export const test = playwright.test.extend({
     },
     { scope: "worker" },
   ],
-  /** A person's page: a `Browser`. */
+  /** The page of a user, as a `Browser`. */
   desk: [
     async ({ server: _server }, use) => {
       const desk = await Browser.open();
@@ -33,7 +33,7 @@ export const test = playwright.test.extend({
   page: ({ desk }, use) => use(desk.page),
 });
 
-/** After a failed case: attaches the server's log, in addition to the trace and the picture. */
+/** Attaches the server's log after a failed case, in addition to the trace and the screenshot. */
 export async function attach_log(info, server) {
   if (server && info.status !== info.expectedStatus)
     await info.attach("log of the server", {
@@ -42,7 +42,7 @@ export async function attach_log(info, server) {
     });
 }
 
-/** The last case of a file. */
+/** Adds the last case of a file. */
 export function ends_well({ complaints = [], words = [] } = {}) {
   test("the page has nothing to complain of, and the server ends with a clean log", async ({
     desk,

@@ -1,5 +1,5 @@
-// The server's own contract (openapi.json), for making calls and checking answers. For the tests in
-// Python, contract.py checks answers with less of JSON Schema.
+// The server's own contract (openapi.json), for making requests and checking responses. In the
+// Python tests, contract.py checks responses with a smaller part of JSON Schema.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
@@ -16,7 +16,7 @@ const media_type_of = (headers) =>
   (headers["content-type"] ?? "").split(";")[0].trim().toLowerCase();
 
 /**
- * Parses a parameter's text by the type of its schema; text of another type stays text, so that the
+ * Parses a parameter's text by the type of its schema. A text of another type stays a text, so the
  * schema refuses it.
  */
 function read_parameter(schema, text) {
@@ -39,7 +39,7 @@ export class Contract {
     );
   }
 
-  /** Returns the target of a reference within the document; returns other nodes unchanged. */
+  /** Returns the target of a reference within the document. Returns other nodes unchanged. */
   resolve(node) {
     while (node.$ref)
       node = node.$ref
@@ -73,7 +73,7 @@ export class Contract {
     };
   }
 
-  /** Returns the faults of a value by a schema of the document. */
+  /** Returns the errors of a value against a schema of the document. */
   faults_of(schema, value) {
     if (!this.compiled.has(schema)) {
       const text = JSON.stringify(schema).replaceAll('"$ref":"#/', '"$ref":"contract#/');
@@ -88,7 +88,7 @@ export class Contract {
         );
   }
 
-  /** Returns the faults of an answer: {status, headers, body: Buffer}. */
+  /** Returns the errors of a response: {status, headers, body: Buffer}. */
   faults_of_answer(operation, { status, headers, body }) {
     if (status >= 500) return [`${status} is the server's own fault`];
     const described = operation.responses.get(status);
@@ -126,8 +126,8 @@ export class Contract {
   }
 
   /**
-   * Returns the contract's faults of a request's parameters and JSON: the server must not execute
-   * such a request. A parameter without a value may count as absent.
+   * Returns the errors in a request's parameters and JSON according to the contract. The server
+   * must not execute such a request. A parameter without a value may count as absent.
    */
   faults_of_request(operation, { query, headers, body }) {
     const faults = [];

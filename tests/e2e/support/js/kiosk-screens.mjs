@@ -1,12 +1,13 @@
-// Every screen of a kiosk, with a way to it: for the sheet of all screens (contact_sheet.mjs).
-// kiosk_test.mjs tests them.
+// Every screen of a kiosk, with a way to open it, for the sheet of all screens (contact_sheet.mjs).
+// kiosk_test.mjs tests the screens.
 import { wait_for } from "./strata-server.mjs";
 
-const kIdle_s = 30; // of the site's tour
+const kIdle_s = 30; // time without a touch before the site's tour asks
 
 /**
- * In this order, in the first language of the tour (make_kiosk_site), whose link is revoked at the
- * end. From the first screen on they control the page's clock.
+ * Returns the screens in this order and in the first language of the tour (make_kiosk_site). The
+ * tour's link is revoked at the end. The functions control the page's clock, starting with the
+ * first screen.
  */
 export function kiosk_screens_of({ page }, server, { path, kiosk }) {
   const button = (name) => page.getByRole("button", { name, exact: true });

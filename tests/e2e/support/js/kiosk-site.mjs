@@ -7,7 +7,7 @@ export const kModel = "/models/demo-pot";
 export const kTour = `${kModel}/tours/round-the-pot`;
 const kSherds = 14;
 
-/** A picture with stripes, like those of a painted sherd. */
+/** Returns a picture with stripes, like those of a painted sherd. */
 function picture(width, height) {
   const data = new Uint8Array(4 * width * height);
   for (let y = 0; y < height; ++y)

@@ -1,4 +1,4 @@
-// The demo pot with one layer to paint on.
+// The demo pot with one layer for painting.
 import { rgb } from "./browser.mjs";
 
 /**

@@ -7,7 +7,7 @@ export async function open_tab(page, w, title) {
   await page.getByRole("tab", { name: title }).click();
 }
 
-/** Opens the controls of light (`w.view.light`) or section next to the bar on the picture. */
+/** Opens the controls of light (`w.view.light`) or section next to the bar over the 3D view. */
 export async function open_on_picture(page, w, title) {
   const button = page
     .getByRole("toolbar", { name: w.picture_bar.title, exact: true })

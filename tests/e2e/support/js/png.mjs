@@ -1,7 +1,7 @@
-// PNG pictures as {width, height, data} with 4 bytes per pixel.
+// PNG images as {width, height, data} with 4 bytes per pixel.
 import { load_module } from "./modules.mjs";
 
-// loaded on first use, after browser.mjs has reported missing programs
+// loaded at the first use, after browser.mjs has reported missing programs
 const library = () => load_module("pngjs").PNG;
 
 export const decode_png = (file) => library().sync.read(file);

@@ -1,12 +1,12 @@
-// Every screen of the page, with a way to it, for checks of all screens (accessibility_test.mjs)
-// and for their pictures (contact_sheet.mjs).
+// Every screen of the page, with a way to open it, for checks of all screens
+// (accessibility_test.mjs) and for their screenshots (contact_sheet.mjs).
 import assert from "node:assert/strict";
 import { open_on_picture, open_tab } from "./panel.mjs";
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 import { texts_of } from "./texts.mjs";
 
-const english = texts_of("en"); // Bea's, for any language of the other page
+const english = texts_of("en"); // Bea's language, for any language of the other page
 
 const kGroup = "Students of the summer school in Northern Archaeology 2026";
 const kGoneLayer = "Condition before the cleaning";
@@ -23,8 +23,8 @@ const kPhoto = encode_png({
 const file_of = (name, mimeType, content) => ({ name, mimeType, buffer: Buffer.from(content) });
 
 /**
- * Makes a site with content of every kind on a server that has the demo; `bea` becomes the browser
- * of another person at its model.
+ * Makes a site with content of every kind on a server that has the demo. `bea` becomes the browser
+ * of another user at its model.
  */
 export async function make_site(server, bea) {
   const { models } = await server.json("GET", "/models");
@@ -129,8 +129,8 @@ export async function bea_at({ server, bea, model }) {
 
 /**
  * Returns all screens and dialogs, with the texts of a language, in this order and in the window of
- * a desk. Each begins where `start` left the page, and `end` leaves it; `keyboard`: the test visits
- * it with the Tab key.
+ * a desktop computer. `start` of each screen continues where `end` of the previous one left the
+ * page. `keyboard` means that the test visits the screen with the Tab key.
  */
 export function screens_of({ page }, w, { server, bea, ...site }) {
   const exact = (name) => ({ name, exact: true });
@@ -190,11 +190,10 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
   };
   /**
-   * Waits until the stage and its picture have the window's shape, so that a tap meets the visible
-   * content.
+   * Waits until the stage and its frame have the window's shape, so a tap hits the visible content.
    */
   const at_stage = async (x, y) => {
-    // until the page has the change
+    // waits until the page has the change
     await page.evaluate(
       () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
     );
@@ -808,7 +807,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await page
           .locator("strata-shape-picker input[type=file]")
           .setInputFiles(file_of("leaf.png", "image/png", kPhoto));
-        // once the picture is read
+        // waits until the picture is loaded
         await page.locator("strata-shape-dialog").getByRole("radio", { checked: true }).waitFor();
       },
       end: close_dialog,
@@ -901,7 +900,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     {
       name: "menu of the people",
       start: async () => {
-        await bea_at({ server, bea, model: site.model }); // without the table
+        await bea_at({ server, bea, model: site.model }); // the page of the model without the table
         await people.locator(".faces").click();
         await people.getByRole("menuitem", { name: w.together.follow("Bea Ost") }).waitFor();
       },
@@ -913,7 +912,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await choose_of_people(w.together.follow("Bea Ost"));
         await bar.getByText(w.together.following("Bea Ost")).waitFor();
         const [x, y] = await stage_centre();
-        await bea.page.mouse.move(x + 20, y + 30); // she points
+        await bea.page.mouse.move(x + 20, y + 30); // Bea's pointer becomes visible
         await page.locator("strata-people-overlay .person").waitFor({ state: "attached" });
       },
       end: async () => {
@@ -962,7 +961,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       start: async () => {
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
         await site.fill_as_bea("finds");
-        // the page gets it when the edit is durable
+        // the page receives this change after the edit is durable
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
         await open_tab(page, w, w.activity.title);
         await page

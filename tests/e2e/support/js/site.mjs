@@ -1,15 +1,15 @@
 // A small site with content of every kind: a nearly flat wall and another version of it, layers of
-// each kind, tables, terms, files, a surface image, a brush shape. `spare` makes one more of a
-// kind, for calls that delete something.
+// each kind, tables, terms, files, a surface image, a brush shape. `spare` makes another object of
+// a kind, for requests that delete an object.
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 
-const kSide = 12; // cells of the wall, which is 100 mm wide
-// share of the texture that the wall covers: 60 000 texels are quick to read, and a raster is
-// complete
+const kSide = 12; // number of cells per side of the wall, which is 100 mm wide
+// Share of the texture that the wall covers. 60 000 texels are read quickly, and a raster is
+// complete.
 const kTextureShare = 0.12;
 
-/** An ASCII PLY with texture coordinates, and a number at each vertex. */
+/** Returns an ASCII PLY with texture coordinates, and a number at each vertex. */
 function wall() {
   const vertices = [];
   const faces = [];
@@ -88,7 +88,7 @@ export const kLayers = ["cracks", "moisture", "units", "risk"];
 export const kColumnSlugs = kColumns.map(({ name }) => name.toLowerCase());
 
 export class Site {
-  /** Content of calls that is not JSON, by name. */
+  /** The content of requests that is not JSON, by name. */
   files = {
     "wall.ply": Buffer.from(wall()),
     "picture.png": picture(24, 16),
@@ -143,7 +143,7 @@ export class Site {
     await server.json("POST", "/projects", { name: "Site" });
     await server.json("POST", "/users", { user: "guest" });
     await server.json("POST", "/groups", { name: "Students", members: ["guest"] });
-    // For people that no call changes: a disabled person, for example, has no invitation.
+    // For users that no request changes. A disabled user, for example, has no invitation.
     this.invitations = [];
     for (const user of ["newcomer", "other-newcomer"])
       this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
@@ -249,7 +249,6 @@ export class Site {
       );
   }
 
-  /** DEL */
   #view(name) {
     const camera = {
       view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
@@ -324,7 +323,7 @@ export class Site {
     }
   }
 
-  /** Makes another thing of a kind, and returns its name in paths. */
+  /** Makes another object of a kind, and returns its name in paths. */
   async spare(kind) {
     const { server } = this;
     const name = `Spare ${++this.#made}`;

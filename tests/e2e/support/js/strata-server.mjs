@@ -1,4 +1,4 @@
-// A separate Strata server for a test in JavaScript; strata_server.py does the same.
+// A separate Strata server for a test in JavaScript. strata_server.py is the equivalent in Python.
 import { execFileSync, spawn } from "node:child_process";
 import { randomBytes } from "node:crypto";
 import {
@@ -15,11 +15,12 @@ import { createInterface } from "node:readline";
 
 export const kLong_ms = 120_000;
 
-const kOften = ["--recheck-every", "1"]; // so that tests do not wait for the default
+const kOften = ["--recheck-every", "1"]; // tests do not wait for the default interval
 const kInMemory = "/dev/shm";
-const kRoom_bytes = 8 * 2 ** 30; // for several tests at once, of which one writes gigabytes
+// enough for several concurrent tests, one of which writes gigabytes
+const kRoom_bytes = 8 * 2 ** 30;
 
-/** In memory if there is room, because a disk is slow for a database. */
+/** Returns a folder in memory if there is space, because a disk is slow for a database. */
 function place_of_data() {
   if (process.env.STRATA_TEST_TMP) return process.env.STRATA_TEST_TMP;
   if (!existsSync(kInMemory)) return "/tmp";
@@ -38,12 +39,12 @@ export async function wait_for(condition, what, every_ms = 50) {
 }
 
 export class StrataServer {
-  /** `env`: additional environment variables of this server. */
+  /** `env` contains additional environment variables of this server. */
   constructor({ demo = false, env = {} } = {}) {
     this.binary = process.env.STRATA_BINARY;
     if (!this.binary) throw new Error("STRATA_BINARY names the server");
     this.token = randomBytes(24).toString("hex");
-    // Open to all: PostgreSQL does not run as root, so its user must reach the folder.
+    // The folder is open to all users. PostgreSQL does not run as root, so its user needs access.
     this.data = mkdtempSync(join(place_of_data(), "strata-e2e-"));
     chmodSync(this.data, 0o755);
     this.log = [];
@@ -55,10 +56,10 @@ export class StrataServer {
 
   /** Copies the result of tests/support/prepare, or makes the data if that did not run. */
   #fill() {
-    if (readdirSync(this.data).length > 0) return; // a restart
+    if (readdirSync(this.data).length > 0) return; // the server starts again
     const prepared = process.env.STRATA_TEST_PREPARED;
     if (prepared) {
-      // With owners and modes: PostgreSQL requires both.
+      // copies owners and modes, because PostgreSQL requires both
       execFileSync("cp", ["-a", `${prepared}/${this.demo ? "demo" : "empty"}/.`, this.data]);
     } else if (this.demo) {
       execFileSync(this.binary, ["demo", "--pot-only", "--data", this.data], {
@@ -67,7 +68,7 @@ export class StrataServer {
     }
   }
 
-  /** Starts it (again on the same port), and returns when it listens. */
+  /** Starts the server, again on the same port, and returns when it listens. */
   async start() {
     this.#fill();
     this.process = spawn(
@@ -75,7 +76,7 @@ export class StrataServer {
       ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`, ...kOften],
       {
         env: {
-          STRATA_SAMPLES_AT_REST: "1", // the same pixels at any moment of rest
+          STRATA_SAMPLES_AT_REST: "1", // frames at rest always have the same pixels
           ...process.env,
           ...this.env,
           STRATA_OWNER_TOKEN: this.token,
@@ -104,7 +105,7 @@ export class StrataServer {
     return this.log.slice(-200).join("\n");
   }
 
-  /** `SIGSTOP` freezes it, `SIGKILL` ends it without warning. */
+  /** `SIGSTOP` freezes the server, and `SIGKILL` ends it without warning. */
   async signal(name) {
     this.process.kill(name);
     if (name === "SIGKILL" || name === "SIGTERM") return this.ended;
@@ -123,8 +124,8 @@ export class StrataServer {
   }
 
   /**
-   * Checks that the log has no errors, and only warnings that contain one of the words (about a
-   * fault that the test made).
+   * Checks that the log has no errors. Warnings are allowed if they contain one of the words, about
+   * a fault that the test caused.
    */
   assert_clean_log(words = []) {
     const bad = this.log.filter((line) => {
@@ -139,9 +140,9 @@ export class StrataServer {
   }
 
   /**
-   * Returns the secret for a call as the owner: the token, or for accounts a session, since tokens
-   * for scripts cannot change accounts; the owner's token is one once an administrator has a
-   * password.
+   * Returns the secret for a request as the owner: the token or, for accounts, a session. Tokens
+   * for scripts cannot change accounts. The owner's token counts as such a token once an
+   * administrator has a password.
    */
   async owners_secret(path) {
     if (!/^\/(users|groups|me\/)|^\/projects\/[^/]+\/(members|groups)(\/|$)|\/kiosks$/.test(path))
@@ -159,7 +160,7 @@ export class StrataServer {
     this.session = answer.headers.get("set-cookie").split(";")[0].split("=")[1];
   }
 
-  /** A person other than the owner: with the secrets to sign in, and a token for scripts. */
+  /** Adds a user with the secrets to sign in, and with a token for scripts. */
   async add_person(user, role) {
     const password = `${user} and seven blue herons`;
     const invitation = (await this.json("POST", "/users", { user, role })).path.split("#")[1];
@@ -180,7 +181,7 @@ export class StrataServer {
     return { user, password, token: (await made.json()).secret };
   }
 
-  /** Replaces the owner's session if a call under test has ended it. */
+  /** Replaces the owner's session if a tested request has ended it. */
   async request(method, path, body, headers = {}, tries = 5) {
     const secret = await this.owners_secret(path);
     const answer = await fetch(`${this.url}/api/v1${path}`, {

@@ -3,7 +3,7 @@ import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
 
 export function texts_of(language) {
-  const { buildSync } = load_module("esbuild"); // vite's
+  const { buildSync } = load_module("esbuild"); // the copy that vite installs
   const contents = `
     import { setLocale } from "./core/locale";
     export { texts } from "./texts/${language}";

@@ -1,10 +1,10 @@
-// Additions to the contract's schemas for making calls: the things on the site, the syntax of
+// Additions to the contract's schemas for making requests: the objects on the site, the syntax of
 // conditions and cells, and the requirements of operations.
 import { fc, strange_text } from "./arbitraries.mjs";
 import { kColumnSlugs, kLayers } from "./site.mjs";
 
-/** In a path: a thing that is made for this call only. */
 const kPassword = "seven blue herons at noon";
+/** In a path, an object that is made only for this request. */
 export const kSpare = "(a spare one)";
 
 export const one = (...values) => fc.constantFrom(...values);
@@ -20,7 +20,7 @@ const point = fc.tuple(
   one(0, 0.5, 20),
 );
 const pixel = fc.tuple(fc.integer({ min: 0, max: 160 }), fc.integer({ min: 0, max: 120 }));
-/** Perpendicular to the wall, orthographic, 160 × 120 mm. */
+/** An orthographic camera perpendicular to the wall, 160 × 120 mm. */
 const camera = fc
   .record({ x: fc.integer({ min: 30, max: 70 }), width: one(160, 320), section: fc.boolean() })
   .map(({ x, width, section }) => ({
@@ -100,7 +100,8 @@ const by_schema = {
   Palette: palette,
   At: at,
   CellValues: cells,
-  Resolution: one(2048), // the smallest: larger ones use the same code and take long to paint
+  // the lowest resolution; higher ones use the same code and take long to paint
+  Resolution: one(2048),
 };
 export const words = {
   by_schema,
@@ -260,9 +261,9 @@ const tour = {
 const what_of_texels = one({}, { texels: "clear" }, { texels: "reassign", to: "2" });
 
 /**
- * Requirements of operations that are neither in their schema nor above. Calls that delete
- * something use a spare one; calls that change names or storage use things that other calls do not
- * need.
+ * Requirements of operations that are neither in their schema nor above. Requests that delete an
+ * object use a spare one. Requests that change names or storage use objects that other requests do
+ * not need.
  */
 export const particulars = {
   login: json({ by_name: { token: fc.oneof(one("(the owner's token)"), strange_text) } }),
@@ -366,7 +367,7 @@ export const particulars = {
   get_job_file: { path: { job: mostly("(a figure's job)", "(a figure's job)", "(a job)") } },
   make_figure: {
     path: { model: one("wall") },
-    // Small ones: larger ones use the same code and take long to draw.
+    // small figures; larger ones use the same code and take long to draw
     ...json({
       by_name: {
         dpi: one(50, 60, 20),
@@ -510,7 +511,7 @@ export const particulars = {
   }),
 };
 
-// Folder names, tokens, tags: headers that a proxy or a script may add.
+// Headers that a proxy or a script may add: folder names, tokens, tags.
 export const header_words = {
   "If-Match": one('"v1"', "*", '"v999"', "v1", '""'),
   "Idempotency-Key": fc.oneof(fc.uuid(), one("the same", "k".repeat(255))),

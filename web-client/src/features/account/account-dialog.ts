@@ -1,4 +1,4 @@
-// <strata-account-dialog>: a person's names, password, sign-in sessions and tokens for scripts.
+// <strata-account-dialog>: shows a user's names, password, sign-in sessions and tokens for scripts.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -34,13 +34,13 @@ type Section = "name" | "password" | "sessions" | "tokens";
 export class StrataAccountDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
-  @state() private _projects: Project[] = []; // visible to this person
+  @state() private _projects: Project[] = []; // the projects that this user can see
   @state() private _sessions: SignInSession[] = [];
   @state() private _tokens: ScriptToken[] | null = null;
   @state() private _made: ScriptTokenMade | null = null;
   @state() private _adding = false;
-  @state() private _role: Role = "viewer"; // of the new token
-  @state() private _only = ""; // slug of the new token's project; empty: all
+  @state() private _role: Role = "viewer"; // the role of the new token
+  @state() private _only = ""; // the slug of the new token's project; empty for all projects
   @state() private _fieldProblems: Partial<Record<Field, string>> = {};
   @state() private _note: { section: Section; kind: "error" | "done"; text: string } | null = null;
   @state() private _busy = false;
@@ -121,7 +121,7 @@ export class StrataAccountDialog extends LitElement {
   override render(): TemplateResult {
     const { me } = this;
     const rank = (role: Role | undefined): number => kRoles.indexOf(role ?? "guest");
-    // than the role for all projects
+    // projects with a higher role than the user's role for all projects
     const withMore = this._projects.filter(({ role }) => rank(role) > rank(me.role));
     return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <section>
@@ -210,7 +210,7 @@ export class StrataAccountDialog extends LitElement {
     </form>`;
   }
 
-  /** Includes the groups that give the role, so that the user can ask the right person. */
+  /** The row includes the groups that give the role, so the user can contact the right person. */
   private projectRow({ name, role, groups }: Project): ListedRow {
     const told = texts.roles[role ?? "guest"];
     const where = groups ? words.role_by_groups(told, formatList(groups)) : told;
@@ -462,7 +462,7 @@ export class StrataAccountDialog extends LitElement {
 const textOf = (event: Event, name: string): string =>
   String(new FormData(event.target as HTMLFormElement).get(name) ?? "");
 
-/** Ignores a 404: the session or token has already ended. */
+/** Ignores a 404, because the session or token has already ended. */
 function unlessGone(error: unknown): void {
   if (!(error instanceof ApiError) || error.status !== 404) throw error;
 }

@@ -1,4 +1,4 @@
-// Styles of the pages before the sign-in: a card in the middle.
+// Styles of the pages before sign-in: a card in the middle of the page.
 
 import { css } from "lit";
 

@@ -1,5 +1,5 @@
-// <strata-group-list>: creates, renames and deletes the groups of the site, and opens the dialogs
-// for their members and project roles. Fires "regrouped" after members have changed.
+// <strata-group-list>: creates, renames and deletes the groups of the site. It opens the dialogs
+// for their members and project roles. It fires "regrouped" after the members change.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -121,7 +121,7 @@ export class StrataGroupList extends LitElement {
     };
   }
 
-  /** After a dialog has changed a group. */
+  /** Runs after a dialog has changed a group. */
   private closed(): void {
     this._membersOf = this._rolesOf = null;
     this.regrouped();
@@ -141,7 +141,7 @@ export class StrataGroupList extends LitElement {
       const { id } = await this.api.json("POST /groups", { body: { name } });
       this._name.value = "";
       await this.read();
-      // The new group has no members yet: open their dialog.
+      // The new group has no members yet, so the dialog for its members opens.
       this._membersOf = this._groups?.find((group) => group.id === id) ?? null;
     } catch (error) {
       this._nameProblem = this.told(error);

@@ -1,5 +1,5 @@
-// <strata-group-members-dialog>: the members of a group, among all users of the site. Each choice
-// is sent at once.
+// <strata-group-members-dialog>: the members of a group, selected from all users of the site. Each
+// choice is sent immediately.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -19,11 +19,11 @@ export class StrataGroupMembersDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) group!: Group;
   @property({ attribute: false }) people!: readonly Person[];
-  @state() private _inside: ReadonlySet<string> | null = null; // user names
+  @state() private _inside: ReadonlySet<string> | null = null; // user names of the members
   @state() private _filter = "";
   @state() private _note: { user: string; kind: "error" | "done"; text: string } | null = null;
   @state() private _problem = "";
-  // requests run one after the other, in the order of the clicks
+  // requests are sent one at a time, in the order of the clicks
   private _last: Promise<void> = Promise.resolve();
 
   static override styles = [

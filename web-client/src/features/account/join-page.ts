@@ -1,4 +1,4 @@
-// <strata-join-page>: a person with an invitation chooses a password and is signed in.
+// <strata-join-page>: an invited person sets a password and is signed in.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -22,9 +22,9 @@ const words = texts.join;
 @customElement("strata-join-page")
 export class StrataJoinPage extends LitElement {
   @property({ attribute: false }) api!: Api;
-  /** The secret; empty: the address has none. */
+  /** The secret of the invitation; empty if the address has none. */
   @property() invitation = "";
-  /** The user who is signed in at this browser. */
+  /** The user who is signed in in this browser. */
   @property({ attribute: false }) me: Me | null = null;
   @state() private _person: Person | null = null;
   @state() private _useless = false;

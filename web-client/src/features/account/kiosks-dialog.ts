@@ -1,5 +1,5 @@
-// <strata-kiosks-dialog>: the links for screens that show tours: the links of one tour, with a form
-// for a new one, or all links that this person manages.
+// <strata-kiosks-dialog>: the links for screens that show tours. It shows the links of one tour
+// with a form for a new link, or all links that this user manages.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -26,7 +26,7 @@ type Field = "name" | "days";
 @customElement("strata-kiosks-dialog")
 export class StrataKiosksDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
-  /** By slugs. Null: the links of all tours. */
+  /** The tour, by slugs. Null shows the links of all tours. */
   @property({ attribute: false }) tour: {
     project: string;
     model: string;
@@ -82,7 +82,7 @@ export class StrataKiosksDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     void this.attempt(() => this.read());
-    // a failed read is repeated at the next interval
+    // the next interval repeats a failed read
     this._timer = window.setInterval(() => void this.read().catch(() => {}), kSilentMs / 6);
   }
 
@@ -149,7 +149,7 @@ export class StrataKiosksDialog extends LitElement {
 
   private onLink(event: MouseEvent): void {
     follow(event);
-    // otherwise the link opens in another tab
+    // a link that opens in another tab leaves the dialog open
     if (event.defaultPrevented) this.dispatchEvent(new CustomEvent("closed"));
   }
 
@@ -258,7 +258,7 @@ export class StrataKiosksDialog extends LitElement {
       });
       this._kiosks = (this._kiosks ?? []).map((each) => (each.id === now.id ? now : each));
     });
-    this.requestUpdate(); // after a refusal the box shows the stored state
+    this.requestUpdate(); // after a refusal the checkbox shows the stored state
   }
 
   private async revoke(kiosk: Kiosk): Promise<void> {
@@ -278,7 +278,7 @@ export class StrataKiosksDialog extends LitElement {
     });
   }
 
-  /** Runs a change; a refusal is shown in the kiosk's row. */
+  /** Runs a change. The kiosk's row shows a refusal. */
   private async change({ id }: Kiosk, task: () => Promise<void>): Promise<void> {
     this._note = null;
     try {

@@ -1,5 +1,5 @@
-// A field for a password that can be made visible. It is a template and not an element: password
-// managers look for fields in the same form.
+// A password field with a button that shows the password. It is a template and not an element
+// because password managers look for fields in the same form.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { icon } from "../../ui/icons";
@@ -10,7 +10,7 @@ export interface PasswordField {
   label: string;
   autocomplete: "current-password" | "new-password";
   problem?: string;
-  /** The id of the error message, if it is elsewhere. */
+  /** The id of the error message, if the message is outside the field. */
   wrongBy?: string;
   hint?: string;
 }

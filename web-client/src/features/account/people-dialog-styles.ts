@@ -6,7 +6,7 @@ export const peopleDialogStyles = css`
   .bar {
     position: sticky;
     z-index: 1;
-    top: -0.875rem; /* covers the padding of the dialog */
+    top: -0.875rem; /* covers the dialog's padding */
     display: flex;
     flex-wrap: wrap;
     align-items: center;

@@ -1,5 +1,5 @@
-// <strata-people-dialog>: the accounts and their roles; invites people by a link that is shown
-// once. A second tab has the groups.
+// <strata-people-dialog>: the accounts and their roles. It invites people by a link that is shown
+// once. A second tab shows the groups.
 
 import { peopleDialogStyles } from "./people-dialog-styles";
 import { html, LitElement, nothing, type TemplateResult } from "lit";
@@ -33,16 +33,16 @@ export class StrataPeopleDialog extends LitElement {
   @property({ attribute: false }) me!: Me;
   @state() private _people: Person[] | null = null;
   @state() private _part: Part = "people";
-  @state() private _groups: readonly Group[] = []; // groups that a new user can join
+  @state() private _groups: readonly Group[] = []; // the groups that a new user can join
   @state() private _filter = "";
   @state() private _inviting = false;
-  @state() private _role: Role = kUsualRole; // of the new user
+  @state() private _role: Role = kUsualRole; // the role of the new user
   @state() private _invitation: Invitation | null = null;
   @state() private _fieldProblems: Partial<Record<Field, string>> = {};
   @state() private _rowNote: { id: number; kind: "error" | "done"; text: string } | null = null;
   @state() private _problem = "";
   @state() private _busy = false;
-  @state() private _inProjects: Person | null = null; // the person whose project roles are shown
+  @state() private _inProjects: Person | null = null; // the user whose project roles are shown
 
   static override styles = [sharedStyles, chipStyles, linkMakingStyles, peopleDialogStyles];
 
@@ -164,7 +164,7 @@ export class StrataPeopleDialog extends LitElement {
       </td>
       <td class="state">
         ${
-          role === "owner" && state === "invited" // an owner has no invitation
+          role === "owner" && state === "invited" // owners have no invitation
             ? html`<span class="chip" title=${words.no_password_hint}>${words.no_password}</span>`
             : html`<span class="chip ${state}" title=${words.state_hints[state]}>${words.states[state]}</span>`
         }
@@ -367,7 +367,7 @@ export class StrataPeopleDialog extends LitElement {
     });
   }
 
-  /** Returns true after success. A refusal is shown in the person's row. */
+  /** Returns true after success. The user's row shows a refusal. */
   private async changeRow({ id }: Person, task: () => Promise<void>): Promise<boolean> {
     this._rowNote = null;
     try {

@@ -1,5 +1,4 @@
-// <strata-preferences>: the settings of the page at this browser, and the dialog that contains
-// them.
+// <strata-preferences>: the page's settings in this browser, and the dialog that contains them.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, query } from "lit/decorators.js";
@@ -17,7 +16,7 @@ import { discardUnsaved, unsavedChanges } from "../../session/sessions";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
-/** With a capital letter, as at the start of a line: "Español". */
+/** Capitalizes the first letter, as at the start of a line: "Español". */
 const titled = (name: string): string => name.slice(0, 1).toUpperCase() + name.slice(1);
 
 @customElement("strata-preferences")
@@ -57,7 +56,7 @@ export class StrataPreferences extends LitElement {
     </label>`;
   }
 
-  /** All texts are set when the page loads, so the page reloads. */
+  /** The page sets all texts when it loads, so a new language requires a reload. */
   private async changeLanguage(): Promise<void> {
     const words = texts.settings;
     const wanted = kPageLanguages.find((language) => language === this._language.value) ?? null;

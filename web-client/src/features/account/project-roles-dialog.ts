@@ -1,5 +1,5 @@
-// <strata-project-roles-dialog>: a person's role in each project, next to the role for all projects
-// and the roles that their groups give; or the roles of a group.
+// <strata-project-roles-dialog>: a user's role in each project, next to the role for all projects
+// and the roles from groups; or the roles of a group.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -17,9 +17,9 @@ import { texts } from "../../texts";
 const words = texts.project_roles;
 
 interface Row {
-  id: number; // of the project
+  id: number; // the project's id
   project: Project;
-  role: ProjectRole | null; // the person's own role
+  role: ProjectRole | null; // the user's own role
   by_groups: ReturnType<typeof roleByGroups>;
   note: { kind: "error" | "done"; text: string } | null;
 }
@@ -27,7 +27,7 @@ interface Row {
 @customElement("strata-project-roles-dialog")
 export class StrataProjectRolesDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
-  /** Exactly one of `person` and the group is set. */
+  /** Either `person` or `group` is set. */
   @property({ attribute: false }) person: Person | null = null;
   @property({ attribute: false }) group: Group | null = null;
   @state() private _rows: readonly Row[] | null = null;
@@ -103,7 +103,7 @@ export class StrataProjectRolesDialog extends LitElement {
     };
   }
 
-  /** The role that groups give, and whether it is the effective one. */
+  /** Shows the role that groups give, and whether it is the effective one. */
   private origin({ role, by_groups: byGroups }: Row): TemplateResult | typeof nothing {
     if (!byGroups || !this.person) return nothing;
     const rank = (each: ProjectRole | Person["role"]): number => kRoles.indexOf(each);

@@ -1,5 +1,5 @@
-// <strata-sign-in>: sign-in with user name and password, or with a token or the link that the
-// server printed.
+// <strata-sign-in>: sign-in with a user name and a password, with a token, or with the link that
+// the server printed.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -115,7 +115,7 @@ export class StrataSignIn extends LitElement {
     event.preventDefault();
     if (this._busy) return;
     const user = this._user.value.trim();
-    const password = this._password.value; // spaces are significant
+    const password = this._password.value; // spaces are part of a password
     this._problem = this._tokenProblem = "";
     if (user === "" || password === "") {
       this._problem = texts.sign_in.empty;
@@ -142,7 +142,7 @@ export class StrataSignIn extends LitElement {
       );
   }
 
-  /** Returns the error text, or an empty one. */
+  /** Returns the error text, or an empty string after success. */
   private async tryTo(by: "password" | "token", login: () => Promise<unknown>): Promise<string> {
     this._busy = true;
     try {

@@ -1,4 +1,4 @@
-// <strata-activity-panel>: the activity of the model or of its whole project, by day.
+// <strata-activity-panel>: the activity of the model or of its project, by day.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";
@@ -18,7 +18,7 @@ import { toldClock, toldDay, toldTime } from "../../domain/times";
 
 const words = texts.activity;
 
-/** The text of the first key that has one. */
+/** Returns the text of the first key that has one. */
 const textOf = (
   all: { readonly [key: string]: string; other: string },
   ...keys: string[]

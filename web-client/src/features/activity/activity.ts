@@ -1,5 +1,5 @@
-// Activity of the open model or of its whole project: the known lines and their targets. Read when
-// the panel opens, and again after each change.
+// The activity of the open model or of its project: the loaded lines and their targets. It is
+// loaded when the panel opens, and again after each change.
 
 import { withFirstPage, withNextPage, type ActivityLog } from "../../domain/activity";
 import { ApiError } from "../../net/api-error";
@@ -21,7 +21,7 @@ export interface ActivitiesHost {
   readonly tables: TablesPart;
   readonly comments: CommentsPart;
   model(): Model | null;
-  /** The user name of this person. */
+  /** The name of this user. */
   me(): string;
   changed(): void;
 }
@@ -32,13 +32,13 @@ export class Activities {
   loaded = false;
   failed = false;
   busy = false;
-  /** Another person has changed something since the panel was last open. */
+  /** Whether another user has changed something since the panel was last open. */
   unseen = false;
   private _whole = false;
   private _watched = false;
   private _log = kNone;
   private readonly _again = new ReadAgain(() => void this.load());
-  private _asked = 0; // the latest request; older answers are ignored
+  private _asked = 0; // the latest request; responses to older ones are ignored
 
   constructor(
     private readonly _api: Api,
@@ -52,7 +52,7 @@ export class Activities {
     return this._log.next !== undefined;
   }
 
-  /** Whether the whole project is shown, instead of this model. */
+  /** Whether the activity of the whole project is shown, instead of that of this model. */
   get whole(): boolean {
     return this._whole;
   }
@@ -64,7 +64,7 @@ export class Activities {
     void this.load();
   }
 
-  /** The panel was opened or closed. */
+  /** Call this when the panel opens or closes. */
   watch(watched: boolean): void {
     if (watched === this._watched) return;
     this._watched = watched;
@@ -74,7 +74,7 @@ export class Activities {
     } else this._again.stop();
   }
 
-  /** The activity has changed; `user`: the person who did it, if known. */
+  /** Call this after the activity has changed. `user` is the author of the change, if known. */
   outdated(user?: string): void {
     if (this._watched) this._again.news();
     else if (user !== undefined && user !== this._host.me() && !this.unseen) {
@@ -130,7 +130,7 @@ export class Activities {
     return line.layer !== undefined || this.layerOfTable(line) !== null || this.isElsewhere(line);
   }
 
-  /** Opens the comment, record or layer of the line, in another model if necessary. */
+  /** Opens the comment, record or layer of the line. Loads another model if necessary. */
   async goTo(line: Activity): Promise<void> {
     if (this.isElsewhere(line)) {
       navigate(

@@ -1,5 +1,5 @@
-// A person's view of the model: its surface images, light and section. Only named views keep these
-// settings; other people have their own.
+// A user's view of the model: its surface images, light and section. Only saved views store these
+// settings. Each user has separate settings.
 
 import { nameOfFile } from "../../domain/file-names";
 import { type Api, kAsItIs } from "../../net/api";
@@ -26,7 +26,10 @@ import { reorder } from "../../ui/reorder";
 import { texts } from "../../texts";
 
 export const kMostLooksShown = 4;
-/** Fill and weak layers let tool marks show under painted layers, and shadows show detail. */
+/**
+ * The fill light and the weak layers keep tool marks visible under painted layers, and keep detail
+ * in the shadows.
+ */
 const kFirstLight: Required<Light> = {
   mode: "museum",
   direction: [-0.85, 0.4, 0.35],
@@ -36,7 +39,7 @@ const kFirstLight: Required<Light> = {
 };
 
 export interface AppearanceHost {
-  /** Null: the default surface images. */
+  /** Null stands for the default surface images. */
   send(looks: LookShown[] | null, light: Light): void;
   sendSection(planes: Plane[], moving: boolean): void;
   bounds(): Bounds | null;
@@ -48,12 +51,12 @@ export const kCuts = ["off", "x", "y", "z"] as const satisfies readonly SectionM
 const after = <T>(all: readonly T[], one: T): T => all[(all.indexOf(one) + 1) % all.length]!;
 
 export class Appearance {
-  looks: Look[] = []; // ascending by order: the last is on top
+  looks: Look[] = []; // in ascending order; the last one is on top
   light = kFirstLight;
   section: SectionChoice = noSection();
 
   private _overrides = new Map<number, LookSettings>();
-  // surface images of a named view, bottom to top; others lie above them in their own order
+  // surface images of a saved view, bottom to top; other images are above them in their own order
   private _stack: number[] = [];
 
   constructor(
@@ -94,7 +97,7 @@ export class Appearance {
     if (!this.visible(look)) this.setVisible(look, true);
   }
 
-  /** Shows a surface image that a job made for this person. */
+  /** Shows a surface image that a job made for this user. */
   async showMade(id: number): Promise<void> {
     if (!this.looks.some((look) => look.id === id))
       this.takeLooks(
@@ -110,7 +113,7 @@ export class Appearance {
     this.put(await this.changeLook(look, { name }));
   }
 
-  /** Moves the surface image to the place `index` of the list, which is bottom to top. */
+  /** Moves the surface image to `index` in the list, which is bottom to top. */
   async move(look: Look, index: number): Promise<void> {
     await reorder(this.looks, look, index, {
       show: (looks) => this.takeLooks(looks),
@@ -120,7 +123,7 @@ export class Appearance {
     });
   }
 
-  /** Changes the current version. */
+  /** Changes the current version of the surface image. */
   private async changeLook({ id }: Look, body: LookPatch): Promise<Look> {
     const path = { model: this._modelId, look: id };
     const { etag } = await this._api.versioned("GET /models/{model}/looks/{look}", { path });
@@ -174,7 +177,7 @@ export class Appearance {
     this.send();
   }
 
-  /** `moving`: further changes follow at once. */
+  /** `moving` means that more changes follow immediately. */
   setSection(change: Partial<SectionChoice>, moving = false): void {
     this.section = { ...this.section, ...change };
     this.sendSection(moving);
@@ -194,7 +197,7 @@ export class Appearance {
     this._host.changed();
   }
 
-  /** The areas that these planes cut, in their order. */
+  /** Returns the cut areas in the order of the planes. */
   async measureSection(planes: Plane[]): Promise<SectionCut[]> {
     const path = { model: this._modelId };
     const body = { section: planes };
@@ -208,14 +211,16 @@ export class Appearance {
     );
   }
 
-  // ── named views ────────────────────────────────────────────────────────────────────────────────
+  // ── saved views ────────────────────────────────────────────────────────────────────────────────
 
-  /** The settings that a named view keeps, without the section, which belongs to the camera. */
+  /** Returns the settings that a saved view stores. The section is part of the camera. */
   toKeep(): { looks: LookShown[]; light: Light } {
     return { looks: this.shownLooks(), light: lightShown(this.light) };
   }
 
-  /** Applies the settings of a named view. Returns a function that restores the previous ones. */
+  /**
+   * Applies the settings of a saved view. Returns a function that restores the previous settings.
+   */
   showView(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void {
     const { _overrides, _stack, light, section } = this;
     const { settings, stack } = looksOfView(view, this.looks);
@@ -270,7 +275,7 @@ export class Appearance {
     return shown.map((look) => ({ look: look.id, opacity: this.opacity(look) }));
   }
 
-  /** Bottom to top. */
+  /** Sorts the surface images from bottom to top. */
   private stacked(looks: Look[]): Look[] {
     const place = ({ id }: Look): number =>
       this._stack.includes(id) ? this._stack.indexOf(id) : this._stack.length;
@@ -294,7 +299,7 @@ export class Appearance {
   }
 }
 
-/** The settings that have an effect in this light. */
+/** Returns the settings that have an effect in this light. */
 function lightShown(light: Required<Light>): Light {
   const { mode, direction, exposure, fill, layer_opacity: opacity } = light;
   return {
@@ -305,7 +310,7 @@ function lightShown(light: Required<Light>): Light {
   };
 }
 
-/** The light of a named view. Absent numbers have the defaults of the contract. */
+/** Returns the light of a saved view. Absent numbers have the contract's defaults. */
 function lightOf(light: Light): Required<Light> {
   const raking = light.mode === "raking" ? { fill: 0, layer_opacity: 1 } : {};
   return { ...kFirstLight, ...raking, ...light };

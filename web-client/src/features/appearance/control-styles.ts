@@ -1,4 +1,4 @@
-// Styles of the controls on the picture.
+// Styles of the controls over the 3D view.
 
 import { css } from "lit";
 
@@ -12,7 +12,7 @@ export const controlStyles = css`
     display: flex;
   }
   .segments button {
-    flex: 1 1 auto; /* at least as wide as its text */
+    flex: 1 1 auto; /* the element is at least as wide as its text */
     padding: 0 var(--space-2);
   }
   output {

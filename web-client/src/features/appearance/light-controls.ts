@@ -1,4 +1,4 @@
-// <strata-light-controls>: the light of this person's view, and its direction.
+// <strata-light-controls>: the kind and direction of the light in this user's view.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

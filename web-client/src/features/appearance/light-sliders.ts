@@ -1,5 +1,5 @@
-// <strata-light-sliders>: the exposure of this person's picture and, in raking light, its fill and
-// the strength of the layers; part of the controls on the picture.
+// <strata-light-sliders>: the exposure of this user's view and, in raking light, the fill light and
+// the strength of the layers. Part of the controls over the 3D view.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -9,7 +9,7 @@ import type { ModelSession } from "../../session/model-session";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
-const kMostExposure = 3; // EV, as in the contract
+const kMostExposure = 3; // in EV, as in the contract
 const kExposureStep = 0.25;
 
 @customElement("strata-light-sliders")
@@ -102,7 +102,7 @@ export class StrataLightSliders extends LitElement {
   }
 }
 
-/** Such as "+0.75 EV". */
+/** Returns a text such as "+0.75 EV". */
 function saidExposure(ev: number): string {
   const sign = ev > 0 ? "+" : ev < 0 ? "−" : "";
   return `${sign}${formatFixed(Math.abs(ev), Number.isInteger(ev) ? 0 : 2)} EV`;

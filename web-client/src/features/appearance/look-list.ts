@@ -1,5 +1,5 @@
-// <strata-look-list>: the surface images of the model from top to bottom, as this person sees them;
-// part of the view panel.
+// <strata-look-list>: the surface images of the model from top to bottom, in this user's order.
+// Part of the view panel.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";

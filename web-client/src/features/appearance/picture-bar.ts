@@ -1,5 +1,6 @@
-// <strata-picture-bar>: the bar on the picture: the view cube, fit to view, light and section. The
-// controls of light and section open next to it, and stay open while you work on the model.
+// <strata-picture-bar>: the bar over the 3D view, with the view cube, fit to view, light and
+// section. The controls of light and section open next to the bar. They stay open while the user
+// works on the model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -18,7 +19,7 @@ import "./view-cube";
 
 const words = texts.picture_bar;
 
-/** The parts that open next to the bar, in its order. */
+/** The controls that open next to the bar, in the order of its buttons. */
 const kParts = {
   light: {
     glyph: "bulb",
@@ -59,7 +60,7 @@ export class StrataPictureBar extends LitElement {
         gap: var(--space-2);
         pointer-events: none;
       }
-      /* above a tall table they scroll; the space around them is for their shadows */
+      /* they scroll above a tall table; their shadows need the space around them */
       .column,
       .beside {
         box-sizing: border-box;
@@ -109,7 +110,7 @@ export class StrataPictureBar extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         gap: var(--space-2);
-        width: 22.5rem; /* with the space for shadows */
+        width: 22.5rem; /* includes the space for shadows */
         min-width: 0;
       }
       section .row {

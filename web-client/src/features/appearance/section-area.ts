@@ -1,4 +1,5 @@
-// <strata-section-area>: the area of the cuts of this person's section; part of the controls on the picture.
+// <strata-section-area>: the area of the cuts of this user's section. Part of the controls over the
+// 3D view.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -10,13 +11,13 @@ import type { ModelSession } from "../../session/model-session";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
-const kRestMs = 300; // of the section, before it is measured
+const kRestMs = 300; // time without a change of the section before it is measured
 
 @customElement("strata-section-area")
 export class StrataSectionArea extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _cuts: SectionCut[] | "measuring" | "failed" = "measuring";
-  private _measured = ""; // the planes of `_cuts`
+  private _measured = ""; // the planes of the section that `_cuts` belongs to
   private _timer = 0;
 
   constructor() {
@@ -70,12 +71,12 @@ export class StrataSectionArea extends LitElement {
   private async measure(planes: Plane[], key: string): Promise<void> {
     const cuts = await this.session.appearance
       .measureSection(planes)
-      .catch((): "failed" => "failed"); // the next change of the section tries again
+      .catch((): "failed" => "failed"); // the next change to the section repeats the request
     if (this._measured === key) this._cuts = cuts;
   }
 }
 
-/** Of all planes together; null: one of the cuts is open. */
+/** Returns the area of all planes together, or null if one of the cuts is open. */
 function saidArea(cuts: SectionCut[]): string | null {
   let sum = 0;
   for (const { area_m2: area } of cuts) {

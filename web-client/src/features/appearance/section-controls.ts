@@ -1,5 +1,5 @@
-// <strata-section-controls>: the section of this person's view: an axis with the place of its cut, or
-// a box.
+// <strata-section-controls>: the section of this user's view: an axis with the position of its cut,
+// or a box.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -15,7 +15,7 @@ import "./section-area";
 import { controlStyles } from "./control-styles";
 
 const kSections: readonly Exclude<SectionMode, "planes">[] = ["off", "x", "y", "z", "box"];
-const kSteps = 1000; // steps of a section's slider
+const kSteps = 1000; // the number of steps of a slider
 
 @customElement("strata-section-controls")
 export class StrataSectionControls extends LitElement {

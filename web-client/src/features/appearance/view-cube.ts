@@ -1,6 +1,6 @@
-// <strata-view-cube>: a cube that shows from which side the model is seen. Its faces lead to the
-// standard views, dragging it orbits. One Tab stop: the face towards the viewer; arrow keys go to
-// the neighboring views.
+// <strata-view-cube>: a cube that shows the viewing direction. Its faces select the standard views,
+// and dragging it orbits the camera. Its only Tab stop is the face towards the viewer. The arrow
+// keys move to the neighboring views.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -12,8 +12,8 @@ import { styled } from "../../ui/styled";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
-const kDragSpeed = 4; // pixels of the picture for one of the cube
-const kClickPx = 4; // the pointer of a click may move as far
+const kDragSpeed = 4; // pixels of the 3D view per pixel of the cube
+const kClickPx = 4; // the largest movement of the pointer during a click
 
 @customElement("strata-view-cube")
 export class StrataViewCube extends LitElement {
@@ -46,7 +46,7 @@ export class StrataViewCube extends LitElement {
         width: var(--side);
         height: var(--side);
         transform-style: preserve-3d;
-        pointer-events: none; /* its own plane is between the faces */
+        pointer-events: none; /* this element's plane lies between the faces */
       }
       button {
         pointer-events: auto;
@@ -161,12 +161,12 @@ export class StrataViewCube extends LitElement {
 
   private onUp(): void {
     if (!this._drag?.moved)
-      this._drag = null; // otherwise the click ends it
+      this._drag = null; // after a drag, the click resets it
     else setTimeout(() => (this._drag = null));
   }
 
   private readonly onClick = (event: Event): void => {
-    if (this._drag?.moved) event.stopPropagation(); // it turned the model
+    if (this._drag?.moved) event.stopPropagation(); // the drag turned the model
     this._drag = null;
   };
 }

@@ -1,5 +1,5 @@
-// <strata-view-panel>: a person's view of the model: saved views, tours, surface images,
-// figures. Light and section are on the picture (`features/appearance/picture-bar`).
+// <strata-view-panel>: a user's view of the model: saved views, tours, surface images, figures.
+// Light and section are over the 3D view (`features/appearance/picture-bar`).
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";

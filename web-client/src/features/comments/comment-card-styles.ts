@@ -129,7 +129,7 @@ export const commentCardStyles = css`
       position: fixed;
       inset: auto 0 0 0 !important;
       width: auto;
-      max-height: 48dvh; /* the target of the camera stays visible above it */
+      max-height: 48dvh; /* the target of the camera stays visible above the card */
       border-radius: var(--radius-large) var(--radius-large) 0 0;
       border-bottom: 0;
       padding-bottom: env(safe-area-inset-bottom);

@@ -1,4 +1,5 @@
-// <strata-comment-card>: a thread next to its pin, or a new one; on a phone: a sheet at the bottom.
+// <strata-comment-card>: a thread or a new thread, in a card next to its pin. On a phone it is a
+// sheet at the bottom.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -26,7 +27,7 @@ import { toldTime } from "../../domain/times";
 
 const words = texts.comments;
 const kGapPx = 20;
-const kMostCharacters = 10_000; // the server's limit
+const kMostCharacters = 10_000; // the server's limit on the characters of a comment
 const kNarrow = "(max-width: 820px)";
 
 @customElement("strata-comment-card")
@@ -37,7 +38,7 @@ export class StrataCommentCard extends LitElement {
   @state() private _editing: number | null = null;
   @query("section") private _section!: HTMLElement | null;
   private _shown: number | "new" | null = null;
-  private _opener: HTMLElement | null = null; // had the focus before
+  private _opener: HTMLElement | null = null; // the element that had the focus before
   private readonly _names = new NameCompletion(this, () => this.session.comments.loadPeople());
 
   constructor() {
@@ -95,7 +96,9 @@ export class StrataCommentCard extends LitElement {
     target?.focus({ preventScroll: true });
   }
 
-  /** Places the card next to its pin: its size is known only after rendering. */
+  /**
+   * Positions the card next to its pin, because the size of the card is known only after rendering.
+   */
   private putBeside(): void {
     const { _section: section, session } = this;
     if (!section || matchMedia(kNarrow).matches) return;
@@ -393,7 +396,7 @@ export class StrataCommentCard extends LitElement {
       await this.attempt("thread", () => this.session.comments.remove(comment));
   }
 
-  /** Keeps the text in its field, also after a refusal. */
+  /** Keeps the text in its field if the server refuses the request. */
   private async attempt(of: DraftOf | "thread", work: () => Promise<void>): Promise<void> {
     this._busy = true;
     this._problem = null;

@@ -1,4 +1,4 @@
-// <strata-comment-panel>: the threads of the model as a list, with unread ones marked.
+// <strata-comment-panel>: the model's threads as a list that marks unread ones.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -34,7 +34,7 @@ export class StrataCommentPanel extends SidePanel {
     personMarkStyles,
     css`
       :host {
-        position: relative; /* for visually hidden content */
+        position: relative; /* contains visually hidden content */
       }
       .dot {
         flex: none;

@@ -1,4 +1,4 @@
-// <strata-comment-pins>: pins at the places of comments, over the picture. Places behind the
+// <strata-comment-pins>: pins over the 3D view, at the positions of comments. Positions behind the
 // surface have no pin.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -16,8 +16,8 @@ import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
 const words = texts.comments;
-const kMostPins = 10_000; // the server's limit
-const kMostSaid = 80; // characters of the text in a pin's accessible name
+const kMostPins = 10_000; // the server's limit on the comments of a model
+const kMostSaid = 80; // the number of characters of the text in a pin's accessible name
 
 interface Placed {
   thread: Thread;
@@ -68,7 +68,7 @@ export class StrataCommentPins extends LitElement {
       button::before {
         content: "";
         position: absolute;
-        inset: -5px; /* a larger target for fingers; pins may be close together */
+        inset: -5px; /* a larger target for fingers, although pins may be close together */
       }
       button.chosen {
         outline: 3px solid var(--mark-dark);
@@ -89,7 +89,7 @@ export class StrataCommentPins extends LitElement {
       }
       .aside button {
         opacity: var(--unavailable);
-        pointer-events: none; /* pointers reach the surface for painting */
+        pointer-events: none; /* pointer events reach the surface for painting */
       }
       i {
         position: absolute;
@@ -108,7 +108,7 @@ export class StrataCommentPins extends LitElement {
     const { comments, tools, view } = this.session;
     if (view.framesDrawn === 0) return html``;
     const placed = comments.pins.flatMap((thread) => this.place(thread));
-    // Nearer pins lie over farther ones; the tab order is by age.
+    // Nearer pins cover farther ones. The Tab order follows the age of the threads.
     const order = new Map(
       [...placed]
         .sort((a, b) => b.depth - a.depth)
@@ -126,7 +126,7 @@ export class StrataCommentPins extends LitElement {
       <span class="visually-hidden" role="status">${comments.said}</span>`;
   }
 
-  /** Empty where the place is hidden. */
+  /** Returns an empty list if the surface hides the position. */
   private place(thread: Thread): Placed[] {
     const at = this.at(thread.first.position);
     return at && this.session.comments.isSeen(thread) ? [{ thread, ...at }] : [];
@@ -161,7 +161,10 @@ export class StrataCommentPins extends LitElement {
     </button>`;
   }
 
-  /** The unsent new thread; also shown behind the surface, so that its author finds it. */
+  /**
+   * Draws the pin of the unsent thread. It also appears behind the surface, so its author can find
+   * it.
+   */
   private draft(): TemplateResult | typeof nothing {
     const { comments } = this.session;
     const draft = comments.draft("new");
@@ -180,7 +183,7 @@ export class StrataCommentPins extends LitElement {
   }
 }
 
-/** The lower left corner is the tip. */
+/** Places the pin with its tip, the lower left corner, at the position. */
 const tipAt = (x: number, y: number): Record<string, string> => ({
   transform: `translate(${x.toFixed(1)}px, ${(y - 30).toFixed(1)}px)`,
 });

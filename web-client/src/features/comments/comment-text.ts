@@ -1,4 +1,4 @@
-// The text of a comment: lines as written, addresses as links, @names of people marked.
+// Renders the text of a comment: lines as written, addresses as links, and @names of users marked.
 
 import { css, html, type TemplateResult } from "lit";
 import { textParts } from "../../domain/comments";
@@ -27,5 +27,6 @@ export function commentText(text: string, people: ReadonlySet<string>): Template
       return html`<a href=${part.href} target="_blank" rel="noopener noreferrer nofollow">${part.text}</a>`;
     return part.kind === "mention" ? html`<span class="mention">${part.text}</span>` : part.text;
   });
-  return html`<p class="words">${parts}</p>`; // nothing between the tags: spaces are significant
+  // no white space between the tags, because spaces are part of the text
+  return html`<p class="words">${parts}</p>`;
 }

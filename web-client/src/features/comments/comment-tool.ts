@@ -1,5 +1,5 @@
-// A tap starts a comment at its place. A drag rotates the model, so that the user can reach the
-// place first.
+// A tap starts a comment at its position. A drag rotates the model, so the user can bring the
+// position into view first.
 
 import type { PointerSample } from "../../ui/input";
 import { DragTool, type Navigator } from "../../tools/navigate";
@@ -15,7 +15,7 @@ export class CommentTool extends DragTool implements Tool {
     super(navigator);
   }
 
-  /** Keyboard use: starts a comment in the middle of the picture. */
+  /** From the keyboard, starts a comment in the middle of the 3D view. */
   key(key: string): boolean {
     if (key !== "Enter") return false;
     this._navigator.tap(this._middle());

@@ -1,5 +1,5 @@
-// The comments of the open model: the known threads, the open thread, unsent drafts, and which
-// comments were read.
+// The comments on the open model: the loaded threads, the open thread, unsent drafts, and the state
+// of reading.
 
 import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api-error";
@@ -37,29 +37,27 @@ import type { ViewControl } from "../../session/view-control";
 import type { LayersPart, TablesPart } from "../../session/parts";
 
 const words = texts.comments;
-const kAround = 0.12; // share of the model's radius that is shown around a comment's place
+const kAround = 0.12; // share of the model's radius that the camera shows around a comment
 
-/** A possible subject of a comment, with its name. */
+/** A possible subject of a comment: a layer or a record, and its name. */
 export interface Subject {
   layer: number;
   record?: number;
   label: string;
 }
 
-/**
- * An unsent text. `key` is its idempotency key, so that a repeated request has no second effect.
- */
+/** An unsent text. `key` is its idempotency key, so a repeated request has no second effect. */
 export interface Draft {
   text: string;
   key: string;
-  /** For a new thread. */
+  /** Only for a new thread. */
   position?: Vec3;
   normal?: Vec3;
   subjects?: Subject[];
-  subject?: number; // index in `subjects`; absent: none
+  subject?: number; // index in `subjects`, if a subject is chosen
 }
 
-/** Key of a draft. */
+/** The key of a draft. */
 export type DraftOf = "new" | `reply ${number}` | `edit ${number}`;
 
 export interface CommentsHost {
@@ -68,7 +66,7 @@ export interface CommentsHost {
   readonly tables: TablesPart;
   model(): Model | null;
   here(): readonly PresenceUser[];
-  /** A user has started a comment: other uses of the pointer end. */
+  /** Runs when a user starts a comment. Other uses of the pointer end. */
   began(): void;
   changed(): void;
 }
@@ -76,14 +74,14 @@ export interface CommentsHost {
 type Marks = Record<string, Draft>;
 
 export class Comments {
-  /** The state of the threads that are listed and have pins. */
+  /** The state of the threads that the list and the pins show. */
   state: ThreadState = "open";
-  /** Filters of the list: only this person's threads; only threads with these words. */
+  /** Filters of the list: only this user's threads, and only threads that contain these words. */
   mine = false;
   words = "";
-  /** The open thread by its id, or the new one. */
+  /** The id of the open thread; "new" for the new thread. */
   card: number | "new" | null = null;
-  /** The last event, for screen readers. */
+  /** The latest event, for screen readers. */
   said = "";
   readonly sight: PinSight;
 
@@ -91,7 +89,8 @@ export class Comments {
   private readonly _known = new KnownItems<Comment>();
   private _threads: Thread[] = [];
   private _people: readonly ProjectPerson[] = [];
-  private _asking: Promise<ProjectPerson[]> | null = null; // the pending request for people
+  // the pending request for the project's members
+  private _asking: Promise<ProjectPerson[]> | null = null;
   private _drafts: Kept<Marks> | null = null;
   private _reads: Kept<ReadMarks> | null = null;
   private readonly _shown = new Kept(() => globalThis.localStorage, "strata.comment_pins", true);
@@ -118,7 +117,7 @@ export class Comments {
   get loaded(): boolean {
     return this._known.loaded;
   }
-  /** The last read of the comments failed. */
+  /** Whether the last request for the comments failed. */
   get failed(): boolean {
     return this._known.failed;
   }
@@ -138,7 +137,7 @@ export class Comments {
   get openCount(): number {
     return this._threads.filter(({ first }) => first.state === "open").length;
   }
-  /** Threads with the chosen state, and the open one. */
+  /** Returns the threads in the chosen state, and the open thread. */
   get pins(): Thread[] {
     const shown = this.pinsShown
       ? findThreads(this._threads, { state: this.state, of: null, words: "" })
@@ -154,7 +153,9 @@ export class Comments {
     this.lookAgain();
   }
 
-  /** People who are present, who wrote a comment, or who are in the loaded list. */
+  /**
+   * Returns the names of users who are present, who wrote a comment, or who are in the loaded list.
+   */
   get people(): ReadonlySet<string> {
     const names = new Set(this._host.here().map(({ name }) => name));
     names.add(this._me);
@@ -164,8 +165,8 @@ export class Comments {
   }
 
   /**
-   * The people that a comment can mention: the members of the project except this person. Loaded
-   * once for each page, and again after a failure.
+   * Loads the users that a comment can mention: the members of the project except this user. They
+   * are loaded once for each page, and again after a failure.
    */
   async loadPeople(): Promise<readonly ProjectPerson[]> {
     const model = this._host.model();
@@ -177,7 +178,7 @@ export class Comments {
         this._people = (await this._asking).filter(({ user }) => user !== this._me);
         this._host.changed();
       } catch (error) {
-        if (!(error instanceof ApiError)) throw error; // the text stays possible without completion
+        if (!(error instanceof ApiError)) throw error; // comments also work without completion
       } finally {
         this._asking = null;
       }
@@ -186,7 +187,8 @@ export class Comments {
   }
 
   /**
-   * The server has identified this person. Earlier events are unknown, so all comments are loaded.
+   * Runs when the server has identified this user. Earlier events are unknown, so this loads all
+   * comments.
    */
   welcome(user: string): void {
     if (user !== this._me) {
@@ -227,7 +229,7 @@ export class Comments {
     this.put(comment);
     if (event !== "created" || !isNew || user === this._me) return;
     this.said = words.said(called(comment), comment.text);
-    // a person with the thread open sees it there
+    // the open thread already shows the comment to this user
     if (!mentions(comment.text, this._me) || this.card === comment.thread) return;
     const act = (): void => this.goTo(comment.id);
     notices.show("info", words.mentioned(called(comment)), comment.text.slice(0, 200), {
@@ -252,7 +254,7 @@ export class Comments {
     this.card = thread;
     this.lookAgain();
   }
-  /** Returns false if no card was open. The draft is kept. */
+  /** Closes the card and keeps the draft. Returns false if no card was open. */
   close(): boolean {
     if (this.card === null) return false;
     if (this.card === "new" && !this.draft("new")?.text.trim()) this.setDraft("new", null);
@@ -336,26 +338,25 @@ export class Comments {
   draft(of: DraftOf): Draft | null {
     return this._drafts?.value[of] ?? null;
   }
-  /** Changes the draft; null or an empty text discards it. */
+  /** Changes the draft. Null or an empty text discards it. */
   setDraft(of: DraftOf, change: Partial<Omit<Draft, "key">> | null): void {
     if (!this._drafts) return;
     const { [of]: before, ...others } = this._drafts.value;
-    // A changed text is another request: the server would refuse it with a key that was already
-    // sent.
+    // A changed text is a new request. The server would refuse it with a key that was already sent.
     const draft = change && { text: "", ...before, ...change, key: newId() };
     const isEmpty = !draft || (of !== "new" && draft.text === "");
     this._drafts.value = isEmpty ? others : { ...others, [of]: draft };
     this._host.changed();
   }
 
-  /** Sets the subject of the new thread; null: the place itself. */
+  /** Sets the subject of the new thread. Null stands for the position itself. */
   chooseSubject(subject: number | null): void {
     const { subject: _, ...draft } = this.draft("new") ?? { text: "" };
     this.setDraft("new", null);
     this.setDraft("new", subject === null ? draft : { ...draft, subject });
   }
 
-  /** Continues the unsent new thread. */
+  /** Opens the unsent new thread again. */
   goOn(): void {
     this.card = "new";
     this.lookAgain();
@@ -386,8 +387,8 @@ export class Comments {
   }
 
   /**
-   * Possible subjects at a point: the layers with a value there, and the selected layer, since a
-   * comment may be about a gap in it.
+   * Returns the possible subjects at a point: the layers with a value there, and the selected
+   * layer, because a comment may be about a gap in it.
    */
   private subjectsAt({ values }: SurfacePoint): Subject[] {
     const { layers, tables } = this._host;
@@ -442,8 +443,8 @@ export class Comments {
   }
 
   /**
-   * Changes the version that was read. If another person has changed it since, the function throws
-   * an ApiError with status 412, and the comment is updated.
+   * Changes the version that this page has loaded. If another user has changed the comment since,
+   * throws an ApiError with status 412 and updates the comment.
    */
   async change(
     comment: Comment,

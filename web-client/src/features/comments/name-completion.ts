@@ -1,5 +1,5 @@
-// Completes the names of people after an @ in a comment. The field is a combobox while names are on
-// offer; its list is placed at the field.
+// Completes user names after an @ in a comment. The field is a combobox while it suggests names,
+// and its list appears at the field.
 
 import { css, html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 import { mentionBegun, peopleLike } from "../../domain/mentions";
@@ -34,18 +34,19 @@ export const nameCompletionStyles = css`
 `;
 
 export class NameCompletion {
-  private _field: HTMLTextAreaElement | null = null; // with the caret, while names are on offer
+  // the field with the caret, while it suggests names
+  private _field: HTMLTextAreaElement | null = null;
   private _at = 0; // index of the @
   private _people: readonly ProjectPerson[] = [];
   private _chosen = 0;
 
   constructor(
     private readonly _host: ReactiveControllerHost,
-    /** The people that can be mentioned; loaded on demand. */
+    /** Loads the users that a comment can mention, on demand. */
     private readonly _all: () => Promise<readonly ProjectPerson[]>,
   ) {}
 
-  /** Whether names are on offer in the field with that name. */
+  /** Returns whether the field with this name suggests user names. */
   offersIn(name: string): boolean {
     return this._field?.name === name;
   }
@@ -58,7 +59,7 @@ export class NameCompletion {
   async look(field: HTMLTextAreaElement): Promise<void> {
     if (!mentionBegun(field.value, field.selectionStart)) return this.close();
     const all = await this._all();
-    // the user may have typed more while the people loaded
+    // the user may have typed more while the users loaded
     const begun = mentionBegun(field.value, field.selectionStart);
     const people = begun && field.matches(":focus") ? peopleLike(all, begun.word) : [];
     const isWhole =
@@ -78,8 +79,8 @@ export class NameCompletion {
   }
 
   /**
-   * Arrows choose, Enter and Tab accept, Escape closes only the list. Returns true if the list used
-   * the key.
+   * Arrow keys choose, Enter and Tab accept, and Escape closes only the list. Returns true if the
+   * list used the key.
    */
   onKey(event: KeyboardEvent): boolean {
     if (!this._field || event.ctrlKey || event.metaKey || event.altKey || event.isComposing)

@@ -1,5 +1,5 @@
-// <strata-face-hint>: instructions over the model while the user picks a face; the dialog is hidden
-// then.
+// <strata-face-hint>: instructions over the model while the user picks a face and the dialog is
+// hidden.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -21,7 +21,8 @@ export class StrataFaceHint extends LitElement {
         position: fixed;
         z-index: 30;
         left: 50%;
-        top: 66px; /* below the header: notices and, on phones, the panel are at the bottom */
+        /* below the header, because notices and, on phones, the panel are at the bottom */
+        top: 66px;
         transform: translateX(-50%);
         display: flex;
         flex-wrap: wrap;

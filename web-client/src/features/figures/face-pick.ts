@@ -1,5 +1,5 @@
-// Picking of a face of the surface: the user taps it, takes the one in the middle of the picture,
-// or cancels.
+// Lets the user pick a face of the surface: by a tap, in the middle of the 3D view, or not at all
+// by canceling.
 
 import type { Api } from "../../net/api";
 import { OrbitCamera } from "../../math/camera";
@@ -14,13 +14,14 @@ import type { ViewControl } from "../../session/view-control";
 export interface FacePickHost {
   readonly view: ViewControl;
   model(): Model | null;
-  /** Activates and deactivates the tool. */
+  /** Activates the tool; `end` deactivates it. */
   begin(): void;
   end(): void;
 }
 
 export class FacePick {
-  private _answer: ((face: Face | null) => void) | null = null; // resolves the pending ask()
+  // resolves the pending promise of ask()
+  private _answer: ((face: Face | null) => void) | null = null;
 
   constructor(
     private readonly _api: Api,
@@ -37,7 +38,7 @@ export class FacePick {
   }
 
   async takeAt({ x, y }: PointerSample): Promise<void> {
-    // a copy: the camera may move before the answer arrives
+    // a copy, because the camera may move before the response arrives
     const camera = Object.assign(new OrbitCamera(), this._host.view.camera);
     const asker = this._answer;
     const model = this._host.model();
@@ -55,7 +56,7 @@ export class FacePick {
       }
       const outwards = normal ?? back;
       const toEye = camera.perspective ? subtract(camera.eye(), position) : back;
-      // an open scan may show its inside
+      // the inner side of an open scan may be visible
       const seen = dot(outwards, toEye) < 0 ? scale(outwards, -1) : outwards;
       this.finish({ center: position, normal: [seen[0], seen[1], seen[2]] });
     } catch (error) {

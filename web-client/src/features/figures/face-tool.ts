@@ -1,5 +1,5 @@
-// A tap picks the face at the pointer. A drag rotates the model, since the face may be on its other
-// side.
+// A tap picks the face at the pointer. A drag rotates the model, because the face may be on its
+// other side.
 
 import { DragTool, type Navigator } from "../../tools/navigate";
 import type { Tool } from "../../tools/tool";
@@ -22,7 +22,7 @@ export class FaceTool extends DragTool implements Tool {
 
   key(key: string): boolean {
     if (key === "Enter")
-      this._host.takeInMiddle(); // keyboard
+      this._host.takeInMiddle(); // the keyboard command
     else if (key === "Escape") this._host.giveUp();
     else return false;
     return true;

@@ -1,5 +1,5 @@
-// <strata-figure-dialog>: asks for the options of a measured figure, previews the sheet, and starts
-// the job that makes the file. The content is this person's view or, with `view`, a named view.
+// <strata-figure-dialog>: sets the options of a measured figure, previews the sheet, and starts the
+// job that makes the file. The figure shows this user's view or, with `view`, a saved view.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -49,16 +49,16 @@ const kFrom: readonly FigureFrom[] = ["camera", ...kDirections, "face"];
 @customElement("strata-figure-dialog")
 export class StrataFigureDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Null: this person's view. */
+  /** Null stands for this user's view. */
   @property({ attribute: false }) view: View | null = null;
   @state() private _choices: FigureChoices = figureChoices(null);
-  @state() private _scaleTyped: string | null = null; // null: one of the list
+  @state() private _scaleTyped: string | null = null; // null if a scale of the list is chosen
   @state() private _dpiTyped: string | null = null;
   @state() private _problem: FieldProblem | null = null;
-  @state() private _asking = false; // a face is being picked; the dialog is hidden
+  @state() private _asking = false; // whether the user is picking a face while the dialog is hidden
   @state() private _sending = false;
   private readonly _kept = new Kept<unknown>(() => localStorage, "strata.figure", null);
-  private _camera: CameraMessage | null = null; // this person's camera
+  private _camera: CameraMessage | null = null; // this user's camera
   private _opener: HTMLElement | null = null;
 
   constructor() {
@@ -84,7 +84,7 @@ export class StrataFigureDialog extends LitElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.session.figures.awaited = null; // a notice offers the file
+    this.session.figures.awaited = null; // a notice offers the file instead
     this.session.face.giveUp();
   }
 
@@ -99,8 +99,8 @@ export class StrataFigureDialog extends LitElement {
   }
 
   /**
-   * The camera may follow another participant while the dialog is open; the sheet keeps this
-   * camera.
+   * Stores the current camera, because the user's camera may follow another participant while the
+   * dialog is open.
    */
   private seeCamera(): void {
     this._camera = this.session.views.content().camera;
@@ -333,7 +333,7 @@ export class StrataFigureDialog extends LitElement {
     <button slot="actions" class="primary" form="figure" ?disabled=${busy || this._sending}>${words.make}</button>`;
   }
 
-  /** A description of the preview for screen readers. */
+  /** Returns a description of the preview for screen readers. */
   private description(): string {
     const { from, scale, paper } = this._choices;
     const seen = from === "camera" && this.view ? words.as_view : words.froms[from];
@@ -354,7 +354,10 @@ export class StrataFigureDialog extends LitElement {
     else this.choose({ from });
   }
 
-  /** Hides the dialog and shows it again with the picked face, or unchanged. */
+  /**
+   * Hides the dialog while the user picks a face. Shows it again with the picked face, or
+   * unchanged.
+   */
   private async askFace(): Promise<void> {
     this._asking = true;
     this.dispatchEvent(new CustomEvent("aside"));
@@ -397,7 +400,7 @@ export class StrataFigureDialog extends LitElement {
     this.requestUpdate();
   }
 
-  /** Without a column, the first one is used. */
+  /** Uses the first column if the choice has none. */
   private label(labels: LabelChoice | null): void {
     this.session.figures.draft.labels = labels;
     if (this._problem?.field === "labels") this._problem = null;
@@ -426,10 +429,10 @@ export class StrataFigureDialog extends LitElement {
     this._problem = fieldProblem(problem);
   }
 
-  /** On a problem of the preview: shows it at its field if the dialog has that field. */
+  /** Shows a problem of the preview at its field, if the dialog has that field. */
   private onTold(event: CustomEvent<ProblemBody | null>): void {
     const problem = event.detail;
-    if (this.typingProblem) return; // the request differs from the typed values
+    if (this.typingProblem) return; // the preview's request does not contain the typed values
     if (problem?.field === undefined) return;
     this.refuse(problem);
     if (this._problem?.field !== "") event.preventDefault();
@@ -454,7 +457,7 @@ export class StrataFigureDialog extends LitElement {
     }
   };
 
-  /** Focuses the wrong field, which may be scrolled out of sight. */
+  /** Focuses the field with the problem, which may be outside the visible part of the dialog. */
   private async goToProblem(): Promise<void> {
     await this.updateComplete;
     this.renderRoot.querySelector<HTMLElement>('[aria-invalid="true"]')?.focus();
@@ -487,7 +490,7 @@ export class StrataFigureDialog extends LitElement {
 
   private readonly onClosed = (): void => {
     this.dispatchEvent(new CustomEvent("closed"));
-    // the browser loses the opener when the dialog was hidden
+    // the browser forgets the opener while the dialog is hidden
     if (!hasKeyboard()) this._opener?.focus();
   };
 }

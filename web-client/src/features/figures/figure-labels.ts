@@ -1,4 +1,4 @@
-// Labels at the places of a figure: the texts of one column, for a layer of records.
+// Labels at positions in a figure: the texts of one column, for a layer of records.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { holdsFiles, labelColumn, labelOf } from "../../domain/cells";
@@ -10,13 +10,13 @@ import { texts } from "../../texts";
 
 const words = texts.figures;
 
-/** The user's choice; without a column, the first one. */
+/** The user's choice. An empty column stands for the first one. */
 export interface LabelChoice {
   layer: number;
   column: string;
 }
 
-/** Columns that can be a label; the column with the records' names comes first. */
+/** Returns the columns that can be a label. The column with the records' names is first. */
 export function columnsForLabels(session: ModelSession, layer: Layer): Column[] {
   const table = session.tables.find(layer.table!);
   if (!table) return [];
@@ -25,7 +25,7 @@ export function columnsForLabels(session: ModelSession, layer: Layer): Column[] 
   return columns.sort((a, b) => Number(b === title) - Number(a === title));
 }
 
-/** The part of the request to the server; null: no labels, or none yet. */
+/** Returns this part of the request, or null if the figure has no labels. */
 export function labelsOf(session: ModelSession): FigureLabels | null {
   const { layer: id, column } = session.figures.draft.labels ?? {};
   const layer = session.layers.all.find((each) => each.id === id);
@@ -35,7 +35,9 @@ export function labelsOf(session: ModelSession): FigureLabels | null {
 
 const valueFor = (event: Event): string => (event.target as HTMLSelectElement).value;
 
-/** `wrong`: whether the field is invalid; `told`: the id of its message, for ARIA attributes. */
+/**
+ * `wrong` is whether the field is invalid. `told` is the id of its message, for ARIA attributes.
+ */
 export function labelFields(
   session: ModelSession,
   {

@@ -1,4 +1,4 @@
-// <strata-figure-preview>: the sheet with the current options, redrawn a moment after each change.
+// <strata-figure-preview>: the sheet with the current options, redrawn shortly after each change.
 
 import { pageLocale } from "../../core/locale";
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
@@ -12,22 +12,22 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.figures;
-const kWaitMs = 350; // after the last key press
+const kWaitMs = 350; // delay after the last key press
 
 @customElement("strata-figure-preview")
 export class StrataFigurePreview extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Null: nothing to draw yet. */
+  /** Null as long as the options are incomplete. */
   @property({
     attribute: false,
     hasChanged: (now: FigureRequest | null, before?: FigureRequest | null) =>
       before === undefined || JSON.stringify(now) !== JSON.stringify(before),
   })
   request: FigureRequest | null = null;
-  /** Text alternative of the picture. */
+  /** The text alternative of the image. */
   @property() alt = "";
   @state() private _state: "nothing" | "waiting" | "drawn" | "failed" = "nothing";
-  @state() private _picture = ""; // object URL
+  @state() private _picture = ""; // the object URL of the image
   @state() private _problem = "";
   private _timer = 0;
   private _asked: AbortController | null = null;
@@ -163,7 +163,7 @@ export class StrataFigurePreview extends LitElement {
       this.tell(null);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (asked !== this._asked) return; // a newer request exists
+      if (asked !== this._asked) return; // a newer request has been sent
       this._state = "failed";
       this._problem = this.tell(error.problem) ? error.message : "";
     }

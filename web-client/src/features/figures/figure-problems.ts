@@ -1,4 +1,4 @@
-// Problems of a figure, and the fields of the dialog that show them.
+// Problems of a figure, and the dialog's fields that show them.
 
 import { readNumber } from "../../core/locale";
 import type { ProblemBody } from "../../core/types";
@@ -7,13 +7,13 @@ import { texts } from "../../texts";
 
 const words = texts.figures;
 
-/** `field` is empty where the dialog has no field for the problem. */
+/** `field` is empty if the dialog has no field for the problem. */
 export interface FieldProblem {
   field: string;
   text: string;
 }
 
-/** The dialog's field for a member of the request. */
+/** Maps a member of the request to the dialog's field. */
 const kFieldOf: Readonly<Record<string, string>> = {
   direction: "from",
   normal: "from",
@@ -34,14 +34,14 @@ const kFields: readonly string[] = [
   "labels",
 ];
 
-/** For a problem from the server. */
+/** Returns the field for a problem that the server reported. */
 export function fieldProblem({ field = "", title, detail }: ProblemBody): FieldProblem {
   const part = field.split(/[.[]/)[0]!;
   const own = kFieldOf[part] ?? part;
   return { field: kFields.includes(own) ? own : "", text: detail ?? title };
 }
 
-/** The problem of typed values that are not valid choices; null: nothing was typed. */
+/** Returns the problem of a typed scale or resolution that is invalid, or null. */
 export function typingProblem(scale: string | null, dpi: string | null): FieldProblem | null {
   if (scale !== null && Number.isNaN(readScale(scale)))
     return { field: "scale", text: words.wrong_scale };

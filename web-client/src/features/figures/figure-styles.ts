@@ -97,7 +97,7 @@ export const figureStyles = css`
     overflow-wrap: anywhere;
   }
   .told.nothing {
-    flex-basis: 0; /* keeps the buttons in one row */
+    flex-basis: 0; /* keeps the buttons in a single row */
   }
   .bar {
     height: 0.375rem;

@@ -1,4 +1,4 @@
-// The texts on the sheet of a figure: title, caption and credit.
+// Fields for the texts on the sheet of a figure: title, caption and credit.
 
 import { html, type nothing, type TemplateResult } from "lit";
 import type { FigureWords } from "../../domain/figures";
@@ -12,7 +12,7 @@ const kWords: readonly { name: keyof FigureWords; most: number }[] = [
   { name: "credit", most: 1000 },
 ];
 
-/** Callbacks of the dialog: the state of its fields, and the change of a text. */
+/** Callbacks to the dialog for the state of its fields and for a changed text. */
 interface WordFields {
   wrong(field: string): boolean;
   told(field: string): string | typeof nothing;

@@ -1,5 +1,5 @@
-// Measured figures of the open model: the jobs of this person, the resulting files, and the draft
-// of the next figure.
+// Measured figures of the open model: this user's jobs, the resulting files, and the draft of the
+// next figure.
 
 import type { Api } from "../../net/api";
 import type { Face, FigureWords } from "../../domain/figures";
@@ -11,18 +11,18 @@ import { saveBlob } from "../../ui/save-from";
 import { texts } from "../../texts";
 
 export class Figures {
-  /** Kept while the model is open, so that the dialog shows it again. */
+  /** The draft is kept while the model is open. The dialog shows it again. */
   draft: {
     words: FigureWords;
     labels: { layer: number; column: string } | null;
     face: Face | null;
   } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null };
   /**
-   * Key of the job that the open dialog waits for: its file is saved as soon as it exists. Notices
-   * offer the files of other jobs.
+   * The key of the job that the open dialog waits for. Its file is saved immediately. Notices offer
+   * the files of other jobs.
    */
   awaited: number | null = null;
-  /** Name of the last saved file. */
+  /** The name of the last saved file. */
   saved = "";
 
   constructor(
@@ -30,9 +30,7 @@ export class Figures {
     private readonly _jobs: LayerJobs,
   ) {}
 
-  /**
-   * Returns the key of the job and awaits it. Throws an ApiError if the server refuses it at once.
-   */
+  /** Starts the job and returns its key. Throws an ApiError if the server refuses the request. */
   async make(name: string, wish: FigureRequest): Promise<number> {
     this.saved = "";
     this.awaited = await this._jobs.makeFigure(name, wish, (key, job) => this.done(key, job));

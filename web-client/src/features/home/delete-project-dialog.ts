@@ -1,6 +1,6 @@
-// <strata-delete-project-dialog>: shows the contents that are deleted with a project. A project
-// with models cannot be deleted; for one with tables the user types its name first. Opened by
-// askToDeleteProject().
+// <strata-delete-project-dialog>: lists the content that is deleted with a project. A project with
+// models cannot be deleted. For a project with tables the user must type its name first.
+// askToDeleteProject() opens the dialog.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -26,7 +26,7 @@ class StrataDeleteProjectDialog extends LitElement {
   answer: (isDeleted: boolean) => void = () => {};
 
   @state() private _tables: readonly Table[] | null = null;
-  @state() private _hasTrashed = false; // the trash contains models
+  @state() private _hasTrashed = false; // whether the trash contains models
   @state() private _typed = "";
   @state() private _problem = "";
   @state() private _busy = false;
@@ -142,7 +142,7 @@ class StrataDeleteProjectDialog extends LitElement {
       this._dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      await this.read(); // some tables may have been deleted
+      await this.read(); // the user may have deleted some tables
       this._problem = error.message;
     } finally {
       this._busy = false;
@@ -155,7 +155,7 @@ class StrataDeleteProjectDialog extends LitElement {
   }
 }
 
-/** Resolves to whether the project was deleted. */
+/** Resolves to true if the project was deleted. */
 export function askToDeleteProject(api: Api, listed: ListedProject): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataDeleteProjectDialog();

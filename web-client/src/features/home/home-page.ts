@@ -1,5 +1,5 @@
-// <strata-home-page>: the projects, or the models of one project, and running imports. With only
-// one project: its models.
+// <strata-home-page>: the projects, or the models of one project, and running imports. If only one
+// project exists, the page shows its models.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -36,7 +36,7 @@ import { cardStyles, homeStyles } from "./home-styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
 
-/** The text for a step of the import; the server's message where no text exists. */
+/** Returns the text for a step of the import. The default is the server's message. */
 const plainStep = (message: string): string =>
   /\b(atlas|texels?|uvs?|charts?)\b/i.test(message) ? texts.import.unfolding : message;
 
@@ -45,15 +45,15 @@ export class StrataHomePage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @property({ attribute: false }) imports!: Imports;
-  /** All projects that this person can see. */
+  /** All projects that this user can see. */
   @property({ attribute: false }) projects: readonly Project[] = [];
-  /** The slug of the open project; null: all. */
+  /** The slug of the open project; null shows all projects. */
   @property({ attribute: false }) project: string | null = null;
-  /** The projects in which this person may import scans and delete models. */
+  /** The projects in which this user may import scans and delete models. */
   @property({ attribute: false }) curated: readonly Project[] = [];
-  /** The one of them that imports go to. */
+  /** The project that imports go to, one of `curated`. */
   @property({ attribute: false }) into: Project | null = null;
-  /** Number of finished imports; a change reloads the list. */
+  /** The number of finished imports. A change reloads the list. */
   @property({ attribute: false }) imported = 0;
   @state() private _models: Model[] | null = null;
   @state() private _problem = "";
@@ -85,11 +85,11 @@ export class StrataHomePage extends LitElement {
       this._heading?.focus({ preventScroll: true });
   }
 
-  /** The open project; null: all, or none with that slug. */
+  /** The open project; null if no project, or an unknown one, is open. */
   private get shown(): Project | null {
     return this.projects.find(({ slug }) => slug === this.project) ?? null;
   }
-  /** The project whose models are shown, also if it is the only one. */
+  /** The project whose models are shown: the open project, or the only one. */
   private get about(): ListedProject | null {
     const { shown, listed } = this;
     if (!this._models) return null;
@@ -105,8 +105,8 @@ export class StrataHomePage extends LitElement {
     );
   }
   /**
-   * Whether there are several projects to choose from. Assumed by their number until their models
-   * are loaded.
+   * Whether the user can choose among several projects. Until the models are loaded, the number of
+   * projects decides.
    */
   private get hasSeveral(): boolean {
     return this._models
@@ -129,7 +129,7 @@ export class StrataHomePage extends LitElement {
     return (this._models ?? []).filter(({ project }) => !shown || project === shown.slug);
   }
 
-  /** Whether the list is loaded and empty: the page then shows what to do. */
+  /** Whether the list is loaded and empty. The page then shows the next step. */
   private get hasNone(): boolean {
     return this._models !== null && this.models.length === 0;
   }
@@ -138,7 +138,7 @@ export class StrataHomePage extends LitElement {
     return this.into !== null;
   }
 
-  /** Whether this person may create projects, and change and delete all of them. */
+  /** Whether this user may create projects, and change and delete all of them. */
   private get canAdminister(): boolean {
     return mayAdminister(this.me.role);
   }
@@ -217,7 +217,7 @@ export class StrataHomePage extends LitElement {
   }
   private get counted(): string {
     const words = texts.home;
-    if (!this._models || this.models.length === 0) return ""; // the page says so below
+    if (!this._models || this.models.length === 0) return ""; // a text below reports the empty list
     return this.isGallery
       ? words.count_projects(this.listed.length)
       : words.count(this.models.length);
@@ -267,7 +267,7 @@ export class StrataHomePage extends LitElement {
     </ul>`;
   }
 
-  /** The page for an unknown project, as for an unknown model. */
+  /** Renders the page for an unknown project. */
   private missing(): TemplateResult {
     const words = texts.home;
     return html`<div class="empty">
@@ -407,7 +407,7 @@ export class StrataHomePage extends LitElement {
     this.dispatchEvent(new CustomEvent<File[]>("import-files", { detail: files }));
   }
 
-  /** `next`: the path to open after the reload of the projects. */
+  /** `next` is the path to open after the projects are reloaded. */
   private projectsChanged(next: string | null = null): void {
     this.dispatchEvent(new CustomEvent("projects-changed", { detail: next }));
   }
@@ -424,7 +424,7 @@ export class StrataHomePage extends LitElement {
   }
 
   private async deleteProject(listed: ListedProject): Promise<void> {
-    // models may have been restored
+    // the user may have restored models in the dialog
     if (!(await askToDeleteProject(this.api, listed))) return this.load();
     notices.show("success", texts.home.deleted(listed.project.name));
     this.projectsChanged("/");

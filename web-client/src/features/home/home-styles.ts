@@ -1,6 +1,6 @@
 import { css } from "lit";
 
-/** Styles of the part below a card's picture. */
+/** Styles of the part of a card below its thumbnail. */
 export const cardStyles = css`
   .about {
     display: grid;
@@ -119,7 +119,7 @@ export const homeStyles = css`
     overflow-wrap: anywhere;
   }
   h1:focus {
-    outline: none; /* only the target of the focus, not a control */
+    outline: none; /* this element only receives the focus and is not a control */
   }
   .projects li > a {
     height: 100%;
@@ -262,7 +262,7 @@ export const homeStyles = css`
       flex-basis: auto;
     }
     .title h1 {
-      max-width: calc(100% - 2.625rem); /* leaves room for its menu */
+      max-width: calc(100% - 2.625rem); /* leaves space for the card's menu */
     }
     .into {
       flex: 1 1 100%;

@@ -1,5 +1,5 @@
-// Running imports: upload, then the server's job. Kept outside the page's elements, so that a
-// change of page does not stop them.
+// Running imports: the upload, then the server's job. They are separate from the page's elements,
+// so a change of page does not stop them.
 
 import { ApiError } from "../../net/api-error";
 import { nameOfFile } from "../../domain/file-names";
@@ -17,11 +17,11 @@ export interface ImportEntry {
   key: number;
   name: string;
   state: ImportState;
-  progress: number; // 0…1 of the current step
+  progress: number; // 0 to 1, in the current step
   message: string;
   problem: ProblemBody | null;
   model: number | null;
-  /** The import failed for a reason other than the file: the user can send it again. */
+  /** Whether the import failed for a reason other than the file, so the user can send it again. */
   mayRepeat: boolean;
 }
 
@@ -29,15 +29,18 @@ const kScans = /\.(ply|obj|stl|gltf|glb|zip)$/i;
 // materials, buffers and images that a mesh may refer to
 const kCompanions = /\.(mtl|bin|png|jpe?g|tiff?|webp|bmp|tga)$/i;
 
-/** The result of an import; both are null if it was canceled, or refused before it began. */
+/**
+ * The result of an import. Both members are null if the import was canceled, or refused before it
+ * began.
+ */
 export interface ImportResult {
   model: number | null;
   problem: ProblemBody | null;
 }
 
 /**
- * A mesh with the files that it may need. The mesh comes first and gives the name, with its folders
- * where other meshes have the same name.
+ * A mesh with the files that it may need. The mesh is first and gives the scan its name. The name
+ * includes folders if other meshes have the same file name.
  */
 export type ScanFiles = readonly [DroppedFile, ...DroppedFile[]];
 export interface Scan {
@@ -49,8 +52,8 @@ const folderOf = (path: string): string => path.slice(0, path.lastIndexOf("/") +
 const stemOf = (path: string): string => path.replace(/\.[^./]*$/, "");
 
 /**
- * The name of each mesh: that of its file; for equal names, with as many of its folders as make it
- * unique.
+ * Returns the name of each mesh, from its file name. Meshes with the same file name get as many
+ * folder names as they need to be unique.
  */
 function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
   const nameOf = ({ path }: DroppedFile, folders: number): string => {
@@ -70,12 +73,13 @@ function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
 }
 
 /**
- * Chooses the scans among dropped files. A single mesh gets all companion files; with several
- * meshes, each gets those whose paths start with its own. A notice reports the remaining files.
+ * Selects the scans from the dropped files. A single mesh gets all companion files. Of several
+ * meshes, each gets the files whose paths start with its own path. A notice reports the other
+ * files.
  */
 export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   const meshes = files.filter(({ path }) => kScans.test(path));
-  // the server refuses each by its name
+  // the server refuses each file by its name
   if (meshes.length === 0)
     return files.map((file): Scan => ({ files: [file], name: nameOfFile(file.file.name) }));
   const companions = files.filter(({ path }) => kCompanions.test(path));
@@ -101,7 +105,7 @@ export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   return scans;
 }
 
-/** The server restarted or was unreachable: the file is not the cause. */
+/** Returns whether the server restarted or was unreachable, so the file is not the cause. */
 const mayRepeat = (status: number): boolean => status === 0 || status >= 500 || status === 429;
 
 export class Imports {
@@ -119,7 +123,7 @@ export class Imports {
     return () => this._listeners.delete(listener);
   }
 
-  /** Imports into the project with that slug. */
+  /** Imports the scan into the project with that slug. */
   async start(scan: Scan, project: string): Promise<ImportResult> {
     const [{ file }] = scan.files;
     const refusal = !kScans.test(file.name)
@@ -176,7 +180,7 @@ export class Imports {
     if (job !== undefined) await this._api.send("DELETE /jobs/{job}", { path: { job } });
   }
 
-  /** Repeats a failed import from the start, in its place. */
+  /** Repeats a failed import from the start. Its entry keeps its position in the list. */
   async repeat(key: number): Promise<ImportResult> {
     const sent = this._sent.get(key);
     this.dismiss(key);

@@ -1,5 +1,5 @@
-// <strata-project-card>: a project in the list of projects: a picture of one of its models, their
-// number, and the time of the last change.
+// <strata-project-card>: a project in the list of projects. It shows a thumbnail of one of the
+// models, the number of models, and the time of the last change.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -16,13 +16,13 @@ import { toldDay } from "../../domain/times";
 import { whenSeen } from "../../ui/when-seen";
 
 const words = texts.home;
-let busy: Promise<void> = Promise.resolve(); // one request at a time, as for pictures
+let busy: Promise<void> = Promise.resolve(); // one request at a time, as for thumbnails
 
 @customElement("strata-project-card")
 export class StrataProjectCard extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) listed!: ListedProject;
-  @state() private _changed = ""; // time; empty: unknown
+  @state() private _changed = ""; // time of the last change; empty if unknown
   private _isSeen = false;
   private _stopWaiting: (() => void) | null = null;
 

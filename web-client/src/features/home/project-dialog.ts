@@ -1,4 +1,4 @@
-// The dialog that creates a project, or renames and describes one.
+// The dialog that creates a project, or changes its name and description.
 
 import { ApiError } from "../../net/api-error";
 import type { Api, Versioned } from "../../net/api";
@@ -10,10 +10,11 @@ import { texts } from "../../texts";
 const words = texts.projects;
 
 /**
- * A change of a project. It overwrites another person's change only after this person has seen it.
+ * A change to a project. It overwrites another user's change only after this user has seen that
+ * change.
  */
 export class ProjectChange {
-  // the version that this person has seen; null: `project`
+  // the version that this user has seen; null for `project`
   private _base: Versioned<Project> | null = null;
 
   constructor(
@@ -21,7 +22,7 @@ export class ProjectChange {
     private readonly _project: Project,
   ) {}
 
-  /** Returns null if another person has changed the project, which is now called `name`. */
+  /** Returns null if another user has changed the project. `name` is then the new name. */
   async save({ name, text }: Called, requireIfMatch: boolean): Promise<Project | null> {
     const { slug } = this._project;
     const { value, etag } =
@@ -52,7 +53,10 @@ const isSame = (a: Project, b: Project): boolean =>
   a.description === b.description &&
   (a.require_if_match ?? false) === (b.require_if_match ?? false);
 
-/** Resolves to the created or changed project; null: canceled. `project` null: creates one. */
+/**
+ * Creates a project, or changes `project` if it is not null. Resolves to the project, or to null if
+ * the user cancels.
+ */
 export function askProject(api: Api, project: Project | null): Promise<Project | null> {
   let answer: Project | null = null;
   const change = project && new ProjectChange(api, project);

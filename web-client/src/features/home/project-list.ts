@@ -1,26 +1,26 @@
-// The projects that a person can choose from, with their models.
+// The projects that a user can choose from, with their models.
 
 import { pageLocale } from "../../core/locale";
 import type { Project } from "../../core/protocol.gen";
 import { mayAdminister, mayCurate, type Me, type Model } from "../../core/types";
 
-export const kDefaultProject = "default"; // exists on every site
+export const kDefaultProject = "default"; // a project that exists on every site
 
 export interface ListedProject {
   project: Project;
   models: readonly Model[];
 }
 
-/** Whether the person may import scans there, and delete models. */
+/** Returns whether the user may import scans into the project and delete its models. */
 export const curates = ({ role }: Project): boolean => role !== undefined && mayCurate(role);
 
-/** Whether the person may revoke links for kiosks. */
+/** Returns whether the user may revoke kiosk links. */
 export const seesToKiosks = ({ role }: Pick<Me, "role">, projects: readonly Project[]): boolean =>
   mayAdminister(role) || projects.some(curates);
 
 /**
- * Sorts projects with models first, each part by name. The default project is omitted while it is
- * empty and others exist.
+ * Sorts the projects by name, with empty projects last. Omits an empty default project if others
+ * exist.
  */
 export function listProjects(
   projects: readonly Project[],
@@ -43,8 +43,8 @@ export function listProjects(
 }
 
 /**
- * Whether the models of the project have a project page as their parent: other projects exist,
- * which may be empty.
+ * Returns whether the models of the project have a project page as their parent. This requires
+ * other projects, which may be empty.
  */
 export const isOneOfSeveral = (slug: string, projects: readonly Project[]): boolean =>
   projects.length > 1 && projects.some((project) => project.slug === slug);

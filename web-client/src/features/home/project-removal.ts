@@ -1,18 +1,18 @@
-// Deletes a project. The server refuses to delete one that is not empty, so its tables are deleted
-// first. Models are never deleted.
+// Deletes a project. The server refuses to delete a project that is not empty, so its tables are
+// deleted first. Models are never deleted.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import type { Project, Table } from "../../core/protocol.gen";
 
-/** Whether the typed text is the project's name, apart from invisible differences. */
+/** Returns whether the typed text is the project's name, apart from invisible differences. */
 export const isNameOf = (typed: string, { name }: Project): boolean =>
   asSeen(typed) !== "" && asSeen(typed) === asSeen(name);
 const asSeen = (text: string): string => text.normalize().trim().replace(/\s+/g, " ");
 
 /**
- * Deletes the project and its tables, which no layer may show at that time. Parts that are already
- * deleted count as success, so that the call can be repeated.
+ * Deletes the project and its tables, which no layer may use at that time. Parts that are already
+ * deleted count as success, so the call can be repeated.
  */
 export async function removeProject(
   api: Api,
@@ -26,8 +26,8 @@ export async function removeProject(
 }
 
 /**
- * The server refuses to delete a table that columns of another one refer to; repeated passes find
- * the order.
+ * The server refuses to delete a table that columns of other tables refer to, so this function
+ * makes several passes.
  */
 async function removeTables(
   tables: readonly Table[],

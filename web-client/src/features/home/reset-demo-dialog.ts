@@ -1,5 +1,5 @@
-// <strata-reset-demo-dialog>: asks whether the demo should begin again, and shows the progress of
-// its creation. Opened by askToResetDemo().
+// <strata-reset-demo-dialog>: asks whether to reset the demo, and shows the progress.
+// askToResetDemo() opens the dialog.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -13,14 +13,14 @@ import { texts } from "../../texts";
 
 const words = texts.demo;
 
-export const kDemoProject = "demo"; // slug
+export const kDemoProject = "demo"; // the slug of the demo project
 
 @customElement("strata-reset-demo-dialog")
 class StrataResetDemoDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   answer: (isReset: boolean) => void = () => {};
 
-  @state() private _progress: number | null = null; // 0…1; null: not begun
+  @state() private _progress: number | null = null; // 0 to 1; null before the start
   @state() private _problem = "";
   @query("strata-dialog") private _dialog!: StrataDialog;
   private _answered = false;
@@ -68,7 +68,7 @@ class StrataResetDemoDialog extends LitElement {
   }
 }
 
-/** Resolves to whether the demo begins again. */
+/** Resolves to true if the demo is reset. */
 export function askToResetDemo(api: Api): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataResetDemoDialog();

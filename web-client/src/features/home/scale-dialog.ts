@@ -1,5 +1,5 @@
-// <strata-scale-dialog>: "This object is 105 × 99 × 91 mm: right?" Corrects the unit and the up
-// direction; painted values do not change. The dialog is next to the model, which previews the
+// <strata-scale-dialog>: asks whether the object's size is right, and corrects the unit and the up
+// direction. Painted values do not change. The dialog is next to the model, which previews the
 // choice.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -159,7 +159,7 @@ export class StrataScaleDialog extends LitElement {
   }
 }
 
-const kSure = 0.6; // below it the texts present a guess among several
+const kSure = 0.6; // below this confidence the texts present the unit as one guess among several
 
 function unitReason({
   unit,

@@ -1,4 +1,4 @@
-// The classes of a layer in its dialog: a row for each, with its color and label.
+// The classes in the dialog of a layer: a row for each class, with its color and label.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { kClassColors, opaqueColor } from "../../domain/palette";
@@ -8,7 +8,7 @@ import { icon } from "../../ui/icons";
 export interface ClassRow {
   at: number;
   label: string;
-  color: string; // #rrggbbaa
+  color: string; // in the format #rrggbbaa
 }
 
 const kMaxClasses = 255;
@@ -20,14 +20,16 @@ export const newClass = (at: number): ClassRow => ({
   color: kClassColors[(at - 1) % kClassColors.length]!,
 });
 
-/** Adds a class with the lowest free number; null if none is free. */
+/** Adds a class with the lowest free number. Returns null if no number is free. */
 export function withNewClass(rows: readonly ClassRow[]): ClassRow[] | null {
   const used = new Set(rows.map((row) => row.at));
   for (let at = 1; at <= kMaxClasses; ++at) if (!used.has(at)) return [...rows, newClass(at)];
   return null;
 }
 
-/** `isNew`: for a layer that is being created; in an existing layer, texels keep their classes. */
+/**
+ * `isNew` means that the layer is being created. In an existing layer, texels keep their classes.
+ */
 export function classRows({
   rows,
   isNew,

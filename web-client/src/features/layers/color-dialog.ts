@@ -1,6 +1,6 @@
-// <strata-color-dialog>: the colors of a layer: the column of its records that sets them, and
-// colors and patterns of its classes. The model previews each choice for this person only, until it
-// is saved.
+// <strata-color-dialog>: the colors of a layer: the column of records that sets them, and the
+// colors and patterns of classes. The model previews each choice for this user until the choice is
+// saved.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -35,10 +35,10 @@ import { texts } from "../../texts";
 
 type Method = "unique" | "equal" | "quantile" | "smooth";
 const kPatterns = ["solid", "hatch", "dots", "outline"] as const;
-const kAngles = [45, 135, 0, 90]; // of hatches, in turn
+const kAngles = [45, 135, 0, 90]; // angles of hatches, used in rotation
 const kMostCategories = 30;
 
-/** Layers with classes, and layers of records with columns. */
+/** Returns whether the layer has classes, or records with columns. */
 export const canBeColored = (layer: Layer): boolean =>
   layer.table !== undefined ||
   layer.palette.mode === "step" ||
@@ -58,7 +58,7 @@ export class StrataColorDialog extends LitElement {
   @state() private _classes: ColumnClasses | null = null;
   @state() private _problem = "";
   @state() private _working = false;
-  private _before: Palette | null = null; // this person's palette before the dialog
+  private _before: Palette | null = null; // this user's palette before the dialog opened
   private _asked = 0;
 
   constructor() {
@@ -86,7 +86,7 @@ export class StrataColorDialog extends LitElement {
         gap: var(--space-2);
         font-size: var(--text-small);
       }
-      /* The well shows the class as on the surface, with its pattern. */
+      /* The color well shows the class with its pattern, as on the surface. */
       li input[type="color"] {
         width: var(--control-small);
         height: var(--control-small);
@@ -210,8 +210,8 @@ export class StrataColorDialog extends LitElement {
   }
 
   /**
-   * Whether the point's record exists: a palette also has colors for future records, which have no
-   * name and no row.
+   * Returns whether the point's record exists. A palette also has colors for future records, which
+   * have no name and no row.
    */
   private isThere({ at }: PalettePoint): boolean {
     const { table } = this.layer;
@@ -255,7 +255,9 @@ export class StrataColorDialog extends LitElement {
     </ul>`;
   }
 
-  /** The row for values outside the classes, and the switch for patterns of all classes. */
+  /**
+   * Renders the row for values outside the classes, and the switch for the patterns of all classes.
+   */
   private rest(palette: Palette): TemplateResult {
     const words = texts.colors;
     const { _classes: classes } = this;
@@ -320,7 +322,7 @@ export class StrataColorDialog extends LitElement {
     if (column) void this.classify(column);
   }
 
-  /** Requests the classes and shows them; only the latest request counts. */
+  /** Requests the classes and shows them. Only the latest request counts. */
   private async classify(column: Column): Promise<void> {
     const asked = ++this._asked;
     const { layer, _method: method, _count: count, _ramp: ramp } = this;
@@ -423,7 +425,7 @@ export class StrataColorDialog extends LitElement {
     this.dispatchEvent(new CustomEvent("closed"));
   }
 
-  /** Another dialog replaces this one, or the page closes. */
+  /** Runs when another dialog replaces this one, or when the page closes. */
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this.restore();
@@ -434,7 +436,7 @@ export class StrataColorDialog extends LitElement {
     this.dispatchEvent(new CustomEvent("closed"));
   }
 
-  /** The previous palette, if nothing was saved. */
+  /** Restores the previous palette if nothing was saved. */
   private restore(): void {
     const { _before: before } = this;
     this._before = null;
@@ -452,7 +454,7 @@ const rampPalette = (ramp: Ramp, from: number, to: number): Palette => {
     mode: "linear",
     min: from,
     max: to,
-    // An empty range has a single point.
+    // a range of length zero has a single point
     points:
       to > from
         ? colors.map((color, index) => ({

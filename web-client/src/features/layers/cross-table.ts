@@ -1,5 +1,4 @@
-// <strata-cross-table>: the area that each class of one layer has in common with each class of
-// another.
+// <strata-cross-table>: the area that each class of one layer shares with each class of another.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -18,9 +17,9 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.cross_table;
-const kMostShown = 40; // rows and columns; files contain all
+const kMostShown = 40; // the largest number of rows and of columns shown; files contain all
 
-/** Layers whose classes can be counted against those of another layer. */
+/** Returns whether a cross-table can count the layer's classes. */
 export const hasClasses = (layer: Layer): boolean => !holdsFractions(layer.type);
 
 @customElement("strata-cross-table")
@@ -139,7 +138,7 @@ export class StrataCrossTable extends LitElement {
       : describeValue(layer, key, this.session.tables);
   }
 
-  /** The displayed and copied rows, with sums. */
+  /** Returns the displayed and copied rows, with sums. */
   private rows(other: Layer, { rows, columns, area_m2: areaM2 }: CrossTable): string[][] {
     const sum = (numbers: readonly number[]): number =>
       numbers.reduce((all, each) => all + each, 0);

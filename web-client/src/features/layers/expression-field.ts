@@ -1,7 +1,8 @@
-// <strata-expression-field>: an expression over layers, records and the surface, with a list of the
-// names to insert and completion of typed ones. During typing it shows the matching area, or the
-// problem with its place and corrections; with `lights` it also lights the area in the picture.
-// Fires `input`, on Enter `submitted`, and `measured` with the area or null.
+// <strata-expression-field>: an expression over layers, records and the surface. It has a list of
+// names to insert, and completes typed names.
+// While the user types, it shows the matching area, or the problem with its position and
+// corrections. With `lights` it also highlights the area in the 3D view.
+// It fires `input`, `submitted` on Enter, and `measured` with the area or null.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -39,7 +40,7 @@ import "./name-list";
 import type { StrataNameList } from "./name-list";
 
 const words = texts.expressions;
-const kPause = 350; // ms after the last key press
+const kPause = 350; // milliseconds after the last key press
 const kNone: Completion = { from: 0, suggestions: [] };
 
 interface Problem {
@@ -52,10 +53,10 @@ interface Problem {
 export class StrataExpressionField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property() label = "";
-  /** Whether the expression may also be a number; then it may contain normals and similar names. */
+  /** Whether the expression may also be a number. It can then contain normals and similar names. */
   @property({ type: Boolean }) computes = false;
   @property() initial = "";
-  /** Lights the area in the picture. */
+  /** Whether the area is highlighted in the 3D view. */
   @property({ type: Boolean }) lights = false;
 
   @state() private _completion = kNone;
@@ -273,7 +274,7 @@ export class StrataExpressionField extends LitElement {
       mistake,
       corrections: mistake ? this.corrections(text, mistake) : [],
       correct: (by) => {
-        // the problem belongs to the text without spaces around it
+        // the problem refers to the text without leading and trailing spaces
         const fixed = mistake ? corrected(text, mistake, by) : text;
         this.put(fixed, fixed.length);
       },
@@ -390,7 +391,7 @@ export class StrataExpressionField extends LitElement {
     this.focus();
   }
 
-  /** Asks the server for the area where the text is true; for a number, where it has a value. */
+  /** Requests the area where a condition is true, or where a number has a value. */
   private async preview(): Promise<void> {
     const text = this.value;
     this._running?.abort();
@@ -408,7 +409,7 @@ export class StrataExpressionField extends LitElement {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (running.signal.aborted || error.status === 499) return;
-      // names that only computed layers can use cannot be tried out before the layer exists
+      // the server cannot test names that are only for computed layers before the layer exists
       const unknown = this.computes && error.problem.reason === "computed_layers_only";
       if (!unknown) this._problem = this.problemOf(error, text);
     }
@@ -424,7 +425,7 @@ export class StrataExpressionField extends LitElement {
       const isNumber =
         error instanceof ApiError && error.problem.reason === "expects_condition" && this.computes;
       if (!isNumber) throw error;
-      // at the end, so that places of mistakes in the text stay
+      // the addition is at the end, so the positions of mistakes do not change
       return { area: await this.select(`${text}\nis not null`, signal), told: words.known };
     }
   }

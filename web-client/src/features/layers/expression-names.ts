@@ -1,5 +1,5 @@
-// The names that a condition or formula of the open model can contain, in groups, and examples
-// made of its layers.
+// The names that a condition or formula for the open model can contain, in groups, and examples
+// that use the model's layers.
 
 import type { Bounds, Column, Table } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
@@ -23,12 +23,12 @@ export const kSurfaceNames = [
   "slope",
   "curvature",
 ] as const;
-const kEverywhere = 4; // the first ones also work in conditions over stored layers
+const kEverywhere = 4; // the number of first names that also work in conditions over stored layers
 
 export interface Name extends Suggestion {
-  /** A name for people; the text itself where it is absent. */
+  /** A name for users. The default is the text itself. */
   label?: string;
-  /** The value of a class: it is inserted alone after a comparison with its layer. */
+  /** The value of a class. After a comparison with the layer, only the value is inserted. */
   value?: number;
 }
 
@@ -47,7 +47,7 @@ export interface NamesOf {
 const isMeasurement = ({ kind, palette }: Layer): boolean =>
   kind === "numeric" && palette.mode !== "categorical";
 
-/** The classes that a layer's legend names; none for layers of records. */
+/** Returns the classes with a label in the layer's legend. Layers of records have no classes. */
 const classesOf = (layer: Layer): { at: number; label: string }[] =>
   layer.kind === "numeric" && layer.palette.mode === "categorical" && !layer.palette.column
     ? layer.palette.points.flatMap(({ at, label }) => (label ? [{ at, label }] : []))
@@ -65,7 +65,7 @@ function columnHint({ kind, unit, choices }: Column): string {
   return unit || texts.column_dialog.kinds[kind];
 }
 
-/** The names of the classes, for errors that name a class instead of its number. */
+/** Returns the names of the classes, for errors where the user typed a name instead of a number. */
 export const namedClasses = (layers: readonly Layer[]): NamedClass[] =>
   layers.flatMap((layer) =>
     classesOf(layer).map(({ at, label }) => ({
@@ -89,7 +89,7 @@ export function nameGroups({ layers, table, computes }: NamesOf): NameGroup[] {
   for (const layer of layers) {
     const slug = nameInText(layer.slug);
     const classes = classesOf(layer);
-    // the only class is where the layer is painted
+    // a layer with only one class has it wherever it is painted
     if (classes.length > 1)
       groups.push({
         title: words.groups.classes(labelOf(layer)),
@@ -123,7 +123,7 @@ export function nameGroups({ layers, table, computes }: NamesOf): NameGroup[] {
   return groups.filter(({ names }) => names.length > 0);
 }
 
-/** The groups with the names that contain all words of the search. */
+/** Returns the groups with the names that contain all words of the search. */
 export function foundIn(groups: readonly NameGroup[], search: string): NameGroup[] {
   const wanted = search.toLocaleLowerCase().split(/\s+/).filter(Boolean);
   if (wanted.length === 0) return [...groups];
@@ -139,8 +139,9 @@ export function foundIn(groups: readonly NameGroup[], search: string): NameGroup
 }
 
 /**
- * The text with a name at the selection, and the caret behind it: with the spaces that separate it
- * from its neighbors. A class is only its number after a comparison with its layer.
+ * Replaces the selection by a name. Returns the text, and the caret position after the name. Adds
+ * the spaces that separate the name from its neighbors. After a comparison with its layer, only the
+ * number of a class is inserted.
  */
 export function withName(
   text: string,
@@ -174,7 +175,7 @@ export interface Example {
 
 const kMostExamples = 4;
 
-/** A number in the middle of the legend, with few digits. */
+/** Returns a number in the middle of the legend, with few digits. */
 function middleOf(low: number, high: number): number {
   const middle = (low + high) / 2;
   const digits = Math.floor(Math.log10(Math.abs(high - low) || 1)) - 1;
@@ -182,7 +183,7 @@ function middleOf(low: number, high: number): number {
   return Number((Math.round(middle / step) * step).toPrecision(4));
 }
 
-/** Conditions, and with `computes` formulas, over layers that the model has. */
+/** Returns conditions and, with `computes`, formulas over the model's layers. */
 export function examplesFor(
   { layers, table, computes }: NamesOf,
   bounds: Bounds | null,

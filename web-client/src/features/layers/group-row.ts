@@ -1,4 +1,5 @@
-// The heading of a group in the list of layers: it folds, and shows or hides all of its layers.
+// The heading of a group in the list of layers. It folds the group, and shows or hides all of its
+// layers.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { groupNames } from "../../domain/layer-groups";
@@ -43,14 +44,14 @@ export const groupRowStyles = css`
 export interface GroupRow {
   session: ModelSession;
   name: string;
-  /** All layers of the group: the list may show only some of them. */
+  /** All layers of the group, although the list may show only some of them. */
   layers: readonly Layer[];
   isFolded: boolean;
-  /** Null: it cannot be folded now. */
+  /** Null while the group cannot be folded. */
   fold: (() => void) | null;
 }
 
-/** The content of its list item. */
+/** Renders the content of the group's list item. */
 export function groupRow({ session, name, layers, isFolded, fold }: GroupRow): TemplateResult {
   const words = texts.layers;
   const visible = layers.some((layer) => session.layers.visible(layer));
@@ -87,9 +88,9 @@ async function rename(
   if (next && next !== name) await regroup(session, layers, next);
 }
 
-const kMaxGroup = 60; // characters of a group's name
+const kMaxGroup = 60; // maximum length of a group's name
 
-/** The field `group` of a form, with the names of the other groups. */
+/** Renders the field `group` of a form, with the names of the other groups as suggestions. */
 export const groupField = (session: ModelSession, layer: Layer | undefined): TemplateResult =>
   html`<label class="field">
     <span>${texts.layers.group}</span>
@@ -105,7 +106,7 @@ export const groupField = (session: ModelSession, layer: Layer | undefined): Tem
     <datalist id="groups">${groupNames(session.layers.all).map((name) => html`<option value=${name}></option>`)}</datalist>
   </label>`;
 
-/** Puts the layers into a group, for everyone; an empty name: into none. */
+/** Puts the layers into a group for all users. An empty name removes them from their group. */
 export async function regroup(
   session: ModelSession,
   layers: readonly Layer[],

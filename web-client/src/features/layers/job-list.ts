@@ -1,4 +1,4 @@
-// <strata-job-list>: the jobs of this model that make layers or files, with progress and result,
+// <strata-job-list>: the model's jobs that make layers or files, with progress and result. It is
 // above every tab of the side panel.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";

@@ -11,15 +11,15 @@ export interface LayerWanted {
   description: string;
   labels: Labels;
   descriptions: Labels;
-  group: string; // empty: none
+  group: string; // empty for no group
   palette: Palette;
   blend: LayerBlend;
   visibility: Visibility;
-  expression?: string; // for a computed layer
+  expression?: string; // only for a computed layer
   recompute?: "manual" | "automatic";
 }
 
-/** Returns only the members that differ, so that other people's changes of the rest are kept. */
+/** Returns only the members that differ, so other users' changes to the other members are kept. */
 export function layerChanges(
   layer: Layer,
   {

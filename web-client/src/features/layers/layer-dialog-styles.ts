@@ -80,7 +80,7 @@ export const layerDialogStyles = css`
   .chosen-lead {
     display: none;
   }
-  /* leaves room for the fields below */
+  /* leaves space for the fields below */
   @media (max-width: 560px) {
     .kinds {
       gap: var(--space-2);

@@ -1,5 +1,5 @@
-// <strata-layer-dialog>: creates a layer, or with `layer` changes its name, classes and colors. Its
-// terms are those of people who study the object.
+// <strata-layer-dialog>: creates a layer or, with `layer`, changes its name, classes and colors.
+// Its terms are those of users who study the object.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -43,7 +43,7 @@ import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import { visibilityChoice } from "../../ui/visibility";
 
-/** The purpose of a new layer: painting, or computed values. */
+/** The purpose of a new layer: painting or computed values. */
 type Purpose = LayerPurpose | "shape" | "formula";
 
 const kNoWords: Labels = {};
@@ -55,15 +55,15 @@ export class StrataLayerDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer: Layer | null = null;
 
-  /** The layer and its version at the start of the editing. */
+  /** The layer and its version when the dialog opened. */
   @state() private _base: { layer: Layer; etag: string } | null = null;
-  @state() private _stale = false; // another person has changed it since
+  @state() private _stale = false; // another user has changed the layer since
   @state() private _purpose: Purpose = "presence";
   @state() private _color = "#d55e00ff";
   @state() private _classes: ClassRow[] = [];
   @state() private _stepped = false;
-  @state() private _tables: Table[] = []; // whose records a layer can show
-  @state() private _table: Table | null = null; // null: a new table for this layer
+  @state() private _tables: Table[] = []; // tables whose records a layer can show
+  @state() private _table: Table | null = null; // null for a new table for this layer
   @state() private _visibility: Visibility = "public";
   @state() private _problem = "";
   @state() private _problemField = "";
@@ -99,7 +99,7 @@ export class StrataLayerDialog extends LitElement {
     try {
       const { value, etag } = await readLayer(this.session.api, this.session.modelId, layer.id);
       const purpose = purposeOf(value);
-      // a second class can be added later
+      // the user can add a second class later
       this._purpose = purpose === "presence" ? "classes" : purpose;
       this._classes = value.palette.points.map(({ at, label, color }) => ({
         at,
@@ -138,7 +138,7 @@ export class StrataLayerDialog extends LitElement {
     </strata-dialog>`;
   }
 
-  /** Rebuilt for each version of the layer. */
+  /** Renders the form again for each version of the layer. */
   private form(): unknown {
     const layer = this._base?.layer;
     return keyed(
@@ -246,7 +246,7 @@ export class StrataLayerDialog extends LitElement {
     this._table = this._tables.find((table) => table.id === id) ?? null;
   }
 
-  /** A layer that shows a table can take the table's name. */
+  /** Whether the layer can take the name of the table that it shows. */
   private get namedByTable(): boolean {
     return this._purpose === "records" && this._table !== null;
   }
@@ -372,7 +372,7 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  /** Null if the formula is missing. */
+  /** Returns null if the formula is missing. */
   private wantedFormula(form: FormData): Pick<LayerCreate, "expression" | "recompute"> | null {
     const expression = this._expression.value;
     return expression === ""
@@ -398,7 +398,10 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  /** Names in other languages, with the group and the blending; null: a field shows a problem. */
+  /**
+   * Returns the names in other languages, the group and the blending mode. Returns null if a field
+   * shows a problem.
+   */
   private said(
     group: string,
     blend: LayerBlend,
@@ -455,7 +458,7 @@ export class StrataLayerDialog extends LitElement {
   }
 
   private palette(name: string, min: number, max: number): Palette | null {
-    // the type follows from the values
+    // the expression or the shape determines the type
     if (this._purpose === "formula" || this._purpose === "shape") return null;
     switch (this._purpose) {
       case "presence":
@@ -489,7 +492,7 @@ export class StrataLayerDialog extends LitElement {
 
   private async send(wanted: LayerWanted): Promise<void> {
     const { session, _base: base } = this;
-    const purpose = this._purpose as LayerPurpose; // computed layers are sent elsewhere
+    const purpose = this._purpose as LayerPurpose; // other code sends computed layers
     if (base) {
       const change = layerChanges(base.layer, wanted);
       if (Object.keys(change).length > 0)
@@ -506,7 +509,7 @@ export class StrataLayerDialog extends LitElement {
       ...this.resolution(),
     };
     const layer = await createLayer(session.api, session.modelId, created);
-    // So that painting can begin at once: a key without a record cannot be painted.
+    // A key without a record cannot be painted. The first record lets users paint immediately.
     if (layer.table !== undefined && !this.namedByTable)
       await createRecord(session.api, layer.table);
     session.addCreated(layer);

@@ -1,4 +1,4 @@
-// The search above a long list of layers.
+// The search field above a long list of layers.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { misfit, wordsOf } from "../../core/search";
@@ -8,7 +8,7 @@ import { icon } from "../../ui/icons";
 import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
 
-/** Lists of more layers have a search. */
+/** The search field appears for more layers than this. */
 export const kMostWithoutSearch = 7;
 
 const kShown = ["all", "visible", "locked"] as const;
@@ -23,7 +23,9 @@ export const kNoFilter: LayerFilter = { text: "", show: "all" };
 export const isFiltered = ({ text, show }: LayerFilter): boolean =>
   text.trim() !== "" || show !== "all";
 
-/** `visible`: for this person. The name of its group also finds a layer. */
+/**
+ * `visible` is the visibility for this user. The search also matches the name of the layer's group.
+ */
 export function fits(layer: Layer, { text, show }: LayerFilter, visible: boolean): boolean {
   if (show === "visible" && !visible) return false;
   if (show === "locked" && !layer.locked) return false;

@@ -1,5 +1,5 @@
-// The layers of the open model: the list, the selected layer, and this person's visibility, opacity
-// and order, which are stored for this person alone.
+// The layers of the open model: the list, the selected layer, and this user's visibility, opacity
+// and order. These settings are stored for this user only.
 
 import { changeLayer } from "../../net/layers";
 import type { Api } from "../../net/api";
@@ -17,15 +17,15 @@ export interface LayerListHost {
 }
 
 export class LayerList {
-  all: Layer[] = []; // in this person's order: the last is on top
+  all: Layer[] = []; // in this user's order; the last one is on top
   selectedId: number | null = null;
 
-  // shown settings: of a named view, with later changes
+  // the applied settings: those of a saved view, with later changes
   private _overrides = new Map<number, LayerShown>();
-  private _own = new Map<number, LayerShown>(); // stored settings
+  private _own = new Map<number, LayerShown>(); // the stored settings
   private _atView = false;
   private readonly _keeper: PersonalViewKeeper;
-  /** Temporarily highlighted records; they take precedence over those of a view. */
+  /** Records that are highlighted temporarily. They take precedence over those of a view. */
   private readonly _highlights = new Map<number, Highlight>();
 
   constructor(
@@ -49,7 +49,7 @@ export class LayerList {
     this._host.changed();
   }
 
-  // ── this person's settings ─────────────────────────────────────────────────────────────────────
+  // ── this user's settings ───────────────────────────────────────────────────────────────────────
 
   visible(layer: Layer): boolean {
     return this._overrides.get(layer.id)?.visible ?? layer.visible;
@@ -65,7 +65,7 @@ export class LayerList {
     return this._overrides.get(layer.id)?.order ?? layer.order;
   }
 
-  /** Whether this person's settings differ from the defaults. */
+  /** Whether this user's settings differ from the defaults. */
   get hasOverrides(): boolean {
     return this.all.some((layer) => {
       const shown = this._overrides.get(layer.id);
@@ -82,7 +82,7 @@ export class LayerList {
   setOpacity(layer: Layer, opacity: number): void {
     this.override([layer], { opacity });
   }
-  /** Null: the layer's own palette. */
+  /** Null stands for the layer's own palette. */
   setPalette(layer: Layer, palette: Palette | null): void {
     for (const shown of [this._overrides, this._own]) {
       const { palette: _, ...rest } = shown.get(layer.id) ?? {};
@@ -90,10 +90,10 @@ export class LayerList {
     }
     this.changedByHand();
   }
-  /** Puts the layers, bottom to top, in this order, for this person. */
+  /** Sets this order of the layers, bottom to top, for this user. */
   arrange(wanted: readonly Layer[]): void {
-    // Changes the order of as few layers as possible, so that a new layer appears at its default
-    // place.
+    // Changes the order of as few layers as possible, so a new layer appears at its default
+    // position.
     const places = wanted.map((each) => this.order(each)).sort((a, b) => a - b);
     const differ = places.every((place, at) => at === 0 || place > places[at - 1]!);
     wanted.forEach((each, at) => {
@@ -105,7 +105,7 @@ export class LayerList {
     this.putAll(this.all);
     this.changedByHand();
   }
-  /** Null: no highlight. */
+  /** Null removes the highlight. */
   setHighlight(layerId: number, highlight: Highlight | null): void {
     if (highlight) this._highlights.set(layerId, highlight);
     else if (!this._highlights.delete(layerId)) return;
@@ -119,18 +119,18 @@ export class LayerList {
     this.changedByHand();
   }
 
-  /** Sends unsaved settings: before the page closes, and after a reconnection. */
+  /** Sends unsaved settings, before the page closes and after a reconnection. */
   flush(): void {
     this._keeper.flush();
   }
 
-  /** The settings that a named view keeps. */
+  /** Returns the settings that a saved view stores. */
   toKeep(): LayerOverride[] {
     return layersToKeep(this.all, ({ id }) => this.shown(id));
   }
   /**
-   * Applies the settings of a named view, without other highlights; layers that it does not contain
-   * get their defaults. Returns a function that restores the previous settings, without the
+   * Applies the settings of a saved view, without other highlights. Layers that the view does not
+   * contain get their defaults. Returns a function that restores the previous settings, without the
    * temporary highlights.
    */
   showView(view: { layers: LayerOverride[] }): () => void {
@@ -168,7 +168,7 @@ export class LayerList {
 
   // ── shared state ───────────────────────────────────────────────────────────────────────────────
 
-  /** `etag`: the version that the change was made for. */
+  /** `etag` is the version that the change is based on. */
   async change(layer: Layer, change: LayerPatch, etag?: string): Promise<void> {
     this.put(await changeLayer(this._api, this._modelId, layer.id, change, etag));
   }
@@ -185,8 +185,8 @@ export class LayerList {
   }
 
   /**
-   * Takes the layers that the server sends on joining, and discards settings of unknown layers.
-   * `kept`: the settings that are stored for this person, if any.
+   * Takes the layers that the server sends when this page joins the room. Discards settings of
+   * unknown layers. `kept` are the settings that are stored for this user, if any.
    */
   takeAll(layers: Layer[], kept?: PersonalView): void {
     this.putAll(layers);
@@ -219,7 +219,7 @@ export class LayerList {
     return { ...this._overrides.get(id), ...(highlight ? { highlight } : {}) };
   }
 
-  /** Necessary since the server refuses a whole message with one unknown layer. */
+  /** The server refuses a whole message that contains an unknown layer. */
   private forgetUnknown(): void {
     const known = new Set(this.all.map((layer) => layer.id));
     for (const kept of [this._overrides, this._own, this._highlights])
@@ -245,7 +245,7 @@ export class LayerList {
     this.putAll(this.all);
   }
 
-  /** Sends the new settings and stores them. */
+  /** Sends the changed settings and stores them. */
   private changedByHand(): void {
     this.sendOverrides();
     const own = this.all.map((layer) => ({

@@ -1,4 +1,5 @@
-// What a user must know before editing a layer: who can change it, and whether edits are reviewed.
+// Facts that a user needs before editing a layer: the users who can change it, and whether edits
+// are reviewed.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { isAsComputed, type Layer } from "../../core/types";

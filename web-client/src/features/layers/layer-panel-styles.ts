@@ -43,7 +43,7 @@ export const layerPanelStyles = css`
     padding-block: var(--space-2);
     font-weight: 600;
     text-align: start;
-    white-space: normal; /* the selected layer shows its whole name */
+    white-space: normal; /* the selected layer shows its full name */
   }
   .selected .name .ellipsis {
     overflow-wrap: anywhere;

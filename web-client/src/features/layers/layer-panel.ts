@@ -1,5 +1,5 @@
-// <strata-layer-panel>: the layers from top to bottom, as this person sees them. Tools paint on the
-// selected one.
+// <strata-layer-panel>: the layers from top to bottom, in this user's order. Tools paint on the
+// selected layer.
 
 import { recomputeLayer } from "../../net/layers";
 import { html, LitElement, nothing, type TemplateResult } from "lit";
@@ -52,7 +52,7 @@ export class StrataLayerPanel extends LitElement {
   @state() private _computing: number | null = null;
   @state() private _filter = kNoFilter;
   private readonly _folded = new Kept<string[]>(() => localStorage, "strata.folded_groups", []);
-  // the names of groups are ids of their headings
+  // a heading's id is the name of its group
   private readonly _drag = new DragOrder<number | string>(
     this,
     () => this.rows.map((row) => (typeof row === "string" ? row : row.id)),
@@ -74,7 +74,7 @@ export class StrataLayerPanel extends LitElement {
     groupRowStyles,
   ];
 
-  /** Top to bottom. */
+  /** The layers from top to bottom. */
   private get shown(): Layer[] {
     return [...this.session.layers.all].reverse();
   }
@@ -124,8 +124,8 @@ export class StrataLayerPanel extends LitElement {
   }
 
   /**
-   * `to`: in the list without the dragged row. It joins the group of the row under the pointer;
-   * between two rows of one group, it joins that group.
+   * `to` is the index in the list without the dragged row. The row joins the group of the row under
+   * the pointer. Between two rows of one group, it joins that group.
    */
   private drop(id: number | string, to: number, over: number | null): void {
     const layer = this.session.layers.find(Number(id));
@@ -137,7 +137,7 @@ export class StrataLayerPanel extends LitElement {
     const [above, below] = [before.at(-1), others[to]];
     const groupOf = (row: Layer | string | undefined): string =>
       typeof row === "string" ? row : (row?.group ?? "");
-    // the upper half of a heading is the end of what is above it
+    // the upper half of a heading belongs to the end of the rows above it
     const isAbove = typeof target === "string" && !before.includes(target);
     const share = typeof below !== "string" && groupOf(above) === groupOf(below);
     const wanted =
@@ -147,7 +147,7 @@ export class StrataLayerPanel extends LitElement {
     this.move({ ...layer, group: group || undefined }, this.placeOf(layer, above, below));
   }
 
-  /** The place of `layer` in the list without it, between two rows. */
+  /** Returns the index of `layer` in the list without it, between two rows. */
   private placeOf(
     layer: Layer,
     above: Layer | string | undefined,
@@ -163,12 +163,12 @@ export class StrataLayerPanel extends LitElement {
         ? first(above) + listed.filter((each) => each.group === above).length
         : first(above);
     }
-    // the heading of the dragged layer alone
+    // the only neighbor is the heading of the dragged layer
     if (below === undefined) return listed.length;
     return typeof below === "string" ? first(below) : listed.indexOf(below);
   }
 
-  /** All layers in the order of the list, also those of folded groups. */
+  /** All layers in the order of the list, including those of folded groups. */
   private get listed(): Layer[] {
     return groupsOf(this.shown).flatMap(({ layers }) => layers);
   }
@@ -410,7 +410,10 @@ export class StrataLayerPanel extends LitElement {
     </div>`;
   }
 
-  /** Anyone who may change the layer may recompute it: its lock only prevents editing by hand. */
+  /**
+   * Every user who may change the layer may recompute it, because its lock only prevents editing by
+   * hand.
+   */
   private mayRecompute(layer: Layer): boolean {
     const { canPaint, canCurate } = this.session;
     return (
@@ -447,8 +450,8 @@ export class StrataLayerPanel extends LitElement {
   }
 
   /**
-   * `index` counts from the top of the list of all layers, without the layer itself, which has the
-   * group that it will have.
+   * `index` counts from the top of the list of all layers, without the layer itself. The layer
+   * already has its new group.
    */
   private move(layer: Layer, index: number): void {
     const { layers } = this.session;
@@ -465,7 +468,7 @@ export class StrataLayerPanel extends LitElement {
     }
   }
 
-  /** Changes to a value type that has room for more keys. */
+  /** Changes the layer to a value type with more keys. */
   private async widen(layer: Layer): Promise<void> {
     const words = texts.layers;
     const [, highest] = valueRange(layer.type);

@@ -1,4 +1,4 @@
-// The legend of a palette: gradient with ticks, or swatches with labels.
+// The legend of a palette: a gradient with ticks, or swatches with labels.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { labelOf } from "../../domain/cells";
@@ -72,21 +72,21 @@ export const legendStyles = css`
   }
 `;
 
-/** Records, terms and tables that the legend reads. */
+/** The records, terms and tables that the legend reads. */
 export interface LegendNames extends RecordLabels {
   find(table: number): Table | null;
   terms(table: number): TermTree | null;
   lacks(table: number, key: number): boolean;
 }
 
-/** `palette`: this person's palette for the layer. */
+/** `palette` is this user's palette for the layer. */
 export function legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
   if (palette.column) return columnLegend(layer, palette, records);
   const { unit } = layer;
   if (palette.mode === "categorical") {
     const { table } = layer;
     const terms = table === undefined ? null : records.terms(table);
-    // A palette also has colors for future records.
+    // a palette also has colors for future records
     const there =
       table === undefined
         ? palette.points
@@ -102,7 +102,7 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
   return gradient(palette, unit);
 }
 
-/** Orders the points of terms as in their list, each with its depth in the tree. */
+/** Orders the points of terms as in the list of terms, each with its depth in the tree. */
 function inTree(
   points: readonly PalettePoint[],
   terms: TermTree | null,
@@ -110,14 +110,14 @@ function inTree(
   terms?.want();
   if (!terms?.loaded) return points.map((point) => ({ point, depth: 0 }));
   const places = new Map(terms.terms.map(({ key, depth }, place) => [key, { place, depth }]));
-  const last = { place: Infinity, depth: 0 }; // for points that are not terms
+  const last = { place: Infinity, depth: 0 }; // the position of points that are not terms
   return points
     .map((point) => ({ point, ...(places.get(point.at) ?? last) }))
     .sort((a, b) => (a.place === b.place ? 0 : a.place - b.place));
 }
 
-const kLinesInSight = 8; // a longer legend scrolls, also by keys
-const kMostLines = 300; // a list of terms may have thousands
+const kLinesInSight = 8; // a longer legend scrolls, also with the keyboard
+const kMostLines = 300; // a list of terms may contain thousands
 const kIndentPx = 14;
 
 const line = (
@@ -130,7 +130,7 @@ const line = (
     <span class="ellipsis">${text}</span>
   </li>`;
 
-/** For colors by a column of the records. */
+/** Renders the legend for colors from a column of the records. */
 function columnLegend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
   const column =
     layer.table === undefined
@@ -156,7 +156,7 @@ function columnLegend(layer: Layer, palette: Palette, records: LegendNames): Tem
 export const classRange = (from: number, to: number, unit: string): string =>
   `${formatNumber(from, 4)} – ${formatNumber(to, 4)}${unit ? ` ${unit}` : ""}`;
 
-/** The label of a class of a column's values. */
+/** Returns the label of a class of a column's values. */
 export function valueLabel(
   { label, value, at }: PalettePoint,
   column: Column | undefined,
@@ -189,7 +189,7 @@ function gradient(palette: Palette, unit: string): TemplateResult {
   </div>`;
 }
 
-/** A small square with the layer's colors. */
+/** Renders a small square with the layer's colors. */
 export function layerChip(palette: Palette): TemplateResult {
   const first = palette.points[0];
   const background =

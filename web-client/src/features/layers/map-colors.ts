@@ -1,5 +1,5 @@
-// <strata-map-colors>: the main colors of a scanned map, and the value of each. The owner holds
-// `rows`; the event "rows" carries the new ones.
+// <strata-map-colors>: the main colors of a scanned map, and the value of each. The parent element
+// sets `rows`. The event "rows" contains the changed rows.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// A map that names its coordinate system, on a model without one: the page asks whether the model's
-// coordinates are in that system before it sends the map.
+// A map can have a coordinate system although the model has none. The page then asks whether the
+// model's coordinates are in that system, before it sends the map.
 
 import { css, html, type TemplateResult } from "lit";
 import type { MapContents, Model } from "../../core/types";
@@ -7,18 +7,18 @@ import { texts } from "../../texts";
 
 const words = texts.maps.crs;
 
-/** The coordinate system to ask about; null: no question. */
+/** Returns the coordinate system to ask about, or null if no question is necessary. */
 export const crsInDoubt = (contents: MapContents | null, model: Model | null): string | null =>
   contents?.crs && model && model.crs === "" ? contents.crs : null;
 
-/** Whether the page asked for these files, and the answer. */
+/** Whether the page asked about these files, and the user's reply. */
 export interface CrsAnswer {
   asked: boolean;
   taken: string | null;
 }
 export const kNotAsked: CrsAnswer = { asked: false, taken: null };
 
-/** The query parameter: the coordinate system of the model. */
+/** Returns the query parameter that sets the model's coordinate system. */
 export const crsQuery = ({ taken }: CrsAnswer): { crs?: string } =>
   taken === null ? {} : { crs: taken };
 

@@ -50,7 +50,7 @@ import "../../session/fields/value-picker";
 
 const words = texts.maps;
 const kFirstLineBytes = 65536;
-const kTolerance = { least: 1, most: 60, usual: 12 } as const; // of colors
+const kTolerance = { least: 1, most: 60, usual: 12 } as const; // the tolerance of colors
 
 type Kind = "readings" | "vertices" | "polygons" | "picture";
 
@@ -297,7 +297,7 @@ export class StrataMapDialog extends LitElement {
     }
   }
 
-  /** Asks the server for the contents of the files. */
+  /** Requests the contents of the files from the server. */
   private async look(): Promise<void> {
     const { _files: files, session } = this;
     const query = { tolerance: this._tolerance };
@@ -437,7 +437,7 @@ export class StrataMapDialog extends LitElement {
       return;
     }
     this._painting = true;
-    this._sending.givesUp = false; // closing the dialog does not undo it
+    this._sending.givesUp = false; // closing the dialog does not cancel the request
     const done = await this._sending.run(request);
     this._painting = false;
     this._sending.givesUp = true;

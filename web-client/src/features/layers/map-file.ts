@@ -1,4 +1,4 @@
-// Files that are painted into a layer: their kinds, and the parameters of the request.
+// Files that can be painted into a layer: their kinds, and the parameters of the request.
 
 import type { UploadFile } from "../../net/upload";
 import { readNumber, typedNumber } from "../../core/locale";
@@ -32,13 +32,16 @@ export const kMapEndings = [
   ...kPictureEndings,
 ] as const;
 
-/** For the `accept` of a file field. */
+/** Returns the value for the `accept` attribute of a file field. */
 export const accepted = (endings: readonly string[]): string =>
   endings.map((ending) => `.${ending}`).join(",");
 
 const endingOf = (name: string): string => /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
 
-/** A table of numbers, or a map that the server inspects; null: other files are included. */
+/**
+ * Returns "table" for a table of numbers, "map" for a map that the server inspects, or null if
+ * another kind of file is included.
+ */
 export function fileKind(names: readonly string[]): "table" | "map" | null {
   const endings = names.map(endingOf);
   if (endings.length === 1 && (kTableEndings as readonly string[]).includes(endings[0]!))
@@ -49,11 +52,14 @@ export function fileKind(names: readonly string[]): "table" | "map" | null {
     : null;
 }
 
-/** The first file of another kind. */
+/** Returns the first file of another kind. */
 export const unknownFile = (names: readonly string[]): string =>
   names.find((name) => fileKind([name]) === null) ?? names[0] ?? "";
 
-/** Decides by the first line of a table: measured places, or one number for each vertex. */
+/**
+ * Returns "readings" or "vertices", according to the first line of a table. Readings have
+ * coordinates. Vertex values have one number for each vertex.
+ */
 export function tableKind(text: string): "readings" | "vertices" {
   const names = (text.trimStart().split(/\r?\n/, 1)[0] ?? "")
     .split(/[,;\t]/)
@@ -64,7 +70,7 @@ export function tableKind(text: string): "readings" | "vertices" {
 export const asUploads = (files: readonly File[]): UploadFile[] =>
   files.map((file) => ({ file, path: file.name }));
 
-/** The six numbers of a world file, separated by commas; null: not six numbers. */
+/** Returns the six numbers of a world file, separated by commas, or null for other texts. */
 export function worldNumbers(text: string): string | null {
   const numbers = text.trim().split(/[\s,;]+/);
   return numbers.length === 6 &&
@@ -73,10 +79,10 @@ export function worldNumbers(text: string): string | null {
     : null;
 }
 
-/** How a picture gives numbers. */
+/** The way to read numbers from a picture. */
 export type PictureMode = "luminance" | "band" | "colors";
 
-/** The modes that the picture allows, the most likely first. */
+/** Returns the modes that the picture allows, with the most likely one first. */
 export function pictureModes(contents: MapContents): PictureMode[] {
   const modes: PictureMode[] = [];
   if (contents.bands !== undefined && !contents.is_rgb) modes.push("band");
@@ -90,13 +96,15 @@ export function pictureModes(contents: MapContents): PictureMode[] {
 }
 
 export interface ColorRow {
-  color: string; // "#rrggbb"
+  color: string; // in the format "#rrggbb"
   share: number;
   used: boolean;
-  value: string; // as typed
+  value: string; // as the user typed it
 }
 
-/** The colors found, each with the next of these values; the paper's color has none. */
+/**
+ * Returns the detected colors, each with the next of the values. The paper's color gets no value.
+ */
 export function colorRows(colors: readonly MapColor[], values: readonly number[]): ColorRow[] {
   let next = 0;
   let above = Math.max(0, ...values);
@@ -106,7 +114,10 @@ export function colorRows(colors: readonly MapColor[], values: readonly number[]
   });
 }
 
-/** `{"#c02020":1}`; null: a used color has no number, or no color is used. */
+/**
+ * Returns a text such as `{"#c02020":1}`, or null if a used color has no number or no color is
+ * used.
+ */
 export function colorKeys(rows: readonly ColorRow[]): string | null {
   const used = rows.filter((row) => row.used);
   if (used.length === 0 || used.some((row) => Number.isNaN(readNumber(row.value)))) return null;

@@ -1,5 +1,5 @@
-// The placement of a flat map: its viewing direction, and the position of a picture. Parts of
-// dialogs.
+// Parts of dialogs for the placement of a flat map: its viewing direction, and the position of a
+// picture.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { formatNumber } from "../../domain/measure";
@@ -17,7 +17,7 @@ export const directionField = (chosen: Along, choose: (along: Along) => void): T
     </select>
   </label>`;
 
-/** A picture with its own position needs no numbers. */
+/** A picture that contains its position needs no numbers. */
 export const worldField = (
   contents: MapContents,
   text: string,
@@ -36,7 +36,7 @@ export const worldField = (
         ></textarea>
       </label>`;
 
-/** A line with a summary of the files. */
+/** Renders a line with a summary of the files. */
 export function foundLine(contents: MapContents): TemplateResult {
   const { kind, polygons, columns, width, height, bands, bounds, crs } = contents;
   const parts =

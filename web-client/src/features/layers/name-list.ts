@@ -1,5 +1,5 @@
-// <strata-name-list>: the names that an expression can contain, in groups with a search. A click or
-// Enter inserts one: the event "insert" carries it. Escape fires "closed".
+// <strata-name-list>: the names that an expression can contain, in groups, with a search field. A
+// click or Enter fires "insert" with a name. Escape fires "closed".
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";

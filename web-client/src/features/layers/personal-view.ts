@@ -1,12 +1,12 @@
-// A person's stored settings for the layers of a model: sent to the server soon after each change,
-// and before the page closes.
+// A user's stored settings for the layers of a model. They are sent to the server shortly after
+// each change, and before the page closes.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import type { PersonalView } from "../../core/protocol.gen";
 
 const kPauseMs = 400; // a slider reports many changes
-const kMostKeptAlive = 60_000; // characters; the limit of browsers for `keepalive`
+const kMostKeptAlive = 60_000; // in characters; the browsers' limit for `keepalive`
 
 export class PersonalViewKeeper {
   private _timer: ReturnType<typeof setTimeout> | 0 = 0;
@@ -29,7 +29,10 @@ export class PersonalViewKeeper {
     this._timer = setTimeout(() => void this.send(), kPauseMs);
   }
 
-  /** Sends at once, since the page may close; includes settings of failed requests. */
+  /**
+   * Sends the settings immediately, because the page may close. They include settings of failed
+   * requests.
+   */
   flush(): void {
     clearTimeout(this._timer);
     void this.send();
@@ -48,7 +51,7 @@ export class PersonalViewKeeper {
       })
       .catch((error: unknown) => {
         if (!(error instanceof ApiError)) throw error;
-        this._wanted ??= view; // sent with the next change or after a reconnection
+        this._wanted ??= view; // the next change or a reconnection sends them again
       })
       .finally(() => (this._sending = null));
     await this._sending;

@@ -1,4 +1,4 @@
-// A layer's texels as files, to save and to load; and its outlines for maps.
+// A layer's texels as files, to save and to load, and its outlines for maps.
 
 import { newId } from "../../core/ids";
 import { labelOf } from "../../domain/cells";
@@ -15,14 +15,14 @@ import { texts } from "../../texts";
 export const kRasterFormats = ["tif", "png", "npy"] as const;
 export type RasterFormat = (typeof kRasterFormats)[number];
 
-/** By the file's name; null: not a format that a layer can load. */
+/** Returns the format by the file's name, or null if a layer cannot load it. */
 export function rasterFormat(filename: string): RasterFormat | null {
   const extension = /\.([a-z]+)$/i.exec(filename)?.[1]?.toLowerCase();
   if (extension === "tiff") return "tif";
   return kRasterFormats.find((format) => format === extension) ?? null;
 }
 
-/** PNG holds numbers of 8 and 16 bits only. */
+/** Returns the formats for a layer. PNG stores only numbers of 8 and 16 bits. */
 export const formatsOf = (layer: Layer): RasterFormat[] =>
   kRasterFormats.filter(
     (format) => format !== "png" || layer.type === "u8" || layer.type === "u16",
@@ -40,7 +40,7 @@ export function saveRaster(session: ModelSession, layer: Layer, format: RasterFo
 export const kFeatureFormats = ["geojson", "gpkg"] as const;
 export type FeatureFormat = (typeof kFeatureFormats)[number];
 
-/** The view from above: a wall model with `y` up has a plan in x and z. */
+/** Returns the direction of the plan view. The plan of a wall model with `y` up is in x and z. */
 export const planOf = (up: Model["up"]): `-${Axis}` => `-${up.at(-1) as Axis}`;
 
 export function saveFeatures(session: ModelSession, layer: Layer, format: FeatureFormat): void {
@@ -54,7 +54,7 @@ export function saveFeatures(session: ModelSession, layer: Layer, format: Featur
   );
 }
 
-/** Asks for a file and replaces the layer's contents by it. */
+/** Asks for a file and replaces the layer's content by the file's content. */
 export function chooseRaster(session: ModelSession, layer: Layer): void {
   const input = document.createElement("input");
   input.type = "file";

@@ -1,4 +1,4 @@
-// <strata-shape-fields>: the kind of a shape layer and its parameters; part of the dialog of a new
+// <strata-shape-fields>: the kind of a shape layer and its parameters. Part of the dialog of a new
 // layer.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -24,7 +24,7 @@ const words = texts.shape;
 @customElement("strata-shape-fields")
 export class StrataShapeFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** The field with a problem that the server or the dialog found. */
+  /** The field with a problem that the server or the dialog reports. */
   @property() wrong = "";
   @state() private _input: ShapeInput = {
     kind: "mean_curvature",
@@ -94,7 +94,7 @@ export class StrataShapeFields extends LitElement {
         property: firstProperty ? keyOf(firstProperty) : "",
       });
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // other kinds still work without the list
+      if (!(error instanceof ApiError)) throw error; // other kinds work without the list
     }
   }
 

@@ -1,10 +1,10 @@
-// The values that can be computed from a model's shape, in terms of people who study it.
+// The values that can be computed from a model's shape, in terms of users who study it.
 
 import { readNumber } from "../../core/locale";
 import type { Model, ShapeRecipe } from "../../core/types";
 import { texts } from "../../texts";
 
-/** Number of rays per point for openness. */
+/** The number of rays per point for openness. */
 export const kRays = { least: 16, most: 1024, usual: 64 } as const;
 
 export type ShapeKind = ShapeRecipe["kind"];
@@ -13,7 +13,7 @@ export interface ShapeKindInfo {
   kind: ShapeKind;
   title: string;
   lead: string;
-  /** The parameters of this kind. */
+  /** The parameters that this kind requires. */
   takes: readonly ("radius" | "distance" | "rays" | "absolute" | "model" | "property")[];
 }
 
@@ -55,7 +55,7 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
 export const shapeKind = (kind: ShapeKind): ShapeKindInfo =>
   kShapeGroups.flatMap((group) => group.kinds).find((info) => info.kind === kind)!;
 
-/** The person's input, as texts. */
+/** The user's input, as texts. */
 export interface ShapeInput {
   kind: ShapeKind;
   radius: string;
@@ -63,10 +63,10 @@ export interface ShapeInput {
   rays: string;
   absolute: boolean;
   model: string;
-  property: string; // "source/property"
+  property: string; // in the format "source/property"
 }
 
-/** Returns the recipe, or the problem of the input. Parameters of other kinds are omitted. */
+/** Returns the recipe, or the problem of the input. Omits parameters of other kinds. */
 export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; field: string } {
   const { takes } = shapeKind(input.kind);
   const recipe: ShapeRecipe = { kind: input.kind };
@@ -92,7 +92,8 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
     recipe.model = input.model;
   }
   if (takes.includes("property")) {
-    const slash = input.property.indexOf("/"); // only a property's name may contain one
+    // a source contains no slash, but a property's name may
+    const slash = input.property.indexOf("/");
     if (slash < 0) return { problem: texts.shape.property_missing, field: "property" };
     recipe.source = input.property.slice(0, slash);
     recipe.property = input.property.slice(slash + 1);
@@ -100,7 +101,7 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
   return recipe;
 }
 
-/** Models that this one can be compared with: those of the same project first. */
+/** Returns the models that this one can be compared with. Those of the same project are first. */
 export function otherModels(all: readonly Model[], model: Model): Model[] {
   const others = all.filter((other) => other.id !== model.id);
   return [

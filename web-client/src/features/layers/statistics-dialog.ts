@@ -27,9 +27,10 @@ export class StrataStatisticsDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @state() private _statistics: Statistics | null = null;
   @state() private _problem = "";
-  @state() private _tried: Palette | null = null; // while a limit of the colors is dragged
+  // the palette while the user drags a limit of the colors
+  @state() private _tried: Palette | null = null;
   private _saving = false;
-  private _counted = 0; // the layer's sequence at that time
+  private _counted = 0; // the layer's sequence at the time of the statistics
 
   constructor() {
     super();
@@ -150,7 +151,7 @@ export class StrataStatisticsDialog extends LitElement {
     void this.load();
   }
 
-  /** Counts again after an edit. */
+  /** Requests the statistics again after an edit. */
   override updated(): void {
     if (this._statistics && this.layer.sequence > this._counted) void this.load();
   }
@@ -200,13 +201,13 @@ export class StrataStatisticsDialog extends LitElement {
       ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
   }
 
-  /** The share of the model's surface. */
+  /** Returns the share of the model's surface. */
   private share(areaM2: number): string {
     const whole = this.session.model?.area_m2 ?? 0;
     return whole > 0 ? `${formatNumber((areaM2 / whole) * 100)} %` : "";
   }
 
-  /** The rows to copy: the displayed values, each number in a cell. */
+  /** Returns the rows to copy: the displayed values, with one number in each cell. */
   private rows(statistics: Statistics): string[][] {
     const words = texts.statistics;
     const line = (name: string, area: number): string[] => [
@@ -308,7 +309,7 @@ export class StrataStatisticsDialog extends LitElement {
       }`;
   }
 
-  /** Two handles for the pointer and the arrow keys: they set the range of the colors. */
+  /** Renders two handles for the pointer and the arrow keys, which set the range of the colors. */
   private limits(palette: Palette, from: number, to: number, unit: string): TemplateResult {
     const words = texts.statistics;
     const handle = (
@@ -336,7 +337,7 @@ export class StrataStatisticsDialog extends LitElement {
       <p class="hint" role="status">${words.range(`${formatNumber(palette.min, 4)}${unit}`, `${formatNumber(palette.max, 4)}${unit}`)}</p>`;
   }
 
-  /** Saves one change after the other: each key press is a change, and the last one remains. */
+  /** Saves one change at a time. Each key press is a change, and the last one remains. */
   private async saveRange(): Promise<void> {
     if (this._saving) return;
     this._saving = true;
@@ -355,6 +356,6 @@ export class StrataStatisticsDialog extends LitElement {
   }
 }
 
-/** Largest area first. */
+/** Sorts by area, with the largest first. */
 const sorted = (statistics: Statistics): KeyStatistics[] =>
   [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);

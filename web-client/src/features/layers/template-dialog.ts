@@ -1,4 +1,4 @@
-// <strata-template-dialog>: the templates and their contents; one click makes the tables of a
+// <strata-template-dialog>: the templates and their contents. One click creates the tables of a
 // template, and its layers on this model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -18,7 +18,7 @@ import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
 const words = texts.templates;
-const kMostColors = 6; // of a list, as a preview
+const kMostColors = 6; // the number of colors in the preview of a list
 
 @customElement("strata-template-dialog")
 export class StrataTemplateDialog extends LitElement {
@@ -26,7 +26,7 @@ export class StrataTemplateDialog extends LitElement {
   @state() private _templates: Template[] | null = null;
   @state() private _problem = "";
   @state() private _refused: { slug: string; problem: string } | null = null;
-  @state() private _making = ""; // slug
+  @state() private _making = ""; // the slug of the template that is being applied
   @query("strata-dialog") private _dialog!: StrataDialog;
 
   static override styles = [
@@ -182,15 +182,16 @@ export class StrataTemplateDialog extends LitElement {
 }
 
 /**
- * The server names the new objects in one language, that of the user's page; this preview shows the
- * same names.
+ * The server names the new objects in the language of the user's page. This preview shows the same
+ * names.
  */
 const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string =>
   labelOf({ name, labels });
 
 /**
- * The first term below another one, in the list of a layer: people draw a crack, not the family of
- * cracks. The server numbers the terms of a new list in their order. Null: not a list, or flat.
+ * Returns the first term with a parent in the list of a layer, because users paint a crack and not
+ * the family of cracks. The server numbers the terms of a new list in their order. Returns null if
+ * the layer has no list of terms, or a flat one.
  */
 export function firstTermKey({ layers, tables }: Template, layer: number): number | null {
   const terms = tables.find(({ slug }) => slug === layers[layer]?.table)?.terms ?? [];

@@ -18,9 +18,9 @@ import { texts } from "../../texts";
 
 const words = texts.transfer;
 
-const kUsualAngle = 60; // degrees
+const kUsualAngle = 60; // in degrees
 
-/** A first guess for the deviation of a new scan: a 500th of the object's size, in millimeters. */
+/** Guesses the deviation of a new scan: 1/500 of the object's size, in millimeters. */
 export function likelyToleranceMm(model: Pick<Model, "bounds" | "unit">): number {
   const { min, max } = model.bounds;
   const diagonal = Math.hypot(...[0, 1, 2].map((axis) => max[axis]! - min[axis]!));
@@ -220,6 +220,6 @@ export class StrataTransferDialog extends LitElement {
   }
 }
 
-/** "98.2 %" of an area, for reports. */
+/** Returns a share of an area such as "98.2 %", for reports. */
 export const shareText = (part: number, whole: number): string =>
   whole > 0 ? `${formatNumber((100 * part) / whole, 3)} %` : "–";

@@ -1,5 +1,5 @@
 // <strata-where-dialog>: fills or erases a layer where a condition over the layers is true. It is
-// placed next to the picture, where that area is lit before anything changes.
+// next to the 3D view, which highlights the matching area before any change.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// The measurement over the picture: its places, the straight legs between them, its course on the
-// surface, and the place that the plot's pointer marks.
+// The measurement over the 3D view: its points, the straight legs between them, its course on the
+// surface, and the point under the plot's pointer.
 
 import { html, nothing, svg, type TemplateResult } from "lit";
 import type { OrbitCamera } from "../../math/camera";
@@ -9,9 +9,9 @@ import { lengthSoFar } from "../../session/line-length";
 import { faces } from "../../session/pin-sight";
 
 interface Seen {
-  x: number; // CSS pixels
+  x: number; // in CSS pixels
   y: number;
-  /** The surface there faces the camera and is not cut away. */
+  /** Whether the surface there faces the camera and is not cut away. */
   towards: boolean;
 }
 
@@ -63,7 +63,7 @@ export function measureOverlay({
     ${tip ? lengthSoFar(view, measuring.soFar, tip) : nothing}`;
 }
 
-/** Marks the place that the key sets without a pointer. */
+/** Marks the point that the keyboard command sets. */
 const crossAt = ({ x, y }: { x: number; y: number }): TemplateResult =>
   svg`${[
     ["var(--mark-light)", 3.6],
@@ -87,8 +87,8 @@ function project(
 }
 
 /**
- * Path of the lines between consecutive places that `wanted` accepts; none to a place behind the
- * eye.
+ * Returns the path of the lines between consecutive points that `wanted` accepts. Omits lines to a
+ * point behind the eye.
  */
 function segments(
   places: readonly (Seen | null)[],

@@ -1,4 +1,4 @@
-// <strata-measure-panel>: the measurement in numbers and as a profile.
+// <strata-measure-panel>: the measurement as numbers and as a profile.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -20,14 +20,14 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.measure;
-const kFlat = 0.005; // of the polygon's size: places nearer to its plane count as in it
+const kFlat = 0.005; // share of the polygon's size; points nearer to its plane count as flat
 
 @customElement("strata-measure-panel")
 export class StrataMeasurePanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _equal = false;
   @query("strata-profile-plot") private _plot!: StrataProfilePlot | null;
-  private _hasKeyboard = false; // one of its buttons had the focus before rendering
+  private _hasKeyboard = false; // one of the panel's buttons had the focus before rendering
 
   constructor() {
     super();
@@ -102,7 +102,7 @@ export class StrataMeasurePanel extends LitElement {
     `,
   ];
 
-  /** Scrolls into view if another part of the panel was visible. */
+  /** Scrolls the panel into view if another part of the side panel was visible. */
   override firstUpdated(): void {
     this.scrollIntoView({ block: "nearest" });
   }
@@ -230,7 +230,7 @@ export class StrataMeasurePanel extends LitElement {
       </div>`;
   }
 
-  /** Text for screen readers, which do not see the numbers change. */
+  /** Returns the text for screen readers, which do not notice that the numbers change. */
   private said(model: Model): string {
     const { measuring } = this.session;
     const told = (units: number): string => measuredLength(units * metresPer(model.unit));
@@ -261,7 +261,7 @@ export class StrataMeasurePanel extends LitElement {
   }
 }
 
-/** Rounds a difference of lengths to the precision of the lengths. */
+/** Rounds a difference between lengths to the precision of the lengths. */
 function roundLike(difference: number, measured: number): number {
   if (!(measured > 0)) return difference;
   const step = 10 ** (Math.floor(Math.log10(measured)) - kMeasuredDigits + 1);

@@ -1,18 +1,18 @@
-// Taps set the places of a measurement. A drag rotates the model, as for comments, since the other
-// end may be on its far side.
+// Taps set the points of a measurement. A drag rotates the model, because the other end may be on
+// its far side.
 
 import type { PointerSample } from "../../ui/input";
 import { DragTool, type Navigator } from "../../tools/navigate";
 import type { Tool } from "../../tools/tool";
 
 export interface MeasureHost extends Navigator {
-  /** The position of the next place; null: the pointer left. */
+  /** Sets the pointer's position, or null after the pointer has left. */
   pointAt(sample: PointerSample | null): void;
   setInMiddle(): void;
   end(): void;
   takeBack(): void;
   clear(): void;
-  /** Whether there are places, or a tap waits for its place. */
+  /** Returns whether there are points, or a tap waits for its point. */
   begun(): boolean;
 }
 
@@ -33,7 +33,7 @@ export class MeasureTool extends DragTool implements Tool {
 
   key(key: string): boolean {
     if (key === "m" || key === "M")
-      this._host.setInMiddle(); // keyboard
+      this._host.setInMiddle(); // the keyboard command
     else if (!this._host.begun()) return false;
     else if (key === "Enter") this._host.end();
     else if (key === "Backspace" || key === "Delete") this._host.takeBack();

@@ -1,6 +1,6 @@
-// This person's measurement on the model: the places that were set, the surface between them, and
-// the plotted values. Places belong to the object, not to a picture: the camera may move between
-// them. Nothing is stored.
+// This user's measurement on the model: the points, the surface between them, and the plotted
+// values. Points belong to the object and not to an image, so the camera may move between them.
+// Nothing is stored.
 
 import type { Sent } from "../../net/calls";
 import { ApiError } from "../../net/api-error";
@@ -43,8 +43,8 @@ export interface MeasuredPlace {
 }
 
 /**
- * How the line follows the surface: the surface that one camera sees under the straight legs, or
- * the nearest place for each step of the legs.
+ * How the line follows the surface. "seen" follows the surface that one camera sees under the
+ * straight legs. "nearest" uses the nearest surface point for each step of the legs.
  */
 export type Way = "seen" | "nearest";
 
@@ -53,36 +53,37 @@ export interface MeasuredProfile {
   line: Sent<ProfileRequest>;
   /** In model units. */
   parts: ProfileParts;
-  /** The course in as few places as it needs. */
+  /** The course with as few points as necessary. */
   course: ProfileParts;
-  /** All places, from the start. */
+  /** All points, from the start. */
   places: readonly ProfilePlace[];
 }
 
 export const kMostPlaces = 100;
 const kNearestSteps = 1000;
-const kReachPx = 4; // largest distance of the line from a place that counts as visible
-const kReach = 0.001; // or this share of the model's size
+const kReachPx = 4; // a point counts as visible if the line passes within this distance
+const kReach = 0.001; // added to this distance, as a share of the model's radius
 
 export class Measuring {
   places: readonly MeasuredPlace[] = [];
-  /** No further place: the next tap starts a new measurement. */
+  /** Whether the measurement is complete. The next tap then starts a new one. */
   ended = false;
   profile: MeasuredProfile | null = null;
-  /** A request for the surface between the places is pending. */
+  /** Whether a request for the surface between the points is pending. */
   busy = false;
   problem = "";
-  /** The marked place in plot and model: an index of the profile's places. */
+  /** The marked point in the plot and on the model, as an index of the profile's points. */
   pointed: number | null = null;
 
-  private _way: Way | null = null; // the chosen one; null: "seen" where possible
-  private _layer: number | null = null; // with the plotted values
+  private _way: Way | null = null; // the user's choice; null stands for "seen" where possible
+  private _layer: number | null = null; // the layer with the plotted values
   private _pointer: PointerSample | null = null;
-  private _seenBy: CameraMessage | null = null; // the camera at the last pointer position
-  private _work: Promise<void> = Promise.resolve(); // taps run one after the other
-  private _waiting = 0; // number of taps that wait
-  private _count = 0; // of measurements: answers to earlier ones are ignored
-  private _asked = 0; // profile requests: only the latest counts
+  // the camera at the time of the last pointer position
+  private _seenBy: CameraMessage | null = null;
+  private _work: Promise<void> = Promise.resolve(); // taps are processed one at a time
+  private _waiting = 0; // the number of pending taps
+  private _count = 0; // the number of measurements; responses to earlier ones are ignored
+  private _asked = 0; // the number of profile requests; only the latest counts
   private readonly _soFar: LineMeasure<MarkPlace | null>;
 
   constructor(
@@ -101,41 +102,41 @@ export class Measuring {
   get positions(): Vec3[] {
     return this.places.map(({ position }) => position);
   }
-  /** Length along the surface; null while unknown. */
+  /** The length along the surface; null while it is unknown. */
   get along(): number | null {
     return this.profile ? lengthOf(this.profile.parts) : null;
   }
   /**
-   * The nearest places to a line through the object are separate patches whose length is
-   * meaningless.
+   * Whether the length along the surface has a meaning. The nearest points to a line through the
+   * object are separate patches, whose length has none.
    */
   get hasWay(): boolean {
     return this.profile?.way !== "nearest" || this.profile.parts.length === 1;
   }
-  /** Meters along the surface to the pointer; null where unknown. */
+  /** The length along the surface to the pointer, in meters; null if it is unknown. */
   get soFar(): number | null {
     return this._soFar.metres;
   }
-  /** End of the line from the last place to the pointer, in window pixels. */
+  /** The end of the line from the last point to the pointer, in window pixels. */
   get tip(): Point | null {
     return this.open && this._pointer ? [this._pointer.x, this._pointer.y] : null;
   }
-  /** Whether there are places, or a tap waits for its place. */
+  /** Whether there are points, or a tap waits for its point. */
   get begun(): boolean {
     return this.places.length > 0 || this._waiting > 0;
   }
-  /** Whether a tap adds a place. */
+  /** Whether the next tap adds a point. */
   get open(): boolean {
     return this.places.length > 0 && !this.ended && this.places.length < kMostPlaces;
   }
 
-  /** Layers with values that can be plotted as a curve. */
+  /** The layers with values that can be plotted as a curve. */
   get layers(): Layer[] {
     return this._host.layers.all.filter(
       ({ kind, palette }) => kind === "numeric" && palette.mode !== "categorical",
     );
   }
-  /** The layer with the plotted values; null: heights. */
+  /** The layer with the plotted values; null for heights. */
   get layer(): Layer | null {
     return this.layers.find(({ id }) => id === this._layer) ?? null;
   }
@@ -143,7 +144,8 @@ export class Measuring {
   // ── actions ────────────────────────────────────────────────────────────────────────────────────
 
   /**
-   * A tap sets a new place; on the last place, or on the first of several, it ends the measurement.
+   * A tap sets a new point. A tap on the last point, or on the first of several, ends the
+   * measurement.
    */
   setAt({ x, y }: PointerSample): void {
     const camera = this.cameraNow();
@@ -188,7 +190,7 @@ export class Measuring {
     this.queue(async () => this.endNow());
   }
 
-  /** Removes the last place. An ended measurement is open again. */
+  /** Removes the last point. Opens an ended measurement again. */
   takeBack(): void {
     this.queue(async () => {
       this.ended = false;
@@ -210,7 +212,7 @@ export class Measuring {
     this.followPointer();
   }
 
-  /** The line as seen from here, or the nearest places to its straight legs. */
+  /** Chooses between the line as seen from here and the nearest points to its straight legs. */
   chooseWay(way: Way): void {
     this._way = way;
     void this.learn(this.cameraNow());
@@ -219,7 +221,7 @@ export class Measuring {
   chooseLayer(id: number | null): void {
     this._layer = id;
     const { profile } = this;
-    for (const place of profile?.places ?? []) place.value = null; // of the previous layer
+    for (const place of profile?.places ?? []) place.value = null; // values of the previous layer
     if (profile) void this.askValues(profile);
     this._host.changed();
   }
@@ -230,7 +232,7 @@ export class Measuring {
     this._host.changed();
   }
 
-  /** The server's file, with the values of all layers that this person sees. */
+  /** Returns the server's file, with the values of all layers that this user sees. */
   async csv(): Promise<Blob> {
     const { profile } = this;
     const model = this._host.model();
@@ -244,7 +246,7 @@ export class Measuring {
 
   // ── events ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** The length of the line to the pointer belongs to the previous camera. */
+  /** The length of the line to the pointer is valid only for the previous camera. */
   cameraMoved(): void {
     this._soFar.follow(null);
   }
@@ -255,9 +257,9 @@ export class Measuring {
     if (this.layer?.id === id && this.profile) void this.askValues(this.profile);
   }
 
-  // ── the surface between the places ─────────────────────────────────────────────────────────────
+  // ── the surface between the points ─────────────────────────────────────────────────────────────
 
-  /** A copy: the camera may move before an answer arrives. */
+  /** Returns a copy, because the camera may move before a response arrives. */
   private cameraNow(): OrbitCamera {
     return Object.assign(new OrbitCamera(), this._host.view.camera);
   }
@@ -289,7 +291,7 @@ export class Measuring {
     this._host.changed();
   }
 
-  /** Runs one after the other: a tap depends on the result of the previous one. */
+  /** Runs one task at a time, because a tap depends on the result of the previous one. */
   private queue(work: (isCurrent: () => boolean) => Promise<void>): void {
     const count = this._count;
     const isCurrent = (): boolean => count === this._count;
@@ -300,7 +302,7 @@ export class Measuring {
       .finally(() => void (this._waiting -= isCurrent() ? 1 : 0));
   }
 
-  /** Requests the profile. The known profile of the same places is kept until then. */
+  /** Requests the profile. Until it arrives, a known profile of the same points is kept. */
   private async learn(camera: OrbitCamera): Promise<void> {
     const model = this._host.model();
     if (!model || this.places.length < 2) return;
@@ -323,7 +325,7 @@ export class Measuring {
     this._host.changed();
   }
 
-  /** Null where the camera does not see all places. */
+  /** Returns null if the camera does not see all points. */
   private async askSeen(model: Model, camera: OrbitCamera): Promise<MeasuredProfile | null> {
     const { positions } = this;
     const pixels = positions.flatMap((position): Point[] => {
@@ -382,7 +384,7 @@ export class Measuring {
     };
   }
 
-  /** Requests the same line with values of the plotted layer. */
+  /** Requests the same line with the values of the plotted layer. */
   private async askValues(profile: MeasuredProfile): Promise<void> {
     const { layer } = this;
     const model = this._host.model();

@@ -1,5 +1,5 @@
 // <strata-profile-plot>: height, or a layer's values, along the measured line. The pointer or the
-// arrow keys select a place, which is also marked on the model.
+// arrow keys select a point. The model also marks it.
 
 import { css, html, LitElement, nothing, render, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -45,10 +45,10 @@ const kOnPaper: PlotColors = {
 export class StrataProfilePlot extends LitElement {
   @property({ attribute: false }) profile!: MeasuredProfile;
   @property({ attribute: false }) model!: Model;
-  /** The layer with the plotted values; null: heights. */
+  /** The layer with the plotted values; null for heights. */
   @property({ attribute: false }) layer: Layer | null = null;
   @property({ type: Boolean }) equal = false;
-  /** Index of the selected place. */
+  /** The index of the selected point. */
   @property({ attribute: false }) pointed: number | null = null;
   @state() private _width = 0;
 
@@ -63,7 +63,7 @@ export class StrataProfilePlot extends LitElement {
       }
       .plot {
         cursor: crosshair;
-        margin-bottom: var(--space-2); /* room for the focus outline */
+        margin-bottom: var(--space-2); /* space for the focus outline */
         touch-action: pan-y;
         border-radius: var(--radius-small);
       }
@@ -73,7 +73,7 @@ export class StrataProfilePlot extends LitElement {
       }
       output {
         display: block;
-        min-height: 3lh; /* keeps the content below in place */
+        min-height: 3lh; /* the content below does not move */
         font-size: var(--text-small);
         color: var(--ink-soft);
       }
@@ -128,7 +128,7 @@ export class StrataProfilePlot extends LitElement {
       <output aria-hidden="true">${place ? this.told(place) : html`${words.plot_hint}`}</output>`;
   }
 
-  /** A separate file, dark on white. */
+  /** Returns the plot as a separate file, dark on white. */
   file(): Blob {
     const holder = document.createElement("div");
     render(this.draw(this.make(kFile.width, kFile.height), kOnPaper), holder);

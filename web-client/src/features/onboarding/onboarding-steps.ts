@@ -1,4 +1,5 @@
-// The steps of the tour of a model's page: their audience, and the elements that they explain.
+// The steps of the introduction to a model's page: the users that see them, and the elements that
+// they explain.
 
 import type { Box } from "../../ui/beside";
 
@@ -7,13 +8,13 @@ export type StepName = (typeof kSteps)[number];
 
 const kForPainters: readonly StepName[] = ["brush", "undo"];
 
-/** The steps for a person who may paint here, or may only view. */
+/** Returns the steps for a user who may paint here, or for one who may only view. */
 export const stepsFor = (canPaint: boolean): StepName[] =>
   kSteps.filter((name) => canPaint || !kForPainters.includes(name));
 
 /**
- * The step itself if its element is present; otherwise the next such step, or else the last one.
- * Null: none is present.
+ * Returns the step itself if its element is present, else the next step whose element is present,
+ * or else the last one. Returns null if no element is present.
  */
 export function nearestStep(name: StepName, there: readonly StepName[]): StepName | null {
   const after = kSteps.slice(kSteps.indexOf(name)).find((each) => there.includes(each));
@@ -21,18 +22,18 @@ export function nearestStep(name: StepName, there: readonly StepName[]): StepNam
 }
 
 /**
- * The element that a step explains, and the bar that contains it. `isRoom`: no single element to
- * mark.
+ * The element that a step explains, and the bar that contains it. With `isRoom` there is no single
+ * element to mark.
  */
 export interface OnboardingTarget {
   element: Element;
   bar: Element;
   isRoom?: boolean;
-  /** The element itself is hidden; this one opens it. */
+  /** Whether the element itself is hidden, and `element` opens it. */
   isWay?: boolean;
 }
 
-/** The element of a step on the page; null: none, or invisible. */
+/** Returns the element of a step on the page, or null if it is missing or invisible. */
 export function thingOf(name: StepName, page: ParentNode): OnboardingTarget | null {
   const found = find(name, page);
   return found && found.element.checkVisibility() && found.element.getClientRects().length > 0
@@ -71,7 +72,7 @@ function find(name: StepName, page: ParentNode): OnboardingTarget | null {
   }
 }
 
-/** The part of an element that is inside its bar and the window. */
+/** Returns the part of an element that is inside its bar and inside the window. */
 export function seenBox({ element, bar, isRoom }: OnboardingTarget): Box {
   const [own, outer] = [element.getBoundingClientRect(), bar.getBoundingClientRect()];
   if (isRoom) return middleOf(own);
@@ -85,7 +86,7 @@ export function seenBox({ element, bar, isRoom }: OnboardingTarget): Box {
   };
 }
 
-const kMargin = 0.3; // share of the stage around its middle part
+const kMargin = 0.3; // share of the stage on each side of its middle part
 
 const middleOf = ({ left, top, width, height }: DOMRect): Box => ({
   left: left + kMargin * width,

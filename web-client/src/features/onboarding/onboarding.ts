@@ -1,6 +1,6 @@
-// <strata-tour>: at the first model that a person opens in this browser, a card next to one element
-// after the other explains it. The page stays usable, and the keyboard focus stays where it is
-// until the person moves it to the card.
+// <strata-tour>: an introduction to a model's page, shown when a user opens the first model in this
+// browser. A card explains one element at a time. The page stays usable. The keyboard focus stays
+// in its position until the user moves it to the card.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -25,19 +25,19 @@ import {
 
 const words = texts.tour;
 const kGapPx = 12;
-const kLargePx = 100; // wider elements get more room inside the ring
+const kLargePx = 100; // wider elements get more space inside the ring
 const kNarrow = "(max-width: 820px)"; // as in modelStyles
 
 @customElement("strata-tour")
 export class StrataOnboarding extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Another dialog is open: the tour does not start automatically. */
+  /** Whether another dialog is open, so the introduction does not start automatically. */
   @property({ type: Boolean }) held = false;
   @state() private _step: StepName | null = null;
   @query("section") private _card!: HTMLElement | null;
   @query(".ring") private _ring!: HTMLElement | null;
   @query("button.primary") private _next!: HTMLButtonElement | null;
-  private _opener: HTMLElement | null = null; // had the focus before
+  private _opener: HTMLElement | null = null; // the element that had the focus before
   private _hasKeyboard = false;
 
   constructor() {
@@ -53,7 +53,7 @@ export class StrataOnboarding extends LitElement {
       }
       section {
         position: fixed;
-        z-index: 9; /* above the page, below menus and dialogs */
+        z-index: 9; /* above the page, and below menus and dialogs */
         display: grid;
         gap: var(--space-2);
         overflow-y: auto;
@@ -94,7 +94,7 @@ export class StrataOnboarding extends LitElement {
       }
       .choices .skip {
         margin: 0 auto 0 calc(-1 * var(--space-3));
-        outline-offset: -3px; /* inside the card */
+        outline-offset: -3px; /* keeps the outline inside the card */
       }
       .ring {
         position: fixed;
@@ -114,7 +114,7 @@ export class StrataOnboarding extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("resize", this._moved);
-    // of any scrolling element
+    // receives the events of every scrolling element
     addEventListener("scroll", this._moved, { capture: true, passive: true });
   }
   override disconnectedCallback(): void {
@@ -126,7 +126,7 @@ export class StrataOnboarding extends LitElement {
     if (this._step !== null) this.requestUpdate();
   };
 
-  /** Starts on request: takes the keyboard focus and returns it at the end. */
+  /** Starts on request. Takes the keyboard focus, and returns it at the end. */
   async start(): Promise<void> {
     this._opener = hasKeyboard();
     this.go(kSteps[0]);
@@ -134,7 +134,7 @@ export class StrataOnboarding extends LitElement {
     this._next?.focus({ preventScroll: true });
   }
 
-  /** Ends the tour permanently for this browser. Returns false if it was not running. */
+  /** Ends the introduction permanently in this browser. Returns false if it was not running. */
   end(): boolean {
     if (this._step === null) return false;
     const { isAtKeyboard } = this;
@@ -181,7 +181,7 @@ export class StrataOnboarding extends LitElement {
     if (thing && !thing.isRoom) bringIntoBar(thing);
   }
 
-  /** Goes to the next or previous step; after the last one the tour ends. */
+  /** Shows the next or previous step. After the last step the introduction ends. */
   private step(by: 1 | -1): void {
     const there = this.there();
     const to = there[there.indexOf(this._step!) + by];
@@ -244,7 +244,9 @@ export class StrataOnboarding extends LitElement {
     event.preventDefault();
   }
 
-  /** Arrow keys do not end the tour: one key press too many would close the card. */
+  /**
+   * Arrow keys do not end the introduction, because one key press too many would close the card.
+   */
   private stepFromKey(by: 1 | -1): void {
     const there = this.there();
     if (there[there.indexOf(this._step!) + by]) this.step(by);
@@ -277,7 +279,7 @@ export class StrataOnboarding extends LitElement {
   }
 }
 
-/** Scrolls the element into its bar if it is hidden or barely visible at the end. */
+/** Scrolls the element into its bar if it is hidden or barely visible at the edge. */
 function bringIntoBar(thing: OnboardingTarget): void {
   const enough = Math.min(thing.element.clientHeight, 0.8 * thing.bar.clientHeight);
   thing.element.scrollIntoView({
@@ -287,8 +289,8 @@ function bringIntoBar(thing: OnboardingTarget): void {
 }
 
 /**
- * Next to the bar of the element. For the model: at the top of its stage (on phones at the bottom,
- * near the hand) if the middle stays free.
+ * Positions the card next to the bar of the element. For the model, the card is at the top of the
+ * stage, if the middle stays free. On phones it is at the bottom, near the hand.
  */
 function placeOf(
   { bar, isRoom }: OnboardingTarget,

@@ -1,6 +1,6 @@
-// The selected area of polygon and lasso: outlines, each in the window of the camera that it was
-// drawn in, combined in their order. It is lit in the picture until it is painted, erased or
-// discarded. Corners can be changed while the picture shows the view of their outline.
+// The area that polygon and lasso select: outlines that are combined in their order. Each is in the
+// window of the camera that it was drawn with. The 3D view highlights the area until it is painted,
+// erased or discarded. Corners can be changed while the 3D view shows the view of their outline.
 
 import type { OutlineStep, SelectRequest, SelectResponse } from "../../core/protocol.gen";
 import type { CameraMessage } from "../../math/camera";
@@ -10,15 +10,15 @@ import type { LitArea } from "../../session/lit-area";
 import { kSnapPx, type FinishedOutlines } from "../../tools/outline";
 import type { PointerSample } from "../../ui/input";
 
-/** How the next outline changes the selection. */
+/** The effect of the next outline on the selection. */
 export type SelectionMode = "replace" | OutlineStep["combine"];
 
 export interface SelectedOutline extends OutlineStep {
-  /** The points were set one by one. */
+  /** Whether the user set the points one by one. */
   corners: boolean;
 }
 
-/** A corner of an outline, or with `between` the middle of the edge after it. */
+/** A corner of an outline or, with `between`, the middle of the edge after that corner. */
 export interface CornerPlace {
   outline: number;
   corner: number;
@@ -28,9 +28,9 @@ export interface CornerPlace {
 export interface AreaSelectionHost {
   readonly lit: Pick<LitArea, "showLasting">;
   camera(): CameraMessage;
-  /** Window pixels per CSS pixel. */
+  /** Returns the number of window pixels per CSS pixel. */
   scale(): number;
-  /** Layers whose values in the selection are shown. */
+  /** Returns the layers whose values in the selection are shown. */
   layers(): string[];
   /** Paints or erases the selection. */
   fill(): void;
@@ -44,14 +44,15 @@ type Within = NonNullable<SelectRequest["within"]>;
 
 export class AreaSelection implements FinishedOutlines {
   outlines: readonly SelectedOutline[] = [];
-  /** Chosen with a button; keys held at the start of an outline take precedence. */
+  /** The mode of the pressed button. Keys held at the start of an outline take precedence. */
   mode: SelectionMode = "replace";
-  /** Null: unknown yet. */
+  /** Null while it is unknown. */
   measured: SelectResponse | null = null;
-  /** The corner that was pressed last, which can be deleted. */
+  /** The corner that was pressed last. It can be deleted. */
   active: CornerPlace | null = null;
   private _next: SelectionMode = "replace";
-  private _before: readonly SelectedOutline[] | null = null; // a corner is held
+  // the outlines before the drag of a corner
+  private _before: readonly SelectedOutline[] | null = null;
   private _asked = 0;
 
   constructor(private readonly _host: AreaSelectionHost) {}
@@ -68,13 +69,15 @@ export class AreaSelection implements FinishedOutlines {
     this._host.changed();
   }
 
-  /** Call this at the start of an outline. Shift adds, Alt subtracts, both intersect. */
+  /**
+   * Call this at the start of an outline. Shift adds, Alt subtracts, and both together intersect.
+   */
   begin({ shift = false, alt = false }: PointerSample): void {
     const byKeys = shift && alt ? "intersect" : shift ? "add" : alt ? "subtract" : null;
     this._next = byKeys ?? this.mode;
   }
 
-  /** Whether another outline would be too many. */
+  /** Returns whether another outline would exceed the limit. */
   refusesMore(sample: PointerSample): boolean {
     this.begin(sample);
     return this.isFull && this._next !== "replace";
@@ -100,7 +103,7 @@ export class AreaSelection implements FinishedOutlines {
     this.put([]);
   }
 
-  /** The area as the contract describes it; null if nothing is selected. */
+  /** The area in the contract's format; null if nothing is selected. */
   get within(): Within | null {
     const [first, ...rest] = this.outlines;
     if (!first) return null;
@@ -113,20 +116,20 @@ export class AreaSelection implements FinishedOutlines {
     };
   }
 
-  /** Measures the selection again, for other layers. */
+  /** Measures the selection again for other layers. */
   measureAgain(): void {
     if (!this.isEmpty) void this.measure();
   }
 
   // ── corners ────────────────────────────────────────────────────────────────────────────────────
 
-  /** Whether the picture shows the view that the outline was drawn in. */
+  /** Returns whether the 3D view shows the view that the outline was drawn in. */
   isInView({ camera }: Pick<SelectedOutline, "camera">): boolean {
     return JSON.stringify(camera) === JSON.stringify(this._host.camera());
   }
 
   grab(at: PointerSample): boolean {
-    // held keys begin another outline
+    // with a held key the pointer starts another outline
     const place = at.shift || at.alt ? null : this.placeAt(at);
     if (!place && this.active) {
       this.active = null;
@@ -160,7 +163,7 @@ export class AreaSelection implements FinishedOutlines {
     this.put(keep ? this.outlines : before);
   }
 
-  /** Whether the pressed corner can be deleted: a triangle stays. */
+  /** Whether the pressed corner can be deleted. A triangle keeps its corners. */
   get canDelete(): boolean {
     return this.active !== null && (this.outlines[this.active.outline]?.path.length ?? 0) > 3;
   }
@@ -246,7 +249,7 @@ const stepOf = ({ combine, camera, path, through }: SelectedOutline): OutlineSte
   ...(through ? { through } : {}),
 });
 
-/** The middle of the edge after a corner. */
+/** Returns the middle of the edge after a corner. */
 export function middleAfter(path: readonly Point[], corner: number): Point {
   const [x0, y0] = path[corner]!;
   const [x1, y1] = path[(corner + 1) % path.length]!;

@@ -1,5 +1,5 @@
-// <strata-brush-panel>: the value that the selected painting tool paints in the selected layer, its
-// width, and its reach.
+// <strata-brush-panel>: the value that the selected painting tool paints in the selected layer, the
+// width of the brush, and its reach.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -25,7 +25,7 @@ import "../../session/fields/value-picker";
 
 const kSliderSteps = 1000;
 
-/** Requests the dialog of a fill by a condition. */
+/** Requests the dialog that fills by a condition. */
 export type WhereRequest = { dialog: "where"; layer: Layer };
 
 @customElement("strata-brush-panel")
@@ -163,7 +163,7 @@ export class StrataBrushPanel extends LitElement {
       ${this.whole(layer)}`;
   }
 
-  /** The values of the layer in the selected area. */
+  /** Renders the layer's values in the selected area. */
   private selection(layer: Layer): TemplateResult {
     const { area } = this.session.painting;
     const words = texts.selection;
@@ -189,7 +189,7 @@ export class StrataBrushPanel extends LitElement {
     </div>`;
   }
 
-  /** The record and the column of new lines and points. */
+  /** Renders the fields for the record and the column of new lines and points. */
   private marks(layer: Layer, kind: MarkKind): TemplateResult {
     const { marks } = this.session;
     const words = texts.marks;
@@ -290,7 +290,7 @@ export class StrataBrushPanel extends LitElement {
     </div>`;
   }
 
-  /** Edits of the whole layer, without the pointer. */
+  /** Renders the edits that affect the whole layer and need no pointer. */
   private whole(layer: Layer): TemplateResult {
     const detail: WhereRequest = { dialog: "where", layer };
     const askWhere = (): void =>
@@ -351,7 +351,7 @@ export class StrataBrushPanel extends LitElement {
       <strata-shape-picker .session=${session}></strata-shape-picker>`;
   }
 
-  /** The width in the other unit, at the surface under the pointer. */
+  /** Returns the width in the other unit, on the surface under the pointer. */
   private equivalent(unit: WidthUnit): string {
     const { session } = this;
     if (!session.model) return "";
@@ -362,7 +362,7 @@ export class StrataBrushPanel extends LitElement {
     return `≈ ${formatLength(metres)} ${texts.brush.on_object}`;
   }
 
-  /** Keeps the brush at its current width on the screen. */
+  /** Changes the unit, and keeps the brush's current width on the screen. */
   private setUnit(unit: WidthUnit): void {
     const { session } = this;
     if (session.painting.brush.unit === unit || !session.model) return;

@@ -1,4 +1,4 @@
-// Settings of the painting tools: width, shape, reach, and one value for each layer.
+// Settings of the painting tools: width, shape, reach, and a value for each layer.
 
 import { purposeOf } from "../../domain/palette";
 import { holdsFractions, type Layer } from "../../core/types";
@@ -10,16 +10,16 @@ export const kWidths = { px: { min: 1, max: 2000 }, mm: { min: 0.05, max: 5000 }
 
 export class BrushSettings {
   unit: WidthUnit = "px";
-  width: Record<WidthUnit, number> = { px: 40, mm: 5 }; // diameters; px are CSS pixels
+  width: Record<WidthUnit, number> = { px: 40, mm: 5 }; // diameters; px stands for CSS pixels
   shape: ToolShape = "disc";
-  through = false; // also hidden surfaces
-  pressure = true; // a pen with less pressure paints a narrower line
+  through = false; // whether hidden surfaces are painted too
+  pressure = true; // whether a pen with less pressure paints a narrower line
   /**
-   * If limited, surfaces at a larger angle to the camera are not painted. Not together with hidden
-   * surfaces.
+   * If limited, surfaces at a larger angle to the camera are not painted. Cannot be combined with
+   * hidden surfaces.
    */
   slant = { limited: false, maxDeg: 60 };
-  /** For polygon, lasso and bucket. */
+  /** Settings of polygon, lasso and bucket. */
   areas: { erases: boolean; reach: "connected" | "island" } = { erases: false, reach: "connected" };
   private readonly _values = new Map<number, number>();
 
@@ -32,7 +32,7 @@ export class BrushSettings {
     if (Number.isFinite(maxDeg)) this.slant.maxDeg = Math.min(90, Math.max(1, maxDeg));
   }
 
-  /** One step of the [ and ] keys. */
+  /** Changes the width by one step of the [ and ] keys. */
   stepWidth(direction: 1 | -1): void {
     const grown = this.width[this.unit] * (direction > 0 ? 1.15 : 1 / 1.15);
     this.setWidth(

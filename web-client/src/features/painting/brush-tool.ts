@@ -1,28 +1,31 @@
-// Brush and eraser: a drag becomes a stroke in the selected layer, sent as one batch for each drawn
-// picture.
+// Brush and eraser. A drag becomes a stroke in the selected layer, sent as one batch for each
+// animation frame.
 
 import type { StrokeHandle, Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";
 
 export interface BrushHost {
-  /** Null if nothing can be painted; the host has then shown the reason. */
+  /** Returns null if painting is not possible. The host has then shown the reason. */
   beginStroke(erase: boolean): StrokeHandle | null;
   strokeEnded(): void;
-  /** The radius in window pixels at the pointer; points closer than a tenth of it add nothing. */
+  /**
+   * Returns the radius in window pixels at the pointer. Points closer than a tenth of it are
+   * omitted.
+   */
   radiusPx(): number;
-  /** The share of its radius that the brush has at this pen pressure. */
+  /** Returns the brush's radius at this pen pressure, as a share of the full radius. */
   widthOf(pressure: number): number;
   nextFrame(callback: () => void): void;
 }
 
-const kWidthStep = 0.1; // of the radius
+const kWidthStep = 0.1; // as a share of the radius
 
 export class BrushTool implements Tool {
   private _stroke: StrokeHandle | null = null;
   private _waiting: Point[] = [];
-  private _widths: number[] = []; // of the waiting points
-  private _last: Point | null = null; // the last point taken
+  private _widths: number[] = []; // the widths of the waiting points
+  private _last: Point | null = null; // the last point of the stroke
   private _newest: Point | null = null; // the pointer's position
   private _newestWidth = 1;
   private _lastWidth = 1;
@@ -54,7 +57,7 @@ export class BrushTool implements Tool {
     const spacing = Math.max(0.5, this._host.radiusPx() * 0.1);
     for (const sample of samples) {
       this.see(sample);
-      // also without a move
+      // a change of pressure also counts without a movement
       const pressed = Math.abs(this._newestWidth - this._lastWidth) >= kWidthStep;
       if (pressed || Math.hypot(sample.x - this._last[0], sample.y - this._last[1]) >= spacing)
         this.take();
@@ -78,7 +81,7 @@ export class BrushTool implements Tool {
     this.finish();
   }
 
-  /** The painted part stays; the user can undo it. */
+  /** The painted part stays. The user can undo it. */
   cancel(): void {
     this.finish();
   }

@@ -1,4 +1,4 @@
-// A press fills the area that is connected with the place under it.
+// A press fills the connected area under the pointer.
 
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";

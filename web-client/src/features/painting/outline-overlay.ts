@@ -1,5 +1,5 @@
-// The outline of polygon, lasso and line during drawing, and the finished outlines of the selection,
-// over the picture.
+// The outline of polygon, lasso and line while it is drawn, and the finished outlines of the
+// selection. They are over the 3D view.
 
 import { html, nothing, svg, type TemplateResult } from "lit";
 import { colorOf, cssColor } from "../../domain/palette";
@@ -42,7 +42,7 @@ export function outlineOverlay(
 
 const kDashes = { add: "none", subtract: "3 5", intersect: "9 4" };
 
-/** The outlines that were drawn in the current view, with the handles of their corners. */
+/** Renders the outlines that were drawn in the current view, with handles at their corners. */
 export function selectionOverlay(session: ModelSession): TemplateResult | typeof nothing {
   const { area } = session.painting;
   if (area.isEmpty) return nothing;

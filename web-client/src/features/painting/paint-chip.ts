@@ -1,5 +1,6 @@
-// <strata-paint-chip>: one line above the tools with the value that the selected tool paints. For
-// windows in which the brush panel lies over the model or is closed. A click opens that panel.
+// <strata-paint-chip>: a line above the tools with the value that the selected tool paints. It
+// appears in windows in which the brush panel covers the model or is closed. A click opens that
+// panel.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,4 +1,4 @@
-// This person's painting settings and the resulting edits.
+// This user's painting settings, and the edits that result from them.
 
 import { labelOf } from "../../domain/cells";
 import { newId } from "../../core/ids";
@@ -28,22 +28,22 @@ export interface PaintingHost {
   model(): Model | null;
   records: RecordLabels;
   mayPaint(): boolean;
-  isLocked(layer: Layer): boolean; // for this person
+  isLocked(layer: Layer): boolean; // for this user
   changed(): void;
 }
 
-const kThinnest = 0.08; // share of the radius at the lowest pen pressure
+const kThinnest = 0.08; // share of the brush's radius at the lowest pen pressure
 
 export class Painting {
   readonly brush = new BrushSettings();
-  /** What polygon and lasso have selected. */
+  /** The selection of polygon and lasso. */
   readonly area: AreaSelection;
-  stroking = false; // also while an outline is drawn
-  penUsed = false; // a pen with pressure was used
+  stroking = false; // also true while an outline is drawn
+  penUsed = false; // whether the user has used a pen with pressure
 
   private _stroke: StrokeHandle | null = null;
   private _afterStroke: (() => void)[] = [];
-  private readonly _wholeEdits = new Set<string>(); // sent, but not answered
+  private readonly _wholeEdits = new Set<string>(); // edits that were sent and have no response yet
 
   constructor(private readonly _host: PaintingHost) {
     const { layers, lit, view } = _host;
@@ -63,7 +63,7 @@ export class Painting {
     this._host.changed();
   }
 
-  /** Radius of the brush in window pixels at the surface under the pointer. */
+  /** Returns the radius of the brush in window pixels, on the surface under the pointer. */
   radiusWindowPx(): number {
     const { unit, width } = this.brush;
     const { view, pointer } = this._host;
@@ -74,7 +74,7 @@ export class Painting {
     return radius / view.camera.unitPerPixel(pointer.surfaceDepth());
   }
 
-  /** The brush's diameter on the object under the pointer. */
+  /** Returns the brush's diameter on the object under the pointer, in meters. */
   widthMetres(): number {
     const { view, pointer } = this._host;
     const model = this._host.model();
@@ -119,7 +119,7 @@ export class Painting {
     return stroke;
   }
 
-  /** The brush's width at a pen pressure. Records that a pen is in use. */
+  /** Returns the brush's width at a pen pressure. Records that a pen is in use. */
   widthOf(pressure: number): number {
     if (!this.penUsed) {
       this.penUsed = true;
@@ -164,7 +164,7 @@ export class Painting {
     });
   }
 
-  /** Fills the area that is connected with the place under the pointer. */
+  /** Fills the connected area under the pointer. */
   fillAt({ x, y }: PointerSample): void {
     const target = this.areaTarget();
     if (!target) return;
@@ -183,12 +183,12 @@ export class Painting {
     return true;
   }
 
-  /** Selects the inside, which is painted later. */
+  /** Selects the inside of the outline, which is painted later. */
   finishOutline(path: Point[], corners: boolean): void {
     this.area.add(path, this.brush.through, corners);
   }
 
-  /** Paints or erases what is selected, as one edit. */
+  /** Paints or erases the selection, as one edit. */
   paintSelection(erases: boolean): void {
     const layer = this.layerToPaint();
     const [first] = this.area.outlines;
@@ -207,7 +207,7 @@ export class Painting {
     this.area.clear();
   }
 
-  /** The server's answer to a whole edit from this page: shows the size of the change. */
+  /** Shows the size of the change after the server's response to a whole edit from this page. */
   onApplied({ id, texels_changed: texelsChanged, area_m2: areaM2 }: Applied): void {
     if (id === undefined || !this._wholeEdits.delete(id)) return;
     if (texelsChanged === 0) notices.show("info", texts.areas.nothing_changed);
@@ -233,7 +233,7 @@ export class Painting {
     if (id !== null) this._wholeEdits.add(id);
   }
 
-  /** Sets the brush to the selected layer's picked value. */
+  /** Sets the brush to the picked value of the selected layer. */
   takePicked(message: Picked): void {
     const layer = this._host.layers.selected;
     if (!layer || !message.hit) return;
@@ -260,8 +260,8 @@ export class Painting {
   }
 
   /**
-   * The brush's value for the layer; null if the layer cannot hold it. The user was shown the
-   * reason.
+   * Returns the brush's value for the layer. Returns null if the layer cannot store it, after
+   * showing the reason to the user.
    */
   private valueFor(layer: Layer, erase: boolean): number | null {
     const value = this.brush.valueFor(layer);
@@ -270,7 +270,7 @@ export class Painting {
     return wrong ? null : value;
   }
 
-  /** The selected layer if its texels can be changed; otherwise as `chosenLayer`. */
+  /** Returns the result of `chosenLayer`, or null if the layer's texels cannot be changed. */
   private layerToPaint(): Layer | null {
     const layer = this.chosenLayer();
     return layer && this.refuses(layer) ? null : layer;
@@ -282,7 +282,10 @@ export class Painting {
     return locked;
   }
 
-  /** Makes the selected layer visible; null if none is selected. The user was shown the reason. */
+  /**
+   * Returns the selected layer, and makes it visible. Returns null if no layer can be painted,
+   * after showing the reason to the user.
+   */
   chosenLayer(): Layer | null {
     const { layers } = this._host;
     if (!this._host.mayPaint()) {

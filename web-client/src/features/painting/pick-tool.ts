@@ -1,4 +1,4 @@
-// Shows the values under a point; a click sets the brush to the selected layer's value.
+// Shows the values under a point. A click sets the brush to the selected layer's value.
 
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";

@@ -1,5 +1,6 @@
-// <strata-selection-bar>: over the picture while polygon or lasso have selected an area: its size,
-// what the next outline does, and the buttons that paint, erase or discard the selection.
+// <strata-selection-bar>: a bar over the 3D view while polygon or lasso have selected an area. It
+// shows the area's size and the effect of the next outline. Its buttons paint, erase or discard the
+// selection.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// <strata-shape-dialog>: makes a brush shape of a picture: the part to use and a name, with a
-// preview.
+// <strata-shape-dialog>: makes a brush shape from a picture. It sets the part to use and a name,
+// and shows a preview.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -18,7 +18,7 @@ const kParts: readonly ShapePart[] = ["opaque", "light", "dark"];
 export class StrataShapeDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) file!: File;
-  @state() private _part: ShapePart | null = null; // null: the picture is still loading
+  @state() private _part: ShapePart | null = null; // null while the picture is loading
   @state() private _problem = "";
   @state() private _working = false;
   @query("canvas") private _canvas!: HTMLCanvasElement;
@@ -36,7 +36,7 @@ export class StrataShapeDialog extends LitElement {
         height: 160px;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
-        background: var(--mark-light); /* the shape is drawn in black */
+        background: var(--mark-light); /* the shape is black */
       }
       .segments {
         display: flex;
@@ -85,7 +85,7 @@ export class StrataShapeDialog extends LitElement {
       this._problem = texts.shapes.unreadable(this.file.name);
       return;
     }
-    // Analyzed without the square around it, which would look transparent.
+    // The analysis omits the square around the picture, because it would count as transparent.
     const { width, height } = this._picture;
     const { width: smallWidth, height: smallHeight } = inSquare(width, height, kShapeSide);
     const canvas = new OffscreenCanvas(

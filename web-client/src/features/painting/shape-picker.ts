@@ -1,5 +1,5 @@
-// <strata-shape-picker>: the shape of the brush: round, square, or from an uploaded picture. A
-// picture that is dropped here becomes a shape.
+// <strata-shape-picker>: the shape of the brush: round, square, or made from a picture. A picture
+// that is dropped here becomes a shape.
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -24,7 +24,7 @@ const isPicture = ({ type }: { type: string }): boolean =>
 @customElement("strata-shape-picker")
 export class StrataShapePicker extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private _file: File | null = null; // the picture of a new shape
+  @state() private _file: File | null = null; // the picture for a new shape
   @query("input[type=file]") private _input!: HTMLInputElement;
   private readonly _drop = new FileDrop(
     this,

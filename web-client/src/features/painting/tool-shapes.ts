@@ -1,4 +1,4 @@
-// Brush shapes from pictures: the site's tools, which all people share.
+// Brush shapes from pictures. All users share the tools of the site.
 
 import { kAsItIs, type Api } from "../../net/api";
 import { compareWords } from "../../core/locale";
@@ -14,7 +14,7 @@ export interface ToolShapesHost {
 }
 
 export class ToolShapes {
-  list: Tool[] = []; // by name
+  list: Tool[] = []; // sorted by name
   private _wanted = false;
 
   constructor(
@@ -22,14 +22,14 @@ export class ToolShapes {
     private readonly _host: ToolShapesHost,
   ) {}
 
-  /** Loads the shapes at the first use and keeps them up to date from then on. */
+  /** Loads the shapes at the first use, and keeps them up to date afterwards. */
   want(): void {
     if (this._wanted) return;
     this._wanted = true;
     this.refresh();
   }
 
-  /** Call this after a reconnection: events in between were lost. */
+  /** Call this after a reconnection, because events may have been lost. */
   refresh(): void {
     if (!this._wanted) return;
     this._api.all("GET /tools", "tools").then(

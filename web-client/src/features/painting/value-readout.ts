@@ -1,4 +1,4 @@
-// <strata-value-readout>: position and the layers' values under the pointer.
+// <strata-value-readout>: the position and the layers' values under the pointer.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,10 +1,11 @@
-// What differs between a state and now on the visible layers: lit on the surface, and measured.
+// The difference between a past state and the newest one on the visible layers. The surface
+// highlights it, and the server measures it.
 
 import type { SelectResponse } from "../../core/protocol.gen";
 import { ApiError } from "../../net/api-error";
 import type { LitArea } from "../../session/lit-area";
 
-const kWaitMs = 300; // the handle moves on, or another edit follows
+const kWaitMs = 300; // the user may move the handle again, or another edit may follow
 
 export interface ComparedLayer {
   slug: string;
@@ -12,7 +13,7 @@ export interface ComparedLayer {
 }
 
 export class ChangedArea {
-  /** Null: not known yet. */
+  /** Null while it is unknown. */
   measured: Pick<SelectResponse, "texels" | "area_m2" | "share"> | null = null;
   problem = "";
   private _followed = "";
@@ -23,7 +24,10 @@ export class ChangedArea {
     private readonly _changed: () => void,
   ) {}
 
-  /** Call after each change: of the state (null: nothing is lit), the layers, or their edits. */
+  /**
+   * Call this after each change of the state, the layers, or their edits. A null state removes the
+   * highlight.
+   */
   follow(from: number | null, layers: readonly ComparedLayer[]): void {
     const followed = from === null ? "" : JSON.stringify([from, layers]);
     if (followed === this._followed) return;

@@ -1,11 +1,11 @@
-// A drag around the part of the surface that a restore brings back.
+// A drag around the part of the surface to restore.
 
 import { OutlineTool, type OutlineHost } from "../../tools/outline";
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";
 
 export interface PartHost extends OutlineHost {
-  /** The person ends it without a part. */
+  /** Runs when the user stops drawing without a part. */
   giveUp(): void;
 }
 

@@ -1,5 +1,5 @@
-// <strata-past-bar>: the history of the model at the lower edge of the picture: the slider, playing,
-// who made the state, comparing and restoring.
+// <strata-past-bar>: the history of the model at the lower edge of the 3D view. It has the slider
+// and the authors of the state, and controls to play, compare and restore.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -33,7 +33,7 @@ export class StrataPastBar extends LitElement {
   private _snapshots!: Snapshots;
   private _snapshotChanges = 0;
   private _changed!: ChangedArea;
-  /** The picture ends above the bar. */
+  /** The 3D view ends above the bar. */
   private readonly _observer = new ResizeObserver(() =>
     document.documentElement.style.setProperty("--past-height", `${this.offsetHeight}px`),
   );
@@ -226,7 +226,7 @@ export class StrataPastBar extends LitElement {
     </button>`;
   }
 
-  /** When, who and what. */
+  /** Renders the time, the authors and the kind of the state. */
   private state(): TemplateResult {
     const { session } = this;
     const { past } = session;

@@ -1,5 +1,5 @@
-// <strata-past-overlay>: marks the picture while it shows the past; or shows then at the left of a
-// divider and now at its right.
+// <strata-past-overlay>: marks the 3D view while it shows a past state. While comparing, it shows
+// the past state at the left of a divider and the newest state at its right.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -73,7 +73,7 @@ export class StrataPastOverlay extends LitElement {
       }
       @media (max-width: 820px) {
         .label {
-          top: 3.5rem; /* below the scale */
+          top: 3.5rem; /* below the scale bar */
         }
       }
       .divider {

@@ -1,5 +1,5 @@
-// <strata-past-restore>: restores a layer, or a part of it, to the state that the picture shows. It
-// counts first what the restore would change.
+// <strata-past-restore>: restores a layer, or a part of it, to the displayed state. It first counts
+// the texels that the restore would change.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -19,10 +19,11 @@ const words = texts.past;
 @customElement("strata-past-restore")
 export class StrataPastRestore extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private _layer: number | null = null; // null: the selected one, if it changed since then
+  /** Null before the user chooses: a layer that changed after the state, the selected one first. */
+  @state() private _layer: number | null = null;
   @state() private _count: Difference | null = null;
   @state() private _working = false;
-  private _counted = ""; // what `_count` is of
+  private _counted = ""; // the layer, state and part of `_count`
   private _asked = 0;
 
   constructor() {
@@ -64,7 +65,7 @@ export class StrataPastRestore extends LitElement {
     void this.count();
   }
 
-  /** Layers that this person may change. */
+  /** Layers that this user may change. */
   private get layers(): Layer[] {
     return this.session.layers.all.filter((layer) => !this.session.isLocked(layer));
   }

@@ -1,4 +1,4 @@
-// <strata-past-since>: who changed what since this person's last visit, and a way to compare.
+// <strata-past-since>: the changes by others since this user's last visit, and a button to compare.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

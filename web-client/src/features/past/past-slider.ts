@@ -1,5 +1,5 @@
-// <strata-past-slider>: the edits of the model over time as bars, with a handle at the state that
-// the picture shows.
+// <strata-past-slider>: the edits of the model over time as bars, with a handle at the displayed
+// state.
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -18,10 +18,10 @@ import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
 const words = texts.past;
-const kHeight = 100; // of the drawing
-const kLeast = 0.14; // share of the height of an interval with one edit
+const kHeight = 100; // the height of the drawing
+const kLeast = 0.14; // share of the height for an interval with one edit
 
-/** "Ada, Ben and 2 more". */
+/** Returns a text such as "Ada, Ben and 2 more". */
 export function peopleText({
   people,
   others,
@@ -30,7 +30,7 @@ export function peopleText({
   return formatList(others > 0 ? [...names, words.others(others)] : names);
 }
 
-/** The names of layers; those that were deleted since are left out. */
+/** Returns the names of the layers. Omits layers that were deleted since. */
 export const layersText = (session: ModelSession, layers: readonly number[]): string =>
   formatList(
     layers.flatMap((id) => {
@@ -42,7 +42,7 @@ export const layersText = (session: ModelSession, layers: readonly number[]): st
 @customElement("strata-past-slider")
 export class StrataPastSlider extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Shown as marks above the bars. */
+  /** The snapshots, shown as marks above the bars. */
   @property({ attribute: false }) snapshots: readonly Snapshot[] = [];
   @state() private _hover: TimelineInterval | null = null;
   private _drags = false;

@@ -1,5 +1,5 @@
-// The past of the open model: the state that the picture shows, the timeline, playing, and the
-// picture of then next to the one of now.
+// The past of the open model: the displayed state, the timeline, playback, and the comparison of a
+// past state with the newest one.
 
 import type { Api } from "../../net/api";
 import { ApiError } from "../../net/api-error";
@@ -22,27 +22,27 @@ import { texts } from "../../texts";
 const kIntervals = 240;
 const kStepsAtOnce = 60;
 const kStepsKept = 600;
-const kPlayMs = 700; // for each interval, at normal speed
-const kSettleMs = 250; // until the steps around a dragged state are read
+const kPlayMs = 700; // time for each interval, at normal speed
+const kSettleMs = 250; // delay until the steps around a dragged state are loaded
 export const kSpeeds = [0.5, 1, 2, 4] as const;
 
 export interface PastHost {
-  /** Shows the state after this edit; null: the newest. `beside`: in a second view. */
+  /** Shows the state after this edit, or the newest one for null. `beside` uses a second view. */
   show(at: number | null, beside: boolean): void;
-  /** Runs the action now, or after the current stroke. */
+  /** Runs the action immediately, or after the current stroke. */
   whenFree(action: () => void): void;
-  /** Number of changes that are not saved. */
+  /** Returns the number of unsaved changes. */
   unsaved(): number;
   camera(): CameraMessage;
-  /** Puts the tools for changes away. */
+  /** Deactivates the tools that make changes. */
   stopPainting(): void;
-  /** Activates and deactivates the tool that draws the part to restore. */
+  /** Activates the tool that draws the part to restore; `endPart` deactivates it. */
   beginPart(): void;
   endPart(): void;
   changed(): void;
 }
 
-/** Part of a layer to restore: inside an outline in a window. */
+/** A part of a layer to restore: the inside of an outline in a window. */
 export interface PastPart {
   camera: CameraMessage;
   path: Point[];
@@ -50,30 +50,35 @@ export interface PastPart {
 
 export class Past {
   isOpen = false;
-  /** The wanted state; null: the newest. */
+  /** The requested state; null for the newest. */
   at: number | null = null;
-  /** The state of the last picture; null while none of the past was drawn. */
+  /** The state of the last frame; null before the first frame of a past state. */
   drawn: number | null = null;
   timeline: Timeline | null = null;
   failed = false;
   playing = false;
   speed: (typeof kSpeeds)[number] = 1;
-  /** Then and now are next to each other; the share of the width that shows then. */
+  /**
+   * Whether the past and the newest state are side by side. `divider` is the past state's share of
+   * the width.
+   */
   compares = false;
   divider = 0.5;
-  /** The state whose differences from now are lit on the surface; null: none. */
+  /**
+   * The state whose differences from the newest one are highlighted on the surface; null for none.
+   */
   changesFrom: number | null = null;
-  /** The number of times that somebody changed the snapshots. */
+  /** The number of changes to the snapshots. */
   snapshotChanges = 0;
-  /** The part to restore; null: the whole layer. */
+  /** The part to restore; null for the whole layer. */
   part: PastPart | null = null;
   drawsPart = false;
-  /** Set by the element that shows then next to now. */
+  /** The callback of the element that shows the past state next to the newest one. */
   onFrame: (part: FrameMessage) => void = () => {};
 
-  private _whole: Timeline | null = null; // without zoom
+  private _whole: Timeline | null = null; // the timeline without zoom
   private _steps: TimelineStep[] = [];
-  private _beginKnown = false; // the known steps begin with the first one
+  private _beginKnown = false; // whether the loaded steps include the first one
   private _asked = 0;
   private _playTimer: ReturnType<typeof setTimeout> | null = null;
   private _settleTimer: ReturnType<typeof setTimeout> | null = null;
@@ -84,14 +89,14 @@ export class Past {
     private readonly _host: PastHost,
   ) {}
 
-  /** The picture shows a past state, alone or next to the newest one. */
+  /** Whether the 3D view shows a past state, alone or next to the newest one. */
   get isActive(): boolean {
     return this.at !== null;
   }
   get isZoomed(): boolean {
     return this._whole !== null && this.timeline !== this._whole;
   }
-  /** The newest edit of the model, as far as it is known. */
+  /** The newest known edit of the model. */
   get newest(): number {
     return this.timeline?.newest ?? 0;
   }
@@ -101,14 +106,14 @@ export class Past {
   get interval(): TimelineInterval | null {
     return this.timeline && this.at !== null ? intervalOf(this.timeline, this.at) : null;
   }
-  /** When the wanted state was made; null: before the first edit, or now. */
+  /** The time of the requested state; null before the first edit and for the newest state. */
   get time(): string | null {
     if (this.at === null) return null;
     const { step, interval } = this;
     if (step && (!interval || step.last >= interval.first)) return step.time;
     return interval ? interval.ended : null;
   }
-  /** Where the handle is, from 0 to 1. */
+  /** The position of the handle, from 0 to 1. */
   get place(): number {
     if (this.at === null || !this.timeline) return 1;
     const { time } = this;
@@ -127,7 +132,7 @@ export class Past {
     else void this.open();
   }
 
-  /** Opens the timeline; `time`: at the state of that time. */
+  /** Opens the timeline. With `time`, shows the state of that time. */
   async open(time?: string): Promise<void> {
     this.isOpen = true;
     this._host.changed();
@@ -135,14 +140,14 @@ export class Past {
     if (time !== undefined) await this.goToTime(time);
   }
 
-  /** Opens the timeline with a state next to the newest one. */
+  /** Opens the timeline with a past state next to the newest one. */
   async compareWith(sequence: number): Promise<void> {
     await this.open();
     this.compares = true;
     this.goTo(sequence);
   }
 
-  /** Opens the timeline, and lights what changed since a state. */
+  /** Opens the timeline, and highlights the changes since a state. */
   async showChangesSince(sequence: number): Promise<void> {
     this.changesFrom = sequence;
     await this.open();
@@ -162,13 +167,13 @@ export class Past {
     this._host.changed();
   }
 
-  /** The connection is new: the server has no earlier request of this page. */
+  /** The connection is new, so the server has no earlier request of this page. */
   welcome(): void {
     this.drawn = null;
     this._host.changed();
   }
 
-  /** Other edits were made: the timeline becomes longer. */
+  /** After edits by others, the timeline becomes longer. */
   outdated(): void {
     if (this.isOpen && !this.isActive && !this.isZoomed) void this.load();
   }
@@ -192,7 +197,7 @@ export class Past {
     this._host.changed();
   }
 
-  /** Shows a shorter or longer time around the wanted state. */
+  /** Shows a shorter or longer period around the requested state. */
   async zoom(factor: number): Promise<void> {
     const { timeline, _whole: whole } = this;
     if (!timeline || !whole) return;
@@ -210,7 +215,7 @@ export class Past {
     this.show(null);
   }
 
-  /** Shows the state after this edit. */
+  /** Shows the state after the edit with this sequence. */
   goTo(sequence: number): void {
     if (this.at === null && this._host.unsaved() > 0) {
       notices.show("info", texts.past.saving_first);
@@ -236,7 +241,7 @@ export class Past {
     }
   }
 
-  /** To the next edit, or to the next interval with edits. */
+  /** Moves to the next edit or, with `far`, to the next interval with edits. */
   async goBy(forward: boolean, far = false): Promise<void> {
     const from = this.at ?? this.newest;
     if (far && this.timeline) {
@@ -253,13 +258,13 @@ export class Past {
     }
   }
 
-  /** Null: none in this direction; undefined: unknown. */
+  /** Returns null if no step exists in this direction, and undefined if it is unknown. */
   private async nextStep(from: number, forward: boolean): Promise<number | null | undefined> {
     const find = (): TimelineStep | null =>
       forward
         ? (this._steps.find(({ last }) => last > from) ?? null)
         : lastWhere(this._steps, ({ last }) => last < from);
-    // Only within the known steps around the state is the neighbor known.
+    // the neighbor is known only if the state is inside the loaded steps
     const isInside =
       (this._steps[0]?.last ?? Infinity) <= from && (this._steps.at(-1)?.last ?? -1) >= from;
     let next = isInside ? find() : null;
@@ -283,7 +288,7 @@ export class Past {
           query: { ...query, after: around },
         }),
       ]);
-      // One run without a gap: steps of other places are forgotten.
+      // Keeps one run of steps without a gap, and discards other steps.
       this._steps = joinSteps(before.steps, after.steps).slice(-kStepsKept);
       this._beginKnown = !before.more;
       this._host.changed();
@@ -294,7 +299,7 @@ export class Past {
     }
   }
 
-  /** Reads who made the state, once the handle rests. */
+  /** Loads the author of the state after the handle has stopped. */
   private settle(): void {
     if (this._settleTimer) clearTimeout(this._settleTimer);
     this._settleTimer = setTimeout(() => {
@@ -327,14 +332,14 @@ export class Past {
     this.playing = true;
     if (this.at === null) this.goTo(0);
     if (this.at === null) {
-      this.playing = false; // refused
+      this.playing = false; // after a refusal
       return;
     }
     this.playOn();
     this._host.changed();
   }
 
-  /** The next state comes after a pause, and not before the picture of the last one. */
+  /** Shows the next state after a pause, but not before the frame of the current state. */
   private playOn(): void {
     this._playTimer = setTimeout(() => {
       if (!this.playing) return;
@@ -367,12 +372,12 @@ export class Past {
     this._host.changed();
   }
 
-  // ── pictures ───────────────────────────────────────────────────────────────────────────────────
+  // ── frames ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** A frame of the view that shows the past is on the screen. */
+  /** Call this after a frame of the view of the past was displayed. */
   frameDrawn({ header }: FrameMessage): void {
     if (!this.isActive || header.scene_sequence === this.drawn) return;
-    // Until the server has read the first state, it sends the newest one.
+    // The server sends the newest state until it has loaded the first past one.
     if (this.drawn === null && header.scene_sequence !== this.at) return;
     this.drawn = header.scene_sequence;
     this._host.changed();
@@ -393,7 +398,7 @@ export class Past {
 
   // ── restoring ──────────────────────────────────────────────────────────────────────────────────
 
-  /** Lets the person draw the part; a null one: the whole layer again. */
+  /** Lets the user draw the part. Until then the part is null, which means the whole layer. */
   drawPart(): void {
     this.part = null;
     this.drawsPart = true;
@@ -410,7 +415,10 @@ export class Past {
     this._host.changed();
   }
 
-  /** What the restore would change; null: unknown. The person was shown the reason. */
+  /**
+   * Returns the difference that the restore would make. Returns null if it is unknown, after
+   * showing the reason to the user.
+   */
   async count(layer: number): Promise<Difference | null> {
     if (this.at === null) return null;
     try {
@@ -424,7 +432,10 @@ export class Past {
     }
   }
 
-  /** Restores the layer, and shows the newest state. Null: refused, with a notice. */
+  /**
+   * Restores the layer and shows the newest state. Returns null after a refusal, which a notice
+   * reports.
+   */
   async restore(layer: number): Promise<{ texels_changed: number; area_m2: number } | null> {
     if (this.at === null) return null;
     try {

@@ -1,4 +1,4 @@
-// <strata-snapshot-list>: the snapshots of the model, each with a button that shows its state; part
+// <strata-snapshot-list>: the snapshots of the model, each with a button that shows its state. Part
 // of the history.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -23,11 +23,11 @@ const words = texts.snapshots;
 @customElement("strata-snapshot-list")
 export class StrataSnapshotList extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** The same object after each change of it. */
+  /** The list remains the same object after a change. */
   @property({ attribute: false, hasChanged: () => true }) snapshots!: Snapshots;
-  /** The one that is being named; "new": the shown state. */
+  /** The snapshot that the user is naming; "new" for the displayed state. */
   @state() private _naming: Snapshot | "new" | null = null;
-  private _at: number | null = null; // the state that gets the name
+  private _at: number | null = null; // the state that the user is naming
 
   constructor() {
     super();

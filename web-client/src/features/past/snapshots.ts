@@ -1,4 +1,4 @@
-// The snapshots of the open model: named states, as the server lists them.
+// The snapshots of the open model: named states, in the server's list.
 
 import { type Api, ifVersion } from "../../net/api";
 import { ApiError } from "../../net/api-error";
@@ -26,7 +26,9 @@ export class Snapshots {
   get failed(): boolean {
     return this._known.failed;
   }
-  /** The earliest state first; of one state, in order of creation. */
+  /**
+   * The snapshots by state, with the earliest first. Those of one state are in order of creation.
+   */
   get all(): Snapshot[] {
     return this._known.all.sort((a, b) => a.sequence - b.sequence || a.id - b.id);
   }
@@ -42,7 +44,9 @@ export class Snapshots {
     if (await this._known.load(read)) this._host.changed();
   }
 
-  /** `at`: null: the newest state. `key`: the same for all attempts at one snapshot. */
+  /**
+   * A null `at` stands for the newest state. `key` is the same for all attempts at one snapshot.
+   */
   async create(
     called: { name: string; text: string },
     at: number | null,
@@ -58,8 +62,8 @@ export class Snapshots {
   }
 
   /**
-   * Changes the version that was read. If another person has changed it since, the function throws
-   * an ApiError with status 412, and the list is read again.
+   * Changes the loaded version. If another user has changed it since, throws an ApiError with
+   * status 412 and reloads the list.
    */
   async rename({ id, version }: Snapshot, called: { name: string; text: string }): Promise<void> {
     await this.newestAfter(async () =>
@@ -72,7 +76,7 @@ export class Snapshots {
       ),
     );
   }
-  /** Deletes under the same condition. */
+  /** Deletes the loaded version under the same condition. */
   async remove({ id, version }: Snapshot): Promise<void> {
     await this.newestAfter(() =>
       this._api.send("DELETE /models/{model}/snapshots/{snapshot}", {

@@ -1,5 +1,5 @@
-// <strata-step-list>: the person's own steps in a list next to Undo and Redo; a click goes back, or
-// forward, to a step.
+// <strata-step-list>: a list of the user's own steps, next to Undo and Redo. A click moves back or
+// forward to a step.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -24,11 +24,11 @@ const words = texts.steps;
 @customElement("strata-step-list")
 export class StrataStepList extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** The button that opened it. */
+  /** The button that opened the list. */
   @property({ attribute: false }) anchor!: HTMLElement;
   @query(".list") private _list!: HTMLElement;
   private _steps!: Steps;
-  private _read = ""; // the state of the layers that the list shows
+  private _read = ""; // the state of the layers for which the list was loaded
   private readonly _grown = new ResizeObserver(() => this.place());
 
   constructor() {
@@ -226,7 +226,7 @@ export class StrataStepList extends LitElement {
     </li>`;
   }
 
-  /** The state before the first step. */
+  /** Renders the state before the first step. */
   private begin(isCurrent: boolean): TemplateResult {
     return html`<li>
       <button
@@ -265,7 +265,7 @@ export class StrataStepList extends LitElement {
     const margin = 8;
     const anchor = this.anchor.getBoundingClientRect();
     const box = this._list.getBoundingClientRect();
-    const below = innerWidth <= 820; // the tools are a row at the lower edge
+    const below = innerWidth <= 820; // the tools form a row at the lower edge
     const left = below ? anchor.right - box.width : anchor.right + margin;
     const top = below ? anchor.top - box.height - margin : anchor.bottom - box.height;
     this._list.style.left = `${Math.max(margin, Math.min(left, innerWidth - box.width - margin))}px`;

@@ -1,5 +1,5 @@
-// The person's own steps: reads them from the server, and goes to one of them by undos or redos,
-// one after the other.
+// The user's own steps. Loads them from the server, and moves to a step by one undo or redo at a
+// time.
 
 import type { Api } from "../../net/api";
 import { ApiError } from "../../net/api-error";
@@ -7,29 +7,29 @@ import { newId } from "../../core/ids";
 import type { UndoStep, UndoSteps } from "../../core/protocol.gen";
 import { currentOf, listOf, onLayers, turnsTo, type ListedStep } from "../../domain/undo-steps";
 
-const kSteps = 100; // of each kind
-const kWaitMs = 300; // another edit follows
+const kSteps = 100; // limit for each kind of step
+const kWaitMs = 300; // delay for further edits
 
 export interface StepsHost {
-  /** Whether the person can change the layer. */
+  /** Returns whether the user can change the layer. */
   mayChange(layer: number): boolean;
   changed(): void;
 }
 
-/** How the way to a step ended, and after how many undos or redos. */
+/** The result of moving to a step, and the number of undos or redos. */
 export type Outcome =
   | { ended: "there" | "stopped" | "elsewhere"; done: number }
   | { ended: "refused"; done: number; of: number; why: ApiError };
 
 export class Steps {
-  /** Newest first; null: not read. */
+  /** The steps, newest first; null before they are loaded. */
   list: ListedStep[] | null = null;
   failed = false;
-  /** There are earlier steps that the list leaves out. */
+  /** Whether the list omits earlier steps. */
   more = false;
-  /** Of the undos or redos that lead to a step. */
+  /** The progress of the undos or redos that lead to a step. */
   progress: { done: number; of: number } | null = null;
-  /** On the way to a step, including the reads before and after it. */
+  /** Whether a move to a step is in progress, including the requests before and after it. */
   isGoing = false;
   private _known: UndoSteps | null = null;
   private _asked = 0;
@@ -42,17 +42,17 @@ export class Steps {
     private readonly _host: StepsHost,
   ) {}
 
-  /** The newest step in force; null: none of the list. */
+  /** The newest step that is not undone; null if the list has none. */
   get current(): ListedStep | null {
     return this.list && currentOf(this.list);
   }
 
-  /** Reads the steps, unless they are read on the way to a step anyway. */
+  /** Loads the steps, except during a move to a step, which loads them itself. */
   async load(): Promise<void> {
     if (!this.isGoing) await this.read();
   }
 
-  /** Reads them once after several edits. */
+  /** Loads the steps once after several edits. */
   loadSoon(): void {
     this._timer ??= setTimeout(() => {
       this._timer = null;
@@ -81,8 +81,8 @@ export class Steps {
   }
 
   /**
-   * Makes `target` the newest step in force; null: none of the list. Undefined: the way to another
-   * step has not ended.
+   * Makes `target` the newest step that is not undone. A null `target` undoes all steps of the
+   * list. Returns undefined if a move to another step is in progress.
    */
   async goTo(target: UndoStep | null): Promise<Outcome | undefined> {
     if (this.isGoing) return undefined;
@@ -98,7 +98,7 @@ export class Steps {
   }
 
   private async go(target: UndoStep | null): Promise<Outcome> {
-    await this.read(); // others may have undone or rejected some since
+    await this.read(); // others may have undone or rejected some steps since
     const turns = this._known && !this.failed ? turnsTo(this._known, target) : [];
     let done = 0;
     try {
@@ -123,7 +123,7 @@ export class Steps {
     return { ended: there ? "there" : "elsewhere", done };
   }
 
-  /** Ends the way to a step after the current undo or redo, and waiting reads. */
+  /** Ends the move to a step after the current undo or redo, and cancels pending requests. */
   stop(): void {
     this._stops = true;
     if (this._timer) clearTimeout(this._timer);

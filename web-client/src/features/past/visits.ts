@@ -1,11 +1,11 @@
-// What others changed on the open model since this person's last visit in this browser.
+// The changes that others made to the open model since this user's last visit in this browser.
 
 import type { Api } from "../../net/api";
 import { ApiError } from "../../net/api-error";
 import { authorsOf, type Authors } from "../../domain/timeline";
 
 const kKey = "strata.visits";
-const kMostModels = 200; // the last ones
+const kMostModels = 200; // the latest models
 const kStepsRead = 200;
 const kWriteMs = 10_000;
 
@@ -15,12 +15,12 @@ interface Visit {
 }
 export interface News extends Authors {
   since: Visit;
-  /** There are more edits than were counted. */
+  /** Whether more edits exist than were counted. */
   more: boolean;
 }
 
 export class Visits {
-  /** Null: nothing changed, or the person has dismissed it. */
+  /** Null if nothing has changed, or if the user has dismissed the message. */
   news: News | null = null;
   private _newest = 0;
   private _user = "";
@@ -32,7 +32,7 @@ export class Visits {
     private readonly _changed: () => void,
   ) {}
 
-  /** The server has identified this person. */
+  /** Runs when the server has identified this user. */
   async welcome(user: string, newest: number): Promise<void> {
     const isFirst = this._user === "";
     this._user = user;
@@ -51,11 +51,11 @@ export class Visits {
       this._changed();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      // the news are not worth a message
+      // a failure to load the news is not reported
     }
   }
 
-  /** The page has shown this edit. */
+  /** Call this after the page has shown this edit. */
   saw(sequence: number): void {
     if (sequence <= this._newest) return;
     this._newest = sequence;
@@ -80,7 +80,7 @@ export class Visits {
       const stored: unknown = JSON.parse(localStorage.getItem(kKey) ?? "{}");
       return typeof stored === "object" && stored !== null ? (stored as Record<string, Visit>) : {};
     } catch {
-      return {}; // no storage, or a value of something else
+      return {}; // no storage, or another kind of value
     }
   }
 
@@ -94,7 +94,7 @@ export class Visits {
     try {
       localStorage.setItem(kKey, JSON.stringify(Object.fromEntries([...kept, [this.key, visit]])));
     } catch {
-      // no storage: the next visit has no news
+      // without storage, the next visit shows no changes by others
     }
   };
 }

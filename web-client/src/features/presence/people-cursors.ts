@@ -1,6 +1,7 @@
 // The pointers of other participants on the surface, in this view. Positions arrive a few times a
-// second; the page animates between them. The server answers whether a place is hidden behind the
-// surface, one place at a time: the page asks for the hit of a ray through its pixel.
+// second, and the page animates between them. To find whether the surface hides a position, the
+// page asks the server for the hit of a ray through its pixel. It asks about one position at a
+// time.
 
 import { newId } from "../../core/ids";
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../../math/camera";
@@ -11,20 +12,20 @@ const kGlideMs = { least: 90, most: 400 };
 const kFadesAfterMs = 10_000;
 const kAskEveryMs = 100;
 const kGiveUpAfterMs = 2000;
-const kSlackPx = 4; // tolerated distance of ray hit and place, seen from the side
+const kSlackPx = 4; // tolerated distance between the ray's hit and the position, in side view
 
 export interface PersonCursor {
   viewer: PresenceUser;
-  x: number; // CSS pixels of the stage
+  x: number; // in CSS pixels of the stage
   y: number;
-  radius: number | null; // of the brush, CSS pixels; null: another tool
-  hidden: boolean; // behind the surface, or cut away in this view
-  faded: boolean; // at rest for a long time
+  radius: number | null; // radius of the brush in CSS pixels; null for other tools
+  hidden: boolean; // whether the position is behind the surface, or cut away in this view
+  faded: boolean; // whether the pointer has rested for a long time
 }
 
 export interface PeopleCursorsHost {
   camera(): OrbitCamera;
-  /** Window pixels per CSS pixel. */
+  /** Returns the number of window pixels per CSS pixel. */
   scale(): number;
   ready(): boolean;
   ask(id: string, x: number, y: number, camera: CameraMessage): void;
@@ -37,16 +38,16 @@ interface Cursor {
   to: Vec3;
   movedMs: number;
   glideMs: number;
-  radius: number | null; // world
+  radius: number | null; // in world units
   hidden: boolean;
-  asked: boolean; // asked for since the last change
+  asked: boolean; // whether the position was requested after its last change
 }
 
 export class PeopleCursors {
-  /** Set by the element that draws the pointers. */
+  /** The callback of the element that draws the pointers. */
   onChange: () => void = () => {};
 
-  private readonly _cursors = new Map<string, Cursor>(); // by session
+  private readonly _cursors = new Map<string, Cursor>(); // keyed by session
   private _question: {
     id: string;
     session: string;
@@ -60,7 +61,7 @@ export class PeopleCursors {
 
   constructor(private readonly _host: PeopleCursorsHost) {}
 
-  /** Takes all participants except this connection. */
+  /** Takes the state of all participants except this connection. */
   receive(viewers: readonly PresenceUser[]): void {
     const pointing = viewers.filter(({ pointer }) => pointer);
     for (const session of this._cursors.keys())
@@ -71,13 +72,16 @@ export class PeopleCursors {
     this.onChange();
   }
 
-  /** Call this when the view or the surface has changed: hidden places may become visible. */
+  /**
+   * Call this when the view or the surface has changed, because hidden positions may become
+   * visible.
+   */
   lookAgain(): void {
     for (const cursor of this._cursors.values()) cursor.asked = false;
     this.ask();
   }
 
-  /** The pointers in the window at the current time. */
+  /** Returns the pointers in the window at the current time. */
   now(): PersonCursor[] {
     const [camera, scale, now] = [this._host.camera(), this._host.scale(), performance.now()];
     return [...this._cursors.values()].flatMap((cursor) => {
@@ -100,19 +104,19 @@ export class PeopleCursors {
     });
   }
 
-  /** Whether a pointer moves: the next picture must draw them again. */
+  /** Whether a pointer is moving, so the next animation frame must draw the pointers again. */
   get gliding(): boolean {
     const now = performance.now();
     return [...this._cursors.values()].some(({ movedMs, glideMs }) => now < movedMs + glideMs);
   }
 
-  /** Returns true for an answer to one of these requests. */
+  /** Returns true if the message is the response to one of these requests. */
   answer({ id, hit, position }: Picked): boolean {
     const { _question: question } = this;
     if (!question || id !== question.id) return false;
     this._question = null;
     const cursor = this._cursors.get(question.session);
-    // A place that has moved is requested again.
+    // a position that has changed is requested again
     if (cursor && cursor.to === question.to) {
       cursor.hidden =
         hit &&
@@ -128,7 +132,7 @@ export class PeopleCursors {
     this._question = null;
     return true;
   }
-  /** The connection was lost, and with it the answer. */
+  /** The connection was lost, so the response will not arrive. */
   reset(): void {
     this._question = null;
     this._cursors.clear();
@@ -193,7 +197,7 @@ export class PeopleCursors {
   private ask(): void {
     if (this._askTimer || !this._host.ready()) return;
     const now = performance.now();
-    // its answer triggers the next request
+    // the response to the pending request triggers the next one
     if (this._question && now - this._question.atMs < kGiveUpAfterMs) return;
     const camera = this._host.camera();
     for (const [session, cursor] of this._cursors) {

@@ -1,4 +1,4 @@
-// <strata-people-menu>: the initials of the participants, and a menu to follow one of them.
+// <strata-people-menu>: the initials of the participants, and a menu to follow a participant.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -47,7 +47,7 @@ export class StrataPeopleMenu extends LitElement {
       .faces {
         display: flex;
         padding: 0 var(--space-half) 0 var(--space-2);
-        pointer-events: auto; /* each has a tooltip with the name */
+        pointer-events: auto; /* each element has a tooltip with the name */
       }
       .face {
         display: grid;
@@ -109,8 +109,8 @@ export class StrataPeopleMenu extends LitElement {
     if (people.length === 0) return html``;
     const words = texts.together;
     const others = people.filter(({ viewer }) => viewer !== null);
-    // On a phone, a person alone is already visible at the account menu, and the title needs the
-    // room.
+    // On a phone, the account menu already shows a user who is alone, and the title needs the
+    // space.
     if (this._narrow.matches && people.length === 1 && others.length === 0 && !together.leading)
       return html``;
     const most = this._narrow.matches ? kMostFacesOnPhone : kMostFaces;

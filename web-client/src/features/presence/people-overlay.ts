@@ -1,5 +1,5 @@
-// <strata-people-overlay>: the pointers of other participants, over the picture. Mouse events pass
-// through it. It renders itself, without the page, while they move.
+// <strata-people-overlay>: the pointers of other participants over the 3D view. Mouse events pass
+// through it. It renders itself without the page while the pointers move.
 
 import { css, html, LitElement, svg, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -12,13 +12,13 @@ import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { nameOf } from "./together";
 
-const kLeastRadiusPx = 4; // a smaller brush is drawn as a pointer
+const kLeastRadiusPx = 4; // a smaller brush appears as a pointer
 const kRoomForNamePx = 150;
 
 @customElement("strata-people-overlay")
 export class StrataPeopleOverlay extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private _next = 0; // id of requestAnimationFrame; 0: none
+  private _next = 0; // id of requestAnimationFrame; 0 if no request is pending
 
   constructor() {
     super();
@@ -81,7 +81,7 @@ export class StrataPeopleOverlay extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    // screen readers get the participants from the page's header
+    // the page's header lists the participants for screen readers
     this.setAttribute("aria-hidden", "true");
   }
   override disconnectedCallback(): void {
@@ -120,7 +120,7 @@ export class StrataPeopleOverlay extends LitElement {
       faded ? "faded" : "",
     ].join(" ");
     const brush = radius !== null && radius >= kLeastRadiusPx;
-    const beside = brush ? Math.min(radius, 40) * 0.7 : 0; // the name is at the rim of the brush
+    const beside = brush ? Math.min(radius, 40) * 0.7 : 0; // the name is at the edge of the brush
     return html`<div class=${classes} data-session=${viewer.session} ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
       <svg>
         ${

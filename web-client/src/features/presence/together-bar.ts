@@ -1,5 +1,5 @@
-// <strata-together-bar>: a frame in the leader's color while this view follows another participant;
-// or the names of this person's followers.
+// <strata-together-bar>: a frame in the leader's color while this view follows another participant,
+// or the names of this user's followers.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,4 +1,4 @@
-// Following of other participants: the participants at the model, the followed camera, invitations,
+// Following other participants: the participants at the model, the followed camera, invitations,
 // and the presence messages of this connection.
 
 import { called } from "../../domain/people";
@@ -9,30 +9,31 @@ import { PickProbe } from "../../session/pick-probe";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
 
-/** The pixel that this person points at, and the radius of their brush there. */
+/** The pixel under this user's pointer, and the radius of the brush there. */
 export type Shown = Pick<PresenceUpdate, "pointer" | "radius">;
 
 export interface TogetherHost {
-  session(): string; // of this connection
+  session(): string; // the id of this connection's session
   ready(): boolean;
   send(shown: Omit<PresenceUpdate, "op">): void;
   readonly view: Pick<ViewControl, "camera" | "gliding" | "lookAlong" | "lookAlone" | "turnAround">;
-  /** Asks for the place at a pixel of the window. */
+  /** Requests the surface position at a pixel of the window. */
   ask(id: string, x: number, y: number): void;
   changed(): void;
 }
 
 export class Together {
-  viewers: PresenceUser[] = []; // including this connection; empty while disconnected
+  viewers: PresenceUser[] = []; // includes this connection; empty while disconnected
   people: PersonHere[] = [];
   leading = false;
   /** The followed participant, in the latest state. */
   followed: PresenceUser | null = null;
 
-  private _told = ""; // `viewers` as text, without pointers and cameras
+  private _told = ""; // `viewers` as text, without their pointers and cameras
   private _shown: Shown = { pointer: null };
-  private _seen = ""; // the camera of the last `look_along`, as text
-  private readonly _invitations = new Map<string, number>(); // notices, by the leader's session
+  private _seen = ""; // the camera of the last `look_along` message, as text
+  // ids of notices, by the leader's session
+  private readonly _invitations = new Map<string, number>();
   private readonly _middle: PickProbe;
 
   constructor(private readonly _host: TogetherHost) {
@@ -43,7 +44,7 @@ export class Together {
     });
   }
 
-  /** The name of a present or former participant; the user name if no other name is known. */
+  /** Returns the name of a present or former participant. The default is the user name. */
   nameOf(user: string): string {
     const here = this.people.find((person) => person.user === user);
     return called(here ?? { user });
@@ -53,7 +54,10 @@ export class Together {
     return followersOf(this.people, this._host.session());
   }
 
-  /** Whether this person can follow: the other has a window that does not follow this one. */
+  /**
+   * Returns whether this user can follow the participant. The participant's window must not follow
+   * this one.
+   */
   canFollow({ viewer }: PersonHere): boolean {
     return viewer !== null && !leadsBack(this.viewers, viewer.session, this._host.session());
   }
@@ -89,7 +93,7 @@ export class Together {
     this.people = peopleHere(viewers, this._host.session());
     this.keepUp();
     this.hearInvitations();
-    // Pointers and cameras move all the time; these changes alone do not redraw the page.
+    // pointers and cameras change all the time, so such changes alone do not redraw the page
     const told = JSON.stringify(viewers, (name, value: unknown) =>
       name === "pointer" || name === "camera" ? undefined : value,
     );
@@ -97,7 +101,7 @@ export class Together {
     this._told = told;
   }
 
-  /** After a (re)connection: the server has no state of this page. */
+  /** Call this after a connection or reconnection. The server has no state of this page yet. */
   connected(): void {
     this._seen = "";
     if (this.leading || this.followed) this.send();
@@ -117,28 +121,28 @@ export class Together {
   }
 
   /**
-   * A camera has a direction but no target. Asks for the place in the middle, so that this person
-   * can rotate around it after the end of following.
+   * A camera has a direction but no target. This requests the position in the middle, so the user
+   * can rotate the camera around it after following.
    */
   cameToRest(): void {
     const { width, height } = this._host.view.camera;
     if (this.followed) this._middle.ask({ x: width / 2, y: height / 2 });
   }
-  /** Returns true for an answer to one of these requests. */
+  /** Returns true if the message is the response to one of these requests. */
   answer(message: Picked): boolean {
     return this._middle.answer(message);
   }
 
   /**
-   * Returns true if the refusal concerns a request of this class or the followed participant, and
-   * handles it.
+   * Handles a refusal of a request of this class, or of the followed participant. Returns true if
+   * it did.
    */
   refused({ ref, field, status, detail }: Omit<ProblemMessage, "op">): boolean {
     if (this._middle.refused(ref)) return true;
     if (field !== "follow") return false;
     const { followed } = this;
     this.stopFollowing();
-    if (!followed) return true; // this person had already stopped
+    if (!followed) return true; // this user had already stopped following
     if (status === 404) notices.show("info", texts.together.left(nameOf(followed)));
     else notices.show("problem", texts.together.refused(nameOf(followed)), detail);
     return true;
@@ -167,7 +171,7 @@ export class Together {
     if (depth > 0) view.turnAround(depth);
   }
 
-  /** Shows one notice for each invitation. */
+  /** Shows a notice for each invitation. */
   private hearInvitations(): void {
     const leaders = this.viewers.filter(
       ({ leading, session }) => leading && session !== this._host.session(),

@@ -1,5 +1,5 @@
-// <strata-delete-record-dialog>: deletes a record. If its key is painted, the dialog asks what to
-// do with these texels.
+// <strata-delete-record-dialog>: deletes a record. If its key is painted, the dialog asks for the
+// new content of these texels.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -18,10 +18,10 @@ const words = texts.tables;
 @customElement("strata-delete-record-dialog")
 export class StrataDeleteRecordDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Id. */
+  /** The table's id. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) key = 0;
-  @state() private _painted = ""; // the places, if its key is painted
+  @state() private _painted = ""; // the models and layers where the key is painted
   @state() private _what: "clear" | "reassign" = "clear";
   @state() private _to: readonly number[] = [];
   @state() private _problem = "";
@@ -115,5 +115,5 @@ export class StrataDeleteRecordDialog extends LitElement {
   }
 }
 
-/** The server's first sentence names the places; the second is advice for scripts. */
+/** The server's first sentence names the painted layers. The second is advice for scripts. */
 const whereOf = (detail: string): string => detail.split(/(?<=\.)\s+(?=[A-Z])/)[0] ?? detail;

@@ -1,5 +1,5 @@
-// <strata-hover-card>: a summary of the record under a resting mouse. Display only: pointer events
-// pass through it. People who do not use a mouse get the card of a tap.
+// <strata-hover-card>: a summary of the record under a resting mouse. It is only for display, so
+// pointer events pass through it. Users without a mouse open the card with a tap.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -14,7 +14,7 @@ import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
 const kMostLines = 4;
-const kGapPx = 18; // the pointer's own size
+const kGapPx = 18; // the size of the mouse pointer
 
 @customElement("strata-hover-card")
 export class StrataHoverCard extends LitElement {
@@ -69,7 +69,7 @@ export class StrataHoverCard extends LitElement {
         display: block;
         width: 13.125rem;
         max-width: 100%;
-        height: 6.5rem; /* reserved before the picture loads, so that the card keeps its size */
+        height: 6.5rem; /* reserved before the picture loads, so the card keeps its size */
         object-fit: cover;
         border-radius: var(--radius-small);
         background: var(--stage);
@@ -97,7 +97,7 @@ export class StrataHoverCard extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.setAttribute("aria-hidden", "true");
-    addEventListener("keydown", this.onKey, { capture: true }); // for any focused element
+    addEventListener("keydown", this.onKey, { capture: true }); // for every focused element
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
@@ -137,7 +137,7 @@ export class StrataHoverCard extends LitElement {
     </section>`;
   }
 
-  /** Places the card: its size is known only after rendering. */
+  /** Positions the card, because its size is known only after rendering. */
   override updated(): void {
     const { _section: section } = this;
     const { at } = this.session.pointer;

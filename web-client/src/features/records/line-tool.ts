@@ -1,5 +1,5 @@
-// A line on the surface: drawn freehand, or set place by place. During drawing the camera stays
-// fixed, as for areas.
+// A line on the surface: drawn freehand, or set point by point. The camera stays fixed during
+// drawing, as for areas.
 
 import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
@@ -7,11 +7,11 @@ import { PlacesTool, type OutlineHost } from "../../tools/outline";
 import type { Outline } from "../../tools/tool";
 import type { Tool } from "../../tools/tool";
 
-const kMostPoints = 1000; // the server's limit
-const kDragReachPx = 6; // CSS pixels; a longer move is a drag
+const kMostPoints = 1000; // the server's limit on the points of a line
+const kDragReachPx = 6; // in CSS pixels; a longer movement is a drag
 
 /**
- * A drag draws a line. Clicks set its places; another click on the last place, or Enter, ends it.
+ * A drag draws a line. Clicks set its points. A second click on the last point, or Enter, ends it.
  */
 export class LineTool extends PlacesTool implements Tool {
   readonly name = "line";
@@ -66,7 +66,7 @@ export class LineTool extends PlacesTool implements Tool {
     if (press?.first && press.dragged) this.finish();
   }
 
-  /** A second finger touched: the press of the first one is undone. */
+  /** A second finger on the screen undoes the press of the first one. */
   cancel(): void {
     const press = this._press;
     this._press = null;

@@ -1,5 +1,5 @@
-// Drawing of lines and points on the surface. They belong to the record that the brush paints, in
-// the layer's table.
+// Draws lines and points on the surface. They belong to the record that the brush paints, in the
+// layer's table.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -34,7 +34,7 @@ export interface MarkDrawingHost {
   changed(): void;
 }
 
-/** The record and column of the drawing. */
+/** The record and the column that receive the drawing. */
 interface Target {
   model: Model;
   table: number;
@@ -42,17 +42,18 @@ interface Target {
   column: Column;
 }
 
-const kMostTries = 5; // while other people change the record
+const kMostTries = 5; // for simultaneous changes to the record by other users
 const words = texts.marks;
 
 const metresOf = (lines: readonly MarkPlace[][], { unit }: Model): number =>
   lines.reduce((sum, coordinates) => sum + markLength({ coordinates }), 0) * metresPer(unit);
 
 export class MarkDrawing {
-  private readonly _chosen = new Map<string, number>(); // ids of columns, by table and kind
-  private _work: Promise<void> = Promise.resolve(); // drawings are saved one after the other
-  private _notice = 0; // offers to undo the latest
-  private readonly _measure: LineMeasure<Step>; // of the current line
+  // ids of the chosen columns, by table and kind
+  private readonly _chosen = new Map<string, number>();
+  private _work: Promise<void> = Promise.resolve(); // drawings are saved one at a time
+  private _notice = 0; // the notice that offers to undo the latest drawing
+  private readonly _measure: LineMeasure<Step>; // the measured length of the current line
 
   constructor(
     private readonly _api: Api,
@@ -65,18 +66,18 @@ export class MarkDrawing {
     });
   }
 
-  /** Length of the current line to the pointer; null where unknown. */
+  /** The length of the current line to the pointer, in meters; null if it is unknown. */
   get metresSoFar(): number | null {
     return this._measure.metres;
   }
 
-  /** Columns of the selected layer's table that can hold such marks. */
+  /** Returns the columns of the selected layer's table that can store such marks. */
   columns(kind: MarkKind): Column[] {
     const { table: id } = this._host.layers.selected ?? {};
     const table = id === undefined ? null : this._host.tables.find(id);
     return table ? markColumns(table, kind) : [];
   }
-  /** The column for new marks. */
+  /** Returns the column for new marks. */
   column(kind: MarkKind): Column | null {
     const columns = this.columns(kind);
     const chosen = this._chosen.get(`${this._host.layers.selected?.table} ${kind}`);
@@ -87,14 +88,14 @@ export class MarkDrawing {
     this._host.changed();
   }
 
-  /** Returns false if there is no record to draw for; the user was shown the reason. */
+  /** Returns false if no record is selected, after showing the reason to the user. */
   beginLine(): boolean {
     if (!this.target("line")) return false;
     this._host.painting.stroking = true;
     return true;
   }
 
-  /** The line became longer or shorter; null: it ended. */
+  /** Call this when the line becomes longer or shorter, or with null when it ends. */
   lineChanged(outline: Outline | null): void {
     this._measure.follow(outline);
   }
@@ -226,7 +227,7 @@ export class MarkDrawing {
       : notices.show("success", what, "", link);
   }
 
-  /** Changes the current version of the record, so that marks of other people are kept. */
+  /** Changes the current version of the record, which keeps the marks of other users. */
   private async change(
     table: number,
     key: number,
@@ -242,7 +243,7 @@ export class MarkDrawing {
     }
   }
 
-  /** Undoes only the change of the notice, not a later one. */
+  /** Undoes only the change that the notice reports, and not a later one. */
   private async takeBack(table: number, version: number): Promise<void> {
     const {
       edits: [newest],

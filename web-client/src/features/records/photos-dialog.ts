@@ -1,5 +1,5 @@
-// <strata-photos-dialog>: attaches many files to records by their file names. First the dialog
-// shows the target of each file, then it sends them.
+// <strata-photos-dialog>: attaches files to records by their file names. It shows the target of
+// each file before it sends the files.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -13,12 +13,12 @@ import { choicesStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.files;
-const kAskMs = 250; // after the last key press in the pattern
+const kAskMs = 250; // delay after the last key press in the pattern
 const kMostShown = 200;
 
 /**
- * A likely pattern for the names of these files: words separated by underscores and dots, the first
- * of which is the record's.
+ * Returns a likely pattern for the names of these files. Underscores and dots separate words, and
+ * the first word names the record.
  */
 export function likelyPattern(names: readonly string[], column: string): string {
   const [first = ""] = names;
@@ -33,11 +33,11 @@ export function likelyPattern(names: readonly string[], column: string): string 
 @customElement("strata-photos-dialog")
 export class StrataPhotosDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Id. */
+  /** The table's id. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) files: File[] = [];
-  @state() private _column = ""; // its values are part of the names
-  @state() private _target = ""; // column for the files
+  @state() private _column = ""; // the column whose values are part of the file names
+  @state() private _target = ""; // the column that receives the files
   @state() private _pattern = "";
   @state() private _matches: AttachmentMatches | null = null;
   @state() private _problem = "";
@@ -82,7 +82,7 @@ export class StrataPhotosDialog extends LitElement {
     const columns = this.columns;
     const table = this.session.tables.find(this.table);
     const title = table ? labelColumn(table) : null;
-    // file names do not contain terms
+    // file names do not contain terms, so the key is used instead
     this._column = title && title.kind !== "term" ? title.slug : "key";
     this._target = (columns.find(({ kind }) => kind === "picture") ?? columns[0])?.slug ?? "";
     this._pattern = likelyPattern(this.names, this._column);
@@ -179,7 +179,7 @@ export class StrataPhotosDialog extends LitElement {
     this._timer = setTimeout(() => void this.match(), kAskMs);
   }
 
-  /** Only the latest request counts. */
+  /** Requests the matches. Only the latest request counts. */
   private async match(): Promise<void> {
     const asked = ++this._asked;
     const { _pattern: pattern, _column: column, names } = this;
@@ -204,8 +204,8 @@ export class StrataPhotosDialog extends LitElement {
   }
 
   /**
-   * Sends one file after the other. After a refusal the sent files remain, and a second attempt
-   * skips them.
+   * Sends one file at a time. Files that were sent before a refusal remain, and a second attempt
+   * omits them.
    */
   private async send(): Promise<void> {
     const { _matches: matches, _target: target } = this;

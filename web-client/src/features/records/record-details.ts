@@ -1,5 +1,5 @@
-// What a record says, for its card on the picture and for the side panel: its name, first picture,
-// values and measures.
+// The content of a record, for its card over the 3D view and for the side panel: its name, first
+// picture, values and measures.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { firstPicture, labelOf, tellingColumns } from "../../domain/cells";
@@ -40,8 +40,8 @@ export const recordDetailStyles = css`
 `;
 
 /**
- * `most`: the number of columns with a value that are shown; the record's name is the heading.
- * `tools`: after the name.
+ * `most` is the largest number of columns with a value to show. The record's name is the heading.
+ * `tools` appear after the name.
  */
 export function recordDetails(
   session: ModelSession,

@@ -1,5 +1,4 @@
-// <strata-record-dialog>: a form for a record, generated from its table; for a new or an existing
-// record.
+// <strata-record-dialog>: a form for a new or existing record, generated from its table.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -28,16 +27,16 @@ const words = texts.tables;
 export class StrataRecordDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer!: Layer;
-  /** Null: a new record. */
+  /** Null for a new record. */
   @property({ attribute: false }) key: number | null = null;
-  @state() private _record: TableRecord | null = null; // as it was read
+  @state() private _record: TableRecord | null = null; // the loaded version
   @state() private _problem = "";
   @state() private _sending = "";
-  @state() private _fieldProblems = new Map<string, string>(); // by slug
+  @state() private _fieldProblems = new Map<string, string>(); // keyed by slug
   @state() private _busy = false;
-  @state() private _written = ""; // the unsaved input when another person took the record over
+  @state() private _written = ""; // the unsaved input after another user took the record over
   private _claim: RecordClaim | null = null;
-  private _shut = false; // another person has the record, as of the last rendering
+  private _shut = false; // whether another user was editing the record at the last rendering
   @query("form") private _form!: HTMLFormElement | null;
 
   constructor() {
@@ -93,7 +92,7 @@ export class StrataRecordDialog extends LitElement {
   }
 
   /**
-   * Keeps the input when another person takes the record over. A person who waited for the record
+   * Keeps the input when another user takes the record over. A user who waited for the record
    * starts with its saved version.
    */
   override willUpdate(): void {
@@ -218,7 +217,7 @@ export class StrataRecordDialog extends LitElement {
     </div>`;
   }
 
-  /** The differences from the record, one line for each column. */
+  /** Returns the differences from the record, with one line for each column. */
   private inWords(table: Table): string {
     const lines: string[] = [];
     for (const column of table.columns) {
@@ -234,7 +233,9 @@ export class StrataRecordDialog extends LitElement {
     return this.renderRoot.querySelector(`strata-cell-input[data-slug="${CSS.escape(slug)}"]`);
   }
 
-  /** Enter saves, also from a field inside another element; in multi-line texts with Ctrl. */
+  /**
+   * Enter saves, also from a field inside another element. In multi-line texts, Ctrl+Enter saves.
+   */
   private onKey(event: KeyboardEvent): void {
     const field = event.composedPath()[0];
     if (
@@ -247,7 +248,7 @@ export class StrataRecordDialog extends LitElement {
     this._form?.requestSubmit();
   }
 
-  /** The changed values in the form; null: a field is invalid. */
+  /** Returns the changed values in the form, or null if a field is invalid. */
   private read(table: Table): CellValues | null {
     const values: CellValues = {};
     const problems = new Map<string, string>();
@@ -263,7 +264,7 @@ export class StrataRecordDialog extends LitElement {
     return problems.size > 0 ? null : values;
   }
 
-  /** Saves the form and starts the drawing of lines or points. */
+  /** Saves the form, and starts the drawing of lines or points. */
   private async draw(column: Column): Promise<void> {
     const { session, layer } = this;
     if ((await this.save(false)) && this._record)
@@ -288,7 +289,7 @@ export class StrataRecordDialog extends LitElement {
         this._record = { ...record, ...changed };
       } else if (!record) {
         const made = await createRecord(session.api, table.id, { values });
-        this._record = made; // a later refusal is retried for this record
+        this._record = made; // after a later refusal, the next attempt uses this record
         session.tables.view?.rows.refresh();
         session.tables.view?.show(made.key);
       }
@@ -305,9 +306,7 @@ export class StrataRecordDialog extends LitElement {
     }
   }
 
-  /**
-   * Sends one file after the other. A sent file is no longer pending, even if a later one fails.
-   */
+  /** Sends one file at a time. A sent file is no longer pending, even if a later one fails. */
   private async sendFiles(table: Table, key: number): Promise<void> {
     const fields = table.columns
       .filter(holdsFiles)
@@ -356,7 +355,7 @@ export class StrataRecordDialog extends LitElement {
   }
 
   /**
-   * After a change by another person: shows their values next to the fields; saving again
+   * After a change by another user, shows the new values next to the fields. A second save
    * overwrites them.
    */
   private async tellChanges(table: Table, read: TableRecord): Promise<void> {

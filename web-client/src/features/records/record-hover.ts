@@ -1,11 +1,11 @@
-// The record that a mouse rests on, where a click would open its card. It sends no requests: it
-// uses the answers to the pointer's own ones.
+// The record under a resting mouse. A click there would open its card. This class sends no
+// requests, because it uses the responses to the pointer's requests.
 
 import type { PointerSample } from "../../ui/input";
 import type { Layer } from "../../core/types";
 
 const kRestMs = 350;
-const kTremble = 4; // window pixels of movement by a resting hand
+const kTremble = 4; // in window pixels; tolerated movement of a resting hand
 
 export interface RecordAt {
   layer: Layer;
@@ -13,9 +13,11 @@ export interface RecordAt {
 }
 
 export interface RecordHoverHost {
-  /** The record under the pointer, as far as known. */
+  /** Returns the known record under the pointer. */
   here(): RecordAt | null;
-  /** Whether that is for the pointer's current position, and no answer is pending. */
+  /**
+   * Returns whether `here` is valid for the pointer's current position, without a pending request.
+   */
   settled(): boolean;
   changed(): void;
 }
@@ -23,7 +25,7 @@ export interface RecordHoverHost {
 export class RecordHover {
   private _shown: RecordAt | null = null;
   private _from: PointerSample | null = null; // the position where the mouse stopped
-  // null while `_from` is set: the waiting time is over
+  // null while `_from` is set means that the delay is over
   private _timer: ReturnType<typeof setTimeout> | null = null;
 
   constructor(private readonly _host: RecordHoverHost) {}
@@ -36,7 +38,7 @@ export class RecordHover {
       : null;
   }
 
-  /** A mouse without a pressed button; null: no mouse. */
+  /** Takes a mouse position without a pressed button, or null if there is no mouse. */
   move(sample: PointerSample | null): void {
     if (!sample) this.end();
     else if (
@@ -50,19 +52,19 @@ export class RecordHover {
   /** Call this when the values under the pointer are known again. */
   picked(): void {
     if (this.shown) return;
-    // the mouse left the record; the next card waits like the first
+    // the mouse has left the record; the next card appears after the same delay
     if (this._shown && this._from) this.restFrom(this._from);
     else if (this._from && !this._timer) this.show();
   }
 
-  /** The view moved under the mouse: the waiting time starts again. */
+  /** The view moved under the mouse, so the delay starts again. */
   waitAgain(): void {
     const told = this.shown !== null;
     if (this._from) this.restFrom(this._from);
     if (told) this._host.changed();
   }
 
-  /** The person does something else: the next mouse move starts the waiting time. */
+  /** The user does something else. The next mouse movement starts the delay. */
   end(): void {
     const told = this.shown !== null;
     this.stopWaiting();

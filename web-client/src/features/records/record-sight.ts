@@ -8,24 +8,24 @@ import type { RecordAt } from "./record-hover";
 
 export interface RecordSightHost {
   layers: Pick<LayersPart, "all" | "selected" | "visible">;
-  /** The last answer about the place under the pointer. */
+  /** Returns the latest response for the position under the pointer. */
   picked(): Picked | null;
   tool(): ToolName;
-  /** The record whose card is open. */
+  /** Returns the record whose card is open. */
   card(): RecordAt | null;
 }
 
 export class RecordSight {
   constructor(private readonly _host: RecordSightHost) {}
 
-  /** The selected layer if it has a record there, otherwise the topmost layer that has one. */
+  /** Returns the selected layer if it has a record there, else the topmost layer that has one. */
   layerWithRecord(picked: Picked): Layer | null {
     const { selected, all } = this._host.layers;
     if (selected && this.showsRecord(selected, picked)) return selected;
     return [...all].reverse().find((layer) => this.showsRecord(layer, picked)) ?? null;
   }
 
-  /** The record whose card a tap would open; null if that card is open already. */
+  /** The record whose card a tap would open; null if that card is already open. */
   get here(): RecordAt | null {
     const picked = this._host.picked();
     const layer = picked && this.layerOfTap(picked);

@@ -1,5 +1,6 @@
 // <strata-records-panel>: the tables of the model's layers, each with a button that opens it below
-// the picture, and the record that is selected in the open table or was clicked on the surface.
+// the 3D view. It also shows the record that is selected in the open table or was clicked on the
+// surface.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -77,7 +78,7 @@ export class StrataRecordsPanel extends LitElement {
     `,
   ];
 
-  /** Top to bottom, as in the list of layers. */
+  /** The layers from top to bottom, as in the list of layers. */
   private get layers(): Layer[] {
     return this.session.layers.all.filter(({ table }) => table !== undefined).reverse();
   }
@@ -119,7 +120,10 @@ export class StrataRecordsPanel extends LitElement {
     </li>`;
   }
 
-  /** The record that is selected in the open table, else the one that was clicked on the surface. */
+  /**
+   * Renders the record that is selected in the open table, or else the record that was clicked on
+   * the surface.
+   */
   private chosen(): TemplateResult | typeof nothing {
     const { session } = this;
     const { view, card } = session.tables;
@@ -137,7 +141,7 @@ export class StrataRecordsPanel extends LitElement {
     return card ? this.record(card.layer, card.key) : nothing;
   }
 
-  /** With its measures, where they are known. */
+  /** Returns the record, with its measures if they are known. */
   private find(layer: Layer, key: number): TableRecord | null {
     const { tables } = this.session;
     const { view, card } = tables;

@@ -1,5 +1,5 @@
-// <strata-review-panel>: the edits that wait for review, and for curators the buttons to accept or
-// reject them.
+// <strata-review-panel>: the edits that wait for review. Curators have buttons to accept or reject
+// them.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -21,7 +21,7 @@ import { toldTime } from "../../domain/times";
 const words = texts.review;
 const kMostReason = 1000;
 
-/** The strokes that are being rejected, until the reason is entered. */
+/** The strokes to reject, until the user has entered the reason. */
 interface Rejecting {
   layer: number;
   what: Omit<Review, "decision" | "reason">;

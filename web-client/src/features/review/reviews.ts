@@ -1,5 +1,5 @@
-// The edits of the open model that wait for review, and the decisions of curators. Read again soon
-// after a change of a layer.
+// The edits of the open model that wait for review, and the curators' decisions. They are loaded
+// again shortly after a change to a layer.
 
 import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api-error";
@@ -14,32 +14,32 @@ import type { ViewControl } from "../../session/view-control";
 import type { LayersPart } from "../../session/parts";
 
 const words = texts.review;
-const kAtOnce = 200; // listed strokes for each layer; the oldest come first
+const kAtOnce = 200; // number of listed strokes for each layer, with the oldest first
 
 export interface ReviewsHost {
   readonly view: ViewControl;
   readonly layers: LayersPart;
   me(): string;
-  /** The name of a user. */
+  /** Returns the display name of a user. */
   nameOf(user: string): string;
   canPaint(): boolean;
   canCurate(): boolean;
   changed(): void;
 }
 
-/** The queue of a layer. */
+/** A layer with its queue of waiting edits. */
 export interface Waiting {
   layer: Layer;
   queue: ReviewQueue;
 }
 
 export class Reviews {
-  private readonly _failed = new Set<number>(); // layers whose queue could not be read
-  // layers with waiting or decided edits since the page opened
+  private readonly _failed = new Set<number>(); // layers whose queue could not be loaded
+  // layers that had waiting or decided edits since the page opened
   private readonly _told = new Set<number>();
-  private readonly _queues = new Map<number, ReviewQueue>(); // by layer
+  private readonly _queues = new Map<number, ReviewQueue>(); // keyed by layer
   private readonly _outdated = new Set<number>();
-  // the latest request by layer; answers to older ones are ignored
+  // the latest request by layer; responses to older requests are ignored
   private readonly _asked = new Map<number, number>();
   private readonly _again = new ReadAgain((last) => void this.load(last));
 
@@ -52,18 +52,20 @@ export class Reviews {
   get failed(): boolean {
     return this._failed.size > 0;
   }
-  /** Whether a layer requires review, or edits still wait. */
+  /** Whether a layer requires review, or edits are still waiting. */
   get isUsed(): boolean {
     return this._host.layers.all.some((layer) => layer.review) || this.count > 0;
   }
-  /** Layers with waiting edits: for curators those of all authors, for others their own. */
+  /**
+   * The layers with waiting edits. Curators see the edits of all authors, and others see their own.
+   */
   get waiting(): Waiting[] {
     return this._host.layers.all.flatMap((layer) => {
       const queue = this._queues.get(layer.id);
       return queue && queue.total > 0 ? [{ layer, queue }] : [];
     });
   }
-  /** Number of strokes on all layers. */
+  /** The number of strokes on all layers. */
   get count(): number {
     return this.waiting.reduce((sum, { queue }) => sum + queue.total, 0);
   }
@@ -91,12 +93,12 @@ export class Reviews {
     );
   }
 
-  /** Edits of this person were saved, on any layer. */
+  /** Call this after edits of this user were saved, on any layer. */
   saved(): void {
     for (const { id } of this._host.layers.all) this.outdated(id);
   }
 
-  /** The layer has changed. */
+  /** Call this after a change to the layer. */
   outdated(layer: number): void {
     this._outdated.add(layer);
     this._again.news();
@@ -157,8 +159,8 @@ export class Reviews {
   }
 
   /**
-   * Returns true after success; a notice offers to undo the decision for a moment. Otherwise the
-   * user was shown the reason.
+   * Returns true after success, and a notice offers to undo the decision for a short time. Returns
+   * false otherwise, after showing the reason to the user.
    */
   async decide(layer: Layer, decision: Review): Promise<boolean> {
     const { strokes, total, people } = this._queues.get(layer.id) ?? {
@@ -178,7 +180,7 @@ export class Reviews {
         : (people.find(({ user }) => user === decision.user)?.strokes ?? 0);
     const done = await this.send(layer, decision);
     if (!done) return false;
-    // Only listed strokes can be named.
+    // a request can only name listed strokes
     const act = (): void => void this.send(layer, { decision: "reopen", edits });
     const takeBack = edits.length === count && count > 0 ? { label: words.take_back, act } : null;
     notices.show(
@@ -201,7 +203,7 @@ export class Reviews {
       notices.error(error);
       done = false;
     }
-    await this.read(layer.id); // also if another person decided first
+    await this.read(layer.id); // also necessary if another user decided first
     return done;
   }
 }

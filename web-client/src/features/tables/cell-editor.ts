@@ -1,4 +1,4 @@
-// Editing of a table's cells: the field in the cell, the message about a record that another person
+// Edits the cells of a table: the field in the cell, the message about a record that another user
 // is editing, and the changes that could not be saved.
 
 import {
@@ -41,19 +41,19 @@ interface Editing {
   typed: string | null;
 }
 
-/** Callbacks to the table: positions of cells. Columns count from 1, after the key. */
+/** Callbacks to the table, with positions of cells. Columns count from 1, after the key. */
 export interface CellEditorHost extends ReactiveControllerHost {
   readonly session: ModelSession;
   readonly view: TableView;
   readonly active: { row: number; column: number };
   readonly rowPx: number;
   widthOf(column: Column): number;
-  /** Position of a bubble next to a row. */
+  /** Returns the position of a bubble next to a row. */
   beside(row: number, left: number): Record<string, string | null>;
   shown(column: Column, value: CellValue): unknown;
   /** Activates the cell and scrolls to it. */
   show(row: number, at: number): void;
-  /** The same within the table, with the keyboard focus. */
+  /** Activates the cell within the table, with the keyboard focus. */
   moveTo(row: number, at: number): void;
   focusGrid(): void;
   openRecord(key: number): void;
@@ -63,7 +63,7 @@ export interface CellEditorHost extends ReactiveControllerHost {
 export class CellEditor implements ReactiveController {
   private _editing: Editing | null = null;
   private _problem = "";
-  private _claim: RecordClaim | null = null; // of the record that is being edited
+  private _claim: RecordClaim | null = null; // the claim to the edited record
 
   constructor(private readonly _host: CellEditorHost) {
     _host.addController(this);
@@ -73,7 +73,7 @@ export class CellEditor implements ReactiveController {
     return this._editing !== null;
   }
 
-  /** Shows other people the record that is being edited. */
+  /** Shows other users that this user is editing the record. */
   hostUpdate(): void {
     const { view } = this._host;
     const editing = this._editing;
@@ -97,7 +97,7 @@ export class CellEditor implements ReactiveController {
     this._host.requestUpdate();
   }
 
-  /** The field of the edited cell, with its problem. */
+  /** Renders the field of the edited cell, with its problem. */
   field(edges: readonly number[]): TemplateResult | typeof nothing {
     const editing = this._editing;
     const { table } = this._host.view;
@@ -134,7 +134,7 @@ export class CellEditor implements ReactiveController {
       }`;
   }
 
-  /** Whether another person has the record that is edited here. */
+  /** Whether another user is editing the same record. */
   private get isTaken(): boolean {
     return this._claim !== null && this._claim.other !== null;
   }
@@ -152,8 +152,8 @@ export class CellEditor implements ReactiveController {
   }
 
   /**
-   * Asks before it takes a record over from another person. Runs `work` if the record is free or
-   * was taken over.
+   * Asks for confirmation before it takes a record over from another user. Runs `work` if the
+   * record is free or was taken over.
    */
   private async takeOver(key: number, work: () => void = () => {}): Promise<void> {
     const words = texts.tables;
@@ -168,7 +168,7 @@ export class CellEditor implements ReactiveController {
     ) {
       if (other) claim.takeOver();
       work();
-      await this._host.updateComplete; // the new edit then has its own claim
+      await this._host.updateComplete; // the new edit then makes its own claim
     }
     claim.release();
   }
@@ -178,7 +178,7 @@ export class CellEditor implements ReactiveController {
     this._host.focusGrid();
   }
 
-  /** Changes that the server refused, and conflicts with changes of other people. */
+  /** Renders the changes that the server refused, and conflicts with changes by other users. */
   bubbles(table: Table, edges: readonly number[]): unknown {
     return this._host.view.edits.open.map((edit) => {
       const row = this._host.view.rows.indexOf(edit.key);
@@ -247,7 +247,7 @@ export class CellEditor implements ReactiveController {
     else clear();
   }
 
-  /** The cell's value for editing, including one that is still being saved. */
+  /** Returns the cell's value for editing, which may still be unsaved. */
   private baseOf({ key, values }: TableRecord, slug: string): CellValue {
     const edit = this._host.view.edits.of(key, slug);
     return edit?.state === "saving" ? edit.value : (values[slug] ?? null);
@@ -275,7 +275,7 @@ export class CellEditor implements ReactiveController {
   }
 
   /**
-   * Returns false for an invalid value, or if another person has taken the record over; the field
+   * Returns false for an invalid value, or if another user has taken the record over. The field
    * keeps the text.
    */
   private commit(): boolean {
@@ -308,7 +308,7 @@ export class CellEditor implements ReactiveController {
     event.stopPropagation();
   };
 
-  /** Moves to the next editable cell; from the end of a row to the first cell of the next. */
+  /** Moves to the next editable cell. The next cell after the end of a row is in the next row. */
   private editBeside(row: number, column: number, step: 1 | -1): void {
     const count = this._host.view.table?.columns.length ?? 0;
     const next = column + step;

@@ -1,5 +1,5 @@
-// Cell edits of this person that are not in the table yet: being saved, refused, or in conflict
-// with another person's change.
+// Cell edits of this user that are not in the table yet: edits that are being saved, were refused,
+// or conflict with another user's change.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -12,14 +12,14 @@ export interface CellEdit {
   key: number;
   slug: string;
   /**
-   * The values that the cell may have before the write: the displayed one, and those that this
-   * person wrote later.
+   * The values that the cell may have before the write: the displayed value, and values that this
+   * user wrote later.
    */
   onto: CellValue[];
   value: CellValue;
   state: "saving" | "refused" | "conflict";
   problem: string;
-  /** In a conflict: the cell's current value and its author. */
+  /** After a conflict, the cell's current value and its author. */
   theirs: { value: CellValue; user: string; time: string } | null;
 }
 
@@ -30,12 +30,12 @@ export interface CellEditsHost {
   changed(): void;
 }
 
-const kMostTries = 3; // while other people change other cells of the record
+const kMostTries = 3; // for simultaneous changes to other cells of the record
 const idOf = (key: number, slug: string): string => `${key} ${slug}`;
 
 export class CellEdits {
   private readonly _edits = new Map<string, CellEdit>();
-  // by record: one change after the other
+  // keyed by record; changes run one at a time
   private readonly _chains = new Map<number, Promise<void>>();
 
   constructor(
@@ -46,7 +46,7 @@ export class CellEdits {
   of(key: number, slug: string): CellEdit | null {
     return this._edits.get(idOf(key, slug)) ?? null;
   }
-  /** Edits that need a decision of the person. */
+  /** The edits that require the user's decision. */
   get open(): CellEdit[] {
     return [...this._edits.values()].filter((edit) => edit.state !== "saving");
   }
@@ -65,12 +65,12 @@ export class CellEdits {
     return this.send({ key, slug, onto, value, state: "saving", problem: "", theirs: null });
   }
 
-  /** Keeps the other person's value, or discards a refused edit. */
+  /** Keeps the other user's value, or discards a refused edit. */
   forget(key: number, slug: string): void {
     if (this._edits.delete(idOf(key, slug))) this._host.changed();
   }
 
-  /** Overwrites the other person's value. */
+  /** Overwrites the other user's value. */
   insist(edit: CellEdit): Promise<void> {
     return this.send({
       ...edit,
@@ -90,7 +90,7 @@ export class CellEdits {
 
   private async sendNow(edit: CellEdit): Promise<void> {
     const { key, slug, value } = edit;
-    if (this.of(key, slug) !== edit) return; // edited again since
+    if (this.of(key, slug) !== edit) return; // the user has edited the cell again
     try {
       for (let tries = 1; ; ++tries) {
         const row =
@@ -110,7 +110,7 @@ export class CellEdits {
         } catch (error) {
           if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
             throw error;
-          // possibly only another cell of the record has changed
+          // the change may affect only another cell of the record
           this._host.put(await readRecord(this._api, { table: this._host.table }, key));
         }
       }

@@ -21,7 +21,7 @@ export interface ColumnWanted {
 export const hasLimits = (kind: ColumnKind): boolean => kind === "integer" || kind === "numeric";
 export const hasTarget = (kind: ColumnKind): boolean => kind === "term" || kind === "relation";
 
-/** Returns only the members that suit the kind. */
+/** Returns only the members that apply to the kind. */
 export function ofKind(wanted: ColumnWanted): ColumnPatch {
   const { name, labels, kind, required, unique, comment } = wanted;
   return {
@@ -39,7 +39,7 @@ export function ofKind(wanted: ColumnWanted): ColumnPatch {
   };
 }
 
-/** Returns only the members that differ, so that other people's changes of the rest are kept. */
+/** Returns only the members that differ, which keeps other users' changes to the other members. */
 export function columnChanges(column: Column, wanted: ColumnWanted): ColumnPatch {
   const now: Record<string, unknown> = { unit: "", minimum: null, maximum: null, ...column };
   const entries = Object.entries(ofKind(wanted)).filter(([member, value]) =>
@@ -50,6 +50,6 @@ export function columnChanges(column: Column, wanted: ColumnWanted): ColumnPatch
   return Object.fromEntries(entries);
 }
 
-/** In any order. */
+/** Compares labels in any order. */
 const sameLabels = (a: Labels, b: Labels): boolean =>
   JSON.stringify(rowsOf(a)) === JSON.stringify(rowsOf(b));

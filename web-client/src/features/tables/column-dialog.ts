@@ -32,14 +32,15 @@ const kNoLabels = {};
 export class StrataColumnDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) table!: Table;
-  /** Null: a new column. */
+  /** Null for a new column. */
   @property({ attribute: false }) column: Column | null = null;
   @state() private _kind: ColumnKind = "text";
   @state() private _visibility: Visibility = "public";
   @state() private _tables: Table[] = [];
   @state() private _problem = "";
   @state() private _busy = false;
-  @state() private _outcome: ColumnChanged | null = null; // values were lost: confirm or undo?
+  // values were lost; the user must confirm or undo
+  @state() private _outcome: ColumnChanged | null = null;
   @query("strata-dialog") private _dialog!: StrataDialog;
   @query("form") private _form!: HTMLFormElement;
   @query("strata-labels-field") private _labels!: StrataLabelsField;
@@ -173,7 +174,10 @@ export class StrataColumnDialog extends LitElement {
     this._form.requestSubmit();
   }
 
-  /** Returns the input, or a problem; an empty text if the field itself shows the problem. */
+  /**
+   * Returns the input, or the text of a problem. The text is empty if the field itself shows the
+   * problem.
+   */
   private wanted(): ColumnWanted | string {
     const data = new FormData(this._form);
     const text = (name: string): string => String(data.get(name) ?? "").trim();
@@ -218,8 +222,8 @@ export class StrataColumnDialog extends LitElement {
           } as ColumnCreate,
         });
       } else {
-        // A separate request, which has no journal entry. It comes first, so that the later changes
-        // are visible only to permitted people.
+        // The visibility is a separate request without a journal entry. It comes first, so only
+        // permitted users can see the later changes.
         if (this._visibility !== column.visibility)
           await session.api.json("PATCH /tables/{table}/columns/{column}", {
             path: { table: table.id, column: column.id },
@@ -242,7 +246,7 @@ export class StrataColumnDialog extends LitElement {
     });
   }
 
-  /** Restores the column with all its values. */
+  /** Restores the column and all its values. */
   private async takeBack(): Promise<void> {
     await this.work(async () => {
       await this.session.api.json("POST /tables/{table}/undo", { path: { table: this.table.id } });

@@ -1,6 +1,6 @@
-// <strata-column-filter>: filters the rows of a table by one column: by values with the number of
-// their records, by a range, by a part of the text, or by empty or filled cells. The event "filter"
-// carries the new filter of the table.
+// <strata-column-filter>: filters the rows of a table by one column. The filter can be a set of
+// values with their number of records, a range, a part of the text, or empty or filled cells. The
+// event "filter" contains the table's new filter.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -25,7 +25,7 @@ import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.column_filter;
-const kSearched = 8; // from this number of values on, a search field appears
+const kSearched = 8; // a search field appears from this number of values
 const kMostShown = 300;
 
 interface Line {
@@ -171,7 +171,7 @@ export class StrataColumnFilter extends LitElement {
     } else if (choice.is === "contains") this._text = choice.text;
   }
 
-  /** Counts values in the records that match the rest of the filter. */
+  /** Counts the values in the records that match the rest of the filter. */
   private async count(): Promise<void> {
     try {
       const filter = withChoice(this.filter, this.column, null);
@@ -229,7 +229,7 @@ export class StrataColumnFilter extends LitElement {
       text: this.textOf(value),
     }));
     const known = new Set(lines.map(({ value }) => value));
-    // Also lists selected values and possible ones.
+    // selected and possible values are listed too
     const also = [
       ...this._values,
       ...(column.kind === "enumeration"
@@ -262,7 +262,7 @@ export class StrataColumnFilter extends LitElement {
     const all = this.lines();
     const wanted = this._search.trim().toLocaleLowerCase();
     const found = all.filter(({ text }) => text.toLocaleLowerCase().includes(wanted));
-    // The rows follow at once, and the sheet stays.
+    // the rows change immediately, and the sheet stays open
     const choose = (value: FilterValue) => (event: Event) => {
       const chosen = new Set(this._values);
       if ((event.target as HTMLInputElement).checked) chosen.add(value);
@@ -342,7 +342,7 @@ export class StrataColumnFilter extends LitElement {
 
   // ── result ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** Null: an end is not a number. */
+  /** Returns null if a limit of the range is not a number. */
   private chosen(): ColumnFilter | null {
     switch (this._kind) {
       case "one_of":
@@ -378,7 +378,10 @@ export class StrataColumnFilter extends LitElement {
     this._sheet.hidePopover();
   }
 
-  /** Enter in a field applies, Escape closes; the page must not handle these keys. */
+  /**
+   * Enter in a field applies the filter, and Escape closes the sheet. The page must not handle
+   * these keys.
+   */
   private onKey(event: KeyboardEvent): void {
     if (event.key !== "Tab") event.stopPropagation();
   }

@@ -1,5 +1,5 @@
-// <strata-csv-dialog>: imports records from a CSV file: first a preview of the changes, with
-// problems line by line, then the import.
+// <strata-csv-dialog>: imports records from a CSV file. It previews the changes and lists problems
+// by line before the import.
 
 import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -17,7 +17,7 @@ const words = texts.tables;
 @customElement("strata-csv-dialog")
 export class StrataCsvDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Id. */
+  /** The table's id. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) file!: File;
   @state() private _report: RecordsReport | null = null;

@@ -1,4 +1,5 @@
-// Cache of viewed records, kept until an event reports a change. New records replace the oldest.
+// A cache of viewed records. It keeps a record until an event reports a change. New records replace
+// the oldest ones.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -8,7 +9,7 @@ import type { TableRecord } from "../../core/protocol.gen";
 const kMostKept = 300;
 
 export class RecordCache {
-  /** Symbol: requested; null: no such record. */
+  /** A symbol means that the record was requested. Null means that it does not exist. */
   private readonly _kept = new Map<string, TableRecord | symbol | null>();
 
   constructor(
@@ -16,14 +17,14 @@ export class RecordCache {
     private readonly _changed: () => void,
   ) {}
 
-  /** Null until it is loaded, and where it does not exist; requested once. */
+  /** Returns null if the record does not exist or is not loaded yet. Requests it once. */
   find(table: number, key: number): TableRecord | null {
     const known = this._kept.get(nameOf(table, key));
     if (known === undefined) void this.load(table, key);
     return typeof known === "object" ? known : null;
   }
 
-  /** The record has changed. */
+  /** Call this after a change to the record. */
   forget(table: number, key: number): void {
     if (this._kept.delete(nameOf(table, key))) this._changed();
   }
@@ -45,7 +46,7 @@ export class RecordCache {
     try {
       found = await readRecord(this._api, { table }, key);
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // painted keys without a record
+      if (!(error instanceof ApiError)) throw error; // painted keys may have no record
     }
     if (this._kept.get(name) === asked) this._kept.set(name, found);
     this._changed();

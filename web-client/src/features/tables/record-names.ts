@@ -1,6 +1,6 @@
-// Names of the records of a table, for relations, legends and the brush. Loaded at the first use
-// and completely, since a search over them must be immediate; for very large tables only the first
-// ones.
+// Names of the records of a table, for relations, legends and the brush. All names are loaded at
+// the first use, because the search must be immediate. For very large tables only the first names
+// are loaded.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -11,17 +11,17 @@ import type { Table, TableRecord } from "../../core/protocol.gen";
 
 export interface NamedRecord {
   key: number;
-  label: string; // may be empty
+  label: string; // empty if the record has no name
 }
 
 const kAtOnce = 1000;
 export const kMostNames = 20_000;
 const kMostFound = 60;
 
-/** From other tables of the project: the order of terms, and names of records. */
+/** Data from other tables of the project: the order of terms, and names of records. */
 export interface OtherNames {
   nameOf: NameOfKey;
-  /** Order by key; null: not a list of terms, as far as known. */
+  /** Returns the order by key, or null if the table is not known to be a list of terms. */
   places(table: number): ReadonlyMap<number, number> | null;
 }
 const kNoOthers: OtherNames = { nameOf: () => null, places: () => null };
@@ -29,11 +29,12 @@ const kNoOthers: OtherNames = { nameOf: () => null, places: () => null };
 const collator = new Intl.Collator([...personLanguages()], { numeric: true });
 
 export class RecordNames {
-  private _records = new Map<number, Pick<TableRecord, "values">>(); // the naming values
+  // the values that form the names
+  private _records = new Map<number, Pick<TableRecord, "values">>();
   private _sorted: NamedRecord[] | null = null;
   private _state: "unasked" | "loading" | "loaded" = "unasked";
   private _again = false;
-  private _complete = false; // _records has every record
+  private _complete = false; // whether _records has every record
 
   constructor(
     private readonly _api: Api,
@@ -42,22 +43,22 @@ export class RecordNames {
     private readonly _others: OtherNames = kNoOthers,
   ) {}
 
-  /** Null: no such record, or its name is not loaded yet. */
+  /** Returns null if the record does not exist or its name is not loaded yet. */
   label(key: number): string | null {
     this.want();
     const record = this._records.get(key);
     return (record && this.name(record)) || null;
   }
 
-  /** Whether the record is known not to exist. */
+  /** Returns whether the record is known not to exist. */
   lacks(key: number): boolean {
     this.want();
     return this._complete && !this._records.has(key);
   }
 
   /**
-   * Finds records by name or key. Names that start with the text come first, then those that
-   * contain it; each in the order of the term list, or alphabetically in the person's language.
+   * Finds records by name or key. Names that start with the text are first, then those that contain
+   * it. Both parts follow the order of the term list, or the alphabet of the user's language.
    */
   search(text: string): NamedRecord[] {
     this.want();
@@ -92,7 +93,7 @@ export class RecordNames {
     this.reorder();
     this._changed();
   }
-  /** Call this when names or the order may have changed. */
+  /** Call this when names or their order may have changed. */
   reorder(): void {
     this._sorted = null;
   }
@@ -123,7 +124,8 @@ export class RecordNames {
       label: this.name(record),
       place: place(key),
     }));
-    const nameless = ({ label }: NamedRecord): number => Number(label === ""); // they come last
+    // records without a name are last
+    const nameless = ({ label }: NamedRecord): number => Number(label === "");
     named.sort((a, b) =>
       a.place === b.place
         ? nameless(a) - nameless(b) || collator.compare(a.label, b.label) || a.key - b.key
@@ -162,7 +164,7 @@ export class RecordNames {
       this._state = "loaded";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this._state = "loaded"; // keys are shown instead; the next event tries again
+      this._state = "loaded"; // keys are shown instead; the next event repeats the request
     }
     this._changed();
   }

@@ -1,5 +1,5 @@
-// The rows of a table in an order and with a filter, as far as they were viewed. Rows are requested
-// in pages; an old page stays until the new one arrives, which avoids flicker.
+// The viewed rows of a table, with an order and a filter. Rows are requested in pages. An old page
+// stays until the new one arrives, which avoids flicker.
 
 import { ApiError } from "../../net/api-error";
 import type { RecordQuery } from "../../net/records";
@@ -9,25 +9,28 @@ import type { RecordList, TableRecord } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
 
 export const kPageRows = 100;
-const kSearchedRows = 1000; // requested at once during a search for a record
+const kSearchedRows = 1000; // number of rows per request during a search for a record
 const kMostKeptPages = 500;
 const kMostAtOnce = 2;
 
 interface Page {
   rows: TableRecord[];
-  generation: number; // of the request that it answers
+  generation: number; // the generation of the request
 }
 
 export interface RecordRowsHost {
   ask(query: RecordQuery): Promise<RecordList>;
   changed(): void;
-  /** A record's lines or points have changed: its measures on the model are unknown. */
+  /**
+   * Call this after a change to a record's lines or points. Its measures on the model are then
+   * unknown.
+   */
   measuresOutdated(): void;
 }
 
 export class RecordRows {
   total = 0;
-  loaded = false; // at least once
+  loaded = false; // whether rows were loaded at least once
   /** The problem of the filter or of the server. */
   problem: ProblemBody | null = null;
 
@@ -35,9 +38,9 @@ export class RecordRows {
   private _filter = "";
   private readonly _pages = new Map<number, Page>();
   private _generation = 0;
-  private _asked = new Set<number>(); // requested pages of this generation
+  private _asked = new Set<number>(); // the pages that this generation has requested
   private _wanted: [number, number] = [0, 0];
-  private _replaces = false; // the next answer has another order and replaces all pages
+  private _replaces = false; // the next response has another order and replaces all pages
 
   constructor(private readonly _host: RecordRowsHost) {}
 
@@ -57,7 +60,7 @@ export class RecordRows {
     return this._pages.get(Math.floor(index / kPageRows))?.rows[index % kPageRows] ?? null;
   }
 
-  /** Requests the rows from first to last. */
+  /** Requests the rows from `first` to `last`. */
   want(first: number, last: number): void {
     this._wanted = [
       Math.floor(Math.max(0, first) / kPageRows),
@@ -75,7 +78,7 @@ export class RecordRows {
     this.refresh();
   }
 
-  /** Records were added, removed or changed: rows are requested again when viewed. */
+  /** Call this after records were added, removed or changed. Viewed rows are requested again. */
   refresh(): void {
     this._generation += 1;
     this._asked = new Set();
@@ -89,7 +92,7 @@ export class RecordRows {
     return index === null ? null : this.row(index);
   }
 
-  /** The record's index among the loaded rows. */
+  /** Returns the record's index among the loaded rows. */
   indexOf(key: number): number | null {
     for (const [page, { rows }] of this._pages) {
       const at = rows.findIndex((row) => row.key === key);
@@ -98,7 +101,7 @@ export class RecordRows {
     return null;
   }
 
-  /** The record's index among all rows; null if it is not one of them. */
+  /** Returns the record's index among all rows, or null if the rows do not contain it. */
   async locate(key: number): Promise<number | null> {
     const { _generation } = this;
     for (let offset = 0; ; offset += kSearchedRows) {
@@ -129,8 +132,8 @@ export class RecordRows {
       const at = page.rows.findIndex((row) => row.key === record.key);
       if (at < 0) continue;
       const before = page.rows[at]!;
-      if (record.version < before.version) return; // a late answer
-      // answers for the table have no measures, which depend on layer and model
+      if (record.version < before.version) return; // the response arrived late
+      // responses for the table have no measures, because these depend on layer and model
       const { area_m2: areaM2, length_m: lengthM, point_count: pointCount } = before;
       const measures = Object.fromEntries(
         Object.entries({ area_m2: areaM2, length_m: lengthM, point_count: pointCount }).filter(
@@ -150,7 +153,7 @@ export class RecordRows {
     const [first, last] = this._wanted;
     for (let page = first; page <= last; ++page) {
       if (this._asked.size >= kMostAtOnce || this.problem) return;
-      // past the end
+      // the page is after the last row
       const known = this.loaded && !this._replaces && page > 0 && page * kPageRows >= this.total;
       if (known || this._asked.has(page) || this._pages.get(page)?.generation === this._generation)
         continue;
@@ -173,7 +176,7 @@ export class RecordRows {
       if (this._replaces) this._pages.clear();
       this._replaces = false;
       this.takeTotal(total);
-      this._pages.delete(page); // re-inserted as the newest
+      this._pages.delete(page); // inserted again as the newest page
       this._pages.set(page, { rows: records, generation: _generation });
       for (const old of this._pages.keys()) {
         if (this._pages.size <= kMostKeptPages) break;

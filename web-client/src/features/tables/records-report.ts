@@ -1,4 +1,5 @@
-// The report of an import, before or after it: the number of new rows, and the problems by line.
+// The report of an import, before or after it, with the number of new rows and the problems by
+// line.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { formatCount } from "../../core/locale";
@@ -47,11 +48,11 @@ export const reportStyles = css`
   }
 `;
 
-/** Whether the import is possible and changes something. */
+/** Returns whether the import is possible and changes the table. */
 export const isUseful = (report: RecordsReport): boolean =>
   report.problems.length === 0 && report.created + report.changed > 0;
 
-/** `rows`: the term for the file's rows. */
+/** `rows` is the term for the file's rows. */
 export function recordsReport(report: RecordsReport, rows: string): TemplateResult {
   const counts: [string, number][] = [
     [rows, report.rows],
@@ -65,7 +66,10 @@ export function recordsReport(report: RecordsReport, rows: string): TemplateResu
     ${report.problems.length === 0 ? html`<p>${report.created + report.changed > 0 ? words.good : words.same}</p>` : whatIsWrong(report)}`;
 }
 
-/** The list of problems, by line or, in files without lines, by code of the term. */
+/**
+ * Renders the list of problems, by line. In files without lines, problems are listed by the term's
+ * code.
+ */
 function whatIsWrong({ problems }: RecordsReport): TemplateResult {
   const sorted = [...problems].sort((a, b) => a.line - b.line);
   const hasLines = sorted.some(({ line }) => line > 0);

@@ -1,4 +1,4 @@
-// <strata-table-bar>: the bar above a table: its title, the filter, and commands for the whole
+// <strata-table-bar>: the bar above a table, with its title, the filter, and commands for the whole
 // table.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -23,7 +23,7 @@ import type { TablePanelRequest } from "../../session/requests";
 export class StrataTableBar extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) view!: TableView;
-  /** The panel is too narrow for a single row of tools. */
+  /** Whether the panel is too narrow for a single row of tools. */
   @property({ type: Boolean, reflect: true }) narrow = false;
   @query(".filter input") private _filter!: HTMLInputElement;
 
@@ -48,7 +48,7 @@ export class StrataTableBar extends LitElement {
     }
     .bar h2 {
       font-size: var(--text-large);
-      flex: 0 1 auto; /* shrinks instead of pushing the last buttons out of the panel */
+      flex: 0 1 auto; /* shrinks, so the last buttons stay inside the panel */
       min-width: 4rem;
       max-width: 30%;
     }
@@ -68,7 +68,7 @@ export class StrataTableBar extends LitElement {
     }
     .filter {
       position: relative;
-      flex: 100 1 10rem; /* takes the free space before the gap does */
+      flex: 100 1 10rem; /* takes the free space before the gap */
       min-width: 12rem;
       max-width: 40rem;
       margin-left: var(--space-2);
@@ -110,7 +110,7 @@ export class StrataTableBar extends LitElement {
         display: none;
       }
     }
-    /* the title and the close button, then the filter */
+    /* the first row has the title and the close button, and the second row has the filter */
     :host([narrow]) .bar {
       flex-wrap: wrap;
       row-gap: var(--space-1);
@@ -225,7 +225,7 @@ export class StrataTableBar extends LitElement {
     </div>`;
   }
 
-  /** Undo and redo, among the tools or in the menu. */
+  /** Renders undo and redo, among the tools or in the menu. */
   private turns(place: "tool" | "menuitem"): TemplateResult[] {
     const { view } = this;
     const words = texts.tables;
@@ -257,7 +257,7 @@ export class StrataTableBar extends LitElement {
       <hr />`;
   }
 
-  /** Buttons that highlight the selected or filtered rows on the model. */
+  /** Renders the buttons that highlight the selected or filtered rows on the model. */
   private onModel(): TemplateResult {
     const words = texts.tables;
     const { view } = this;

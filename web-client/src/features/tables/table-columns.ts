@@ -1,4 +1,4 @@
-// Column widths of a table: by the kind of their values, until a user drags their edges.
+// Column widths of a table. They depend on the kind of the values until a user drags the edges.
 
 import type { Column, Table } from "../../core/protocol.gen";
 import { measuresOf } from "../../session/fields/record-measures";
@@ -19,7 +19,7 @@ const kUsualWidth = 150;
 const kLeastWidth = 56;
 
 export class TableColumns {
-  /** Ratio of the text size to the default. */
+  /** The ratio of the text size to the default. */
   growth = 1;
   private readonly _dragged = new Map<string, number>();
 
@@ -27,7 +27,9 @@ export class TableColumns {
     return this._dragged.get(slug) ?? (kWidths[kind] ?? kUsualWidth) * this.growth;
   }
 
-  /** Left edges of the columns and of the measures, then the right edge of the last one. */
+  /**
+   * Returns the left edges of the columns and of the measures, then the right edge of the last one.
+   */
   edges(table: Table): number[] {
     const edges = [this._dragged.get("key") ?? kKeyWidth * this.growth];
     const widths = [

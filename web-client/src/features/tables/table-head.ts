@@ -28,7 +28,7 @@ export interface TableHeadHost extends ReactiveControllerHost {
 }
 
 export class TableHead {
-  // the column with the open filter
+  // the column whose filter is open
   private _filtered: { column: Column; anchor: HTMLElement } | null = null;
 
   constructor(private readonly _host: TableHeadHost) {}
@@ -89,7 +89,7 @@ export class TableHead {
     </button>`;
   }
 
-  /** Makes the column the source of the records' names. */
+  /** Renders the button that makes the column the source of the records' names. */
   private titleButton(column: Column): TemplateResult | typeof nothing {
     const words = texts.tables;
     const { table } = this._host.view;
@@ -141,7 +141,7 @@ export class TableHead {
     this.choose({ column, anchor: event.currentTarget as HTMLElement });
   }
 
-  /** The filter of a column, while it is open. */
+  /** Renders the filter of a column while it is open. */
   filter(table: Table): TemplateResult | typeof nothing {
     const { view } = this._host;
     const filtered = this._filtered;

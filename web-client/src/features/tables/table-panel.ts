@@ -37,8 +37,8 @@ import type { TablePanelRequest } from "../../session/requests";
 
 const kRowPx = 32;
 const kHeadPx = 34;
-const kNarrowPx = 820; // width below which one row of tools is too narrow
-const kAbove = 6; // rows rendered beyond the visible ones
+const kNarrowPx = 820; // below this width, a single row of tools is too narrow
+const kAbove = 6; // number of rendered rows outside the visible ones
 @customElement("strata-table-panel")
 export class StrataTablePanel extends LitElement implements CellEditorHost, TableHeadHost {
   @property({ attribute: false }) session!: ModelSession;
@@ -56,7 +56,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
   private readonly _editor = new CellEditor(this);
   private _observer: ResizeObserver | null = null;
   private _growth = 1;
-  private _from = 0; // start row of a selection with Shift
+  private _from = 0; // first row of a selection with Shift
 
   constructor() {
     super();
@@ -157,7 +157,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     </div>`;
   }
 
-  /** The filter text with the wrong character marked. */
+  /** Renders the filter text with the wrong character marked. */
   private filterProblem(): TemplateResult | typeof nothing {
     const { problem, filter } = this.view.rows;
     if (!problem) return nothing;
@@ -314,7 +314,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     return this._input;
   }
 
-  /** Below the row, or above it where there is more room. */
+  /** Returns a position below the row, or above it if there is more space. */
   beside(row: number, left: number): Record<string, string | null> {
     const { scrollTop = 0, clientHeight = 0 } = this._scroller ?? {};
     const below = row === 0 || row * this.rowPx - scrollTop < (clientHeight - this.headPx) / 2;
@@ -361,7 +361,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
   }
 
   private readonly onKey = (event: KeyboardEvent): void => {
-    if (event.target !== this._scroller) return; // a button in the table
+    if (event.target !== this._scroller) return; // a button in the table has the focus
     const { row, column } = this.active;
     const { table, rows } = this.view;
     if (!table) return;
@@ -421,7 +421,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     return true;
   }
 
-  /** Edits a cell; the key and the measures open the whole record. */
+  /** Edits a cell. The key and the measures open the whole record. */
   private enter(record: TableRecord | null, row: number, column: number): void {
     const { layer } = this;
     if (this.view.table?.columns[column - 1]) this._editor.editAt(row, column, null);
@@ -484,7 +484,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
   }
 
   /**
-   * Imports one CSV file as records, or as terms for a list of terms; other files are attached to
+   * Imports a CSV file as records, or as terms into a list of terms. Attaches other files to
    * records.
    */
   private takeFiles(files: File[]): void {

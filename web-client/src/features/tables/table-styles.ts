@@ -31,7 +31,7 @@ export const tableStyles = css`
     border-radius: var(--radius-tiny);
     vertical-align: middle;
   }
-  /* below the rows, which do not move when one is selected */
+  /* below the rows, which do not move when a row is selected */
   .chosen {
     display: flex;
     align-items: center;

@@ -1,5 +1,5 @@
-// A table that is open below the stage, for the layer with the displayed areas: its rows, edits and
-// selection.
+// A table that is open below the stage: its rows, edits and selection. Its areas are those of one
+// layer.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -17,17 +17,17 @@ import { notices } from "../../ui/notices";
 import { RecordRows } from "./record-rows";
 import { texts } from "../../texts";
 
-const kRefreshAfterMs = 250; // a stroke has many edits, and records often arrive several at once
-const kMostHighlighted = 10_000; // the limit for highlights by key
+const kRefreshAfterMs = 250; // a stroke has many edits, and several records often arrive together
+const kMostHighlighted = 10_000; // the server's limit for highlights by key
 
 export interface TableViewHost {
   modelId: string;
   layer_id: number;
   table_id: number;
-  table(): Table | null; // its current definition
+  table(): Table | null; // the current definition of the table
   changed(): void;
   columnsChanged(): Promise<void>;
-  /** Highlights on the model; null: nothing. */
+  /** Sets the highlight on the model. Null removes it. */
   highlight(what: Highlight | null): void;
   flyTo(bounds: NonNullable<Extent["bounds"]>): void;
 }
@@ -35,24 +35,24 @@ export interface TableViewHost {
 export class TableView {
   readonly rows: RecordRows;
   readonly edits: CellEdits;
-  /** Keys of the selected rows. */
+  /** The keys of the selected rows. */
   readonly selected = new Set<number>();
-  /** The result of undo or redo; a notice would cover the model. */
+  /** The result of undo or redo. A notice would cover the model. */
   told = "";
-  /** The record to scroll to. */
+  /** The key of the record to scroll to. */
   sought: number | null = null;
 
-  /** Highlights the selected or filtered rows on the model. */
+  /** Whether the selected or filtered rows are highlighted on the model. */
   lightsUp = true;
-  /** And hides the others. */
+  /** Whether the other records are hidden. */
   isolates = false;
-  /** Their bounds on the model, once known. */
+  /** The bounds of the highlighted records on the model; null while they are unknown. */
   extent: Extent | null = null;
 
   private _timer: ReturnType<typeof setTimeout> | null = null;
   private _refreshesRows = false;
-  private _highlighted = "null"; // as JSON
-  private _flies = false; // when the extent arrives
+  private _highlighted = "null"; // the last highlight as JSON
+  private _flies = false; // whether the camera moves when the extent arrives
 
   constructor(
     private readonly _api: Api,
@@ -90,8 +90,8 @@ export class TableView {
   // ── order and selection ────────────────────────────────────────────────────────────────────────
 
   /**
-   * `name`: the slug of a column, `key` or `area_m2`. A second call reverses the order; a third one
-   * removes it.
+   * `name` is the slug of a column, `key` or `area_m2`. A second call reverses the order, and a
+   * third one removes it.
    */
   sort(name: string): void {
     const { sortby } = this.rows;
@@ -131,7 +131,7 @@ export class TableView {
 
   // ── on the model ───────────────────────────────────────────────────────────────────────────────
 
-  /** The highlight: the selected rows, else the filtered ones. */
+  /** The highlight on the model: the selected rows, or else the filtered ones. */
   get highlight(): Highlight | null {
     const { filter, settled } = this.rows;
     const isolate = this.isolates ? { isolate: true } : {};
@@ -149,15 +149,15 @@ export class TableView {
     if (isolates) this.lightsUp = true;
     this.changed();
   }
-  /** Moves the camera to them. */
+  /** Moves the camera to the highlighted records. */
   fly(): void {
     this._flies = true;
     void this.findExtent();
   }
 
   /**
-   * Whether changes by other people moved records into or out of the filter; the rows do not follow
-   * them automatically.
+   * Whether changes by other users moved records into or out of the filter. The rows do not follow
+   * such changes automatically.
    */
   get outdated(): boolean {
     const { extent, rows } = this;
@@ -192,7 +192,7 @@ export class TableView {
       this.extent = extent;
       if (this._flies && extent.bounds) this._host.flyTo(extent.bounds);
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the rows report problems of the filter
+      if (!(error instanceof ApiError)) throw error; // the rows show problems of the filter
     }
     this._flies = false;
     this._host.changed();
@@ -234,7 +234,7 @@ export class TableView {
     }
   }
 
-  /** The record was deleted here. */
+  /** Call this after the record was deleted on this page. */
   forget(key: number): void {
     this.selected.delete(key);
     this.rows.refresh();
@@ -244,7 +244,7 @@ export class TableView {
 
   onRecord(event: RecordEvent): void {
     if (event.event === "changed" && event.record) {
-      // Keeps its place: moving rows would disturb readers.
+      // the row keeps its position, because moving rows would disturb readers
       this.rows.put(event.record);
       this.refreshSoon(false);
       return;
@@ -253,7 +253,10 @@ export class TableView {
     this.refreshSoon();
   }
 
-  /** Reads again after rows or areas have changed; `rows` false: only the extent. */
+  /**
+   * Loads the data again after rows or areas have changed. If `rows` is false, loads only the
+   * extent.
+   */
   refreshSoon(rows = true): void {
     this._refreshesRows ||= rows;
     if (this._timer) return;

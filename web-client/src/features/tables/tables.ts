@@ -1,4 +1,4 @@
-// The tables of the project that this page has needed so far: their columns and the names of their
+// The project's tables that this page has used so far: their columns and the names of their
 // records.
 
 import { ApiError } from "../../net/api-error";
@@ -34,7 +34,7 @@ export class Tables {
   /** The table that is open below the stage. */
   view: TableView | null = null;
 
-  /** The record that was clicked on the surface; `record` once it is loaded. */
+  /** The record that was clicked on the surface. `record` is null until it is loaded. */
   card: { layer: Layer; key: number; record: TableRecord | null } | null = null;
 
   private readonly _tables = new Map<number, Table | "asked">();
@@ -54,14 +54,14 @@ export class Tables {
     this._records = new RecordCache(_api, () => _host.changed());
   }
 
-  /** Null until it is loaded; the call requests it. */
+  /** Returns null and requests the table until it is loaded. */
   find(id: number): Table | null {
     const known = this._tables.get(id);
     if (known === undefined) void this.load(id);
     return typeof known === "object" ? known : null;
   }
 
-  /** Null until its columns are loaded. */
+  /** Returns null until the table's columns are loaded. */
   names(id: number): RecordNames | null {
     const table = this.find(id);
     if (!table) return null;
@@ -78,32 +78,34 @@ export class Tables {
     return names;
   }
 
-  /** The name of a record; null where it has none, or it is not loaded yet. */
+  /** Returns the name of a record, or null if it has no name or the name is not loaded yet. */
   label(id: number, key: number): string | null {
     return this.names(id)?.label(key) ?? null;
   }
 
-  /** Null until it is loaded, and where it does not exist. */
+  /** Returns null if the record does not exist or is not loaded yet. */
   record(id: number, key: number): TableRecord | null {
     return this._records.find(id, key);
   }
 
-  /** Whether the record is known not to exist. */
+  /** Returns whether the record is known not to exist. */
   lacks(id: number, key: number): boolean {
     return this.names(id)?.lacks(key) ?? false;
   }
 
-  /** The name of a loaded record; empty where it has none. */
+  /** Returns the name of a loaded record, or an empty string if it has none. */
   title(table: Table, record: Pick<TableRecord, "values">): string {
     return labelOfRecord(table, record, undefined, this._others.nameOf);
   }
 
-  /** The name of a term; null where the table is not a list of terms, or the name is unknown. */
+  /**
+   * Returns the name of a term, or null if the table is not a list of terms or the name is unknown.
+   */
   term(id: number, key: number): string | null {
     return this.find(id)?.kind === "terms" ? this.label(id, key) : null;
   }
 
-  /** Null: not a list of terms, as far as known. */
+  /** Returns null if the table is not known to be a list of terms. */
   terms(id: number): TermTree | null {
     if (this.find(id)?.kind !== "terms") return null;
     let terms = this._terms.get(id);
@@ -117,7 +119,7 @@ export class Tables {
     return terms;
   }
 
-  /** All tables of the project, for a choice. */
+  /** Returns all tables of the project. */
   async all(): Promise<Table[]> {
     const project = this._host.project();
     if (project === null) return [];
@@ -151,8 +153,8 @@ export class Tables {
   }
 
   /**
-   * Opens the card of the record that was clicked; closes it where the layer has no records or is
-   * not painted.
+   * Opens the card of the clicked record. Closes the card if the layer has no records or is not
+   * painted there.
    */
   showCard(layer: Layer | null, { values }: Picked): void {
     const found = layer ? values?.[layer.slug] : undefined;
@@ -172,7 +174,7 @@ export class Tables {
     this.view?.show(key);
   }
 
-  /** Undoes or redoes this person's latest change of the table. */
+  /** Undoes this user's latest change to the table; `redo` repeats it. */
   undo(table: number): Promise<void> {
     return this.turn(table, "undo");
   }
@@ -197,13 +199,13 @@ export class Tables {
     }
   }
 
-  /** Reads the rows again, with the areas after a stroke. */
+  /** Loads the rows and their areas again after a stroke. */
   refreshAreas(): void {
     this.view?.refreshSoon();
     void this.loadCard();
   }
 
-  /** Call this after a reconnection: events in between were lost. */
+  /** Call this after a reconnection, because events may have been lost. */
   refresh(): void {
     for (const id of this._tables.keys()) void this.load(id);
     for (const kept of [...this._names.values(), ...this._terms.values()]) kept.refresh();
@@ -247,7 +249,7 @@ export class Tables {
     if (this.card?.layer.id === layer) this.closeCard();
   }
 
-  /** This person changed the columns: the rows are read again. */
+  /** Call this after this user has changed the columns. Loads the rows again. */
   async reload(id: number): Promise<void> {
     await this.load(id);
     this._records.forgetTable(id);
@@ -269,7 +271,7 @@ export class Tables {
       this.card = { ...card, record };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      // a key that an undo painted again, without its record
+      // an undo has painted a key again whose record does not exist
       if (this.card === card) this.card = null;
     }
     this._host.changed();

@@ -1,5 +1,5 @@
-// <strata-terms-dialog>: imports a term list, or further terms of one, from a CSV or SKOS file:
-// first a preview of the changes, then the import.
+// <strata-terms-dialog>: imports a term list, or adds terms to one, from a CSV or SKOS file. It
+// previews the changes before the import.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -20,14 +20,14 @@ import { texts } from "../../texts";
 
 const words = texts.terms_dialog;
 
-const kMostOfU16 = 30_000; // terms of a new layer's list, which can then double
+const kMostOfU16 = 30_000; // a new layer's list can have this many terms, and double its size later
 
 @customElement("strata-terms-dialog")
 export class StrataTermsDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Id; null: creates a new list. */
+  /** The list's id; null creates a new list. */
   @property({ attribute: false }) table: number | null = null;
-  /** The file to preview first, if any. */
+  /** The file to preview first; null for none. */
   @property({ attribute: false }) file: File | null = null;
   @state() private _file: File | null = null;
   @state() private _name = "";
@@ -36,7 +36,7 @@ export class StrataTermsDialog extends LitElement {
   @state() private _problem = "";
   @state() private _busy = false;
   @query("strata-dialog") private _dialog!: StrataDialog;
-  private _named = false; // the person typed the name; otherwise the file provides it
+  private _named = false; // whether the user typed the name; otherwise the file provides it
   private _asked = 0;
 
   static override styles = [sharedStyles, reportStyles];
@@ -95,8 +95,8 @@ export class StrataTermsDialog extends LitElement {
   }
 
   /**
-   * Creates a new list in the project, or adds to one. `dryRun`: report only. With invalid terms,
-   * nothing is written.
+   * Creates a new list in the project, or adds to an existing list. `dryRun` only reports the
+   * changes. If a term is invalid, nothing is written.
    */
   private import(body: File, type: TermsType, dryRun: boolean): Promise<RecordsReport> {
     const { api, model } = this.session;
@@ -154,8 +154,8 @@ export class StrataTermsDialog extends LitElement {
   }
 
   /**
-   * Creates a layer of the list. If this is refused, the list exists all the same, so the message
-   * does not report a failed import.
+   * Creates a layer for the list. The list exists even if the server refuses the layer, so the
+   * message does not report a failed import.
    */
   private async makeLayer({ id, name }: Table, terms: number): Promise<void> {
     const { session } = this;
@@ -175,7 +175,7 @@ export class StrataTermsDialog extends LitElement {
     }
   }
 
-  /** The list may have changed since the preview. */
+  /** the list may have changed since the preview */
   private refuse(error: ApiError): void {
     if (error.problem.rows) this._report = error.problem.rows;
     else this._problem = error.message;

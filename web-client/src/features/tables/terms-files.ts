@@ -9,12 +9,12 @@ const kTypes: [TermsType, string[]][] = [
   ["application/rdf+xml", ["rdf", "xml", "owl"]],
 ];
 
-/** For a file field. */
+/** Endings for a file field. */
 export const kTermsEndings = kTypes
   .flatMap(([, endings]) => endings.map((ending) => `.${ending}`))
   .join(",");
 
-/** The media type of a file; null: not a term list. */
+/** Returns the media type of a file, or null if the file is not a term list. */
 export function termsType(name: string): TermsType | null {
   const ending = /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
   return kTypes.find(([, endings]) => endings.includes(ending))?.[0] ?? null;

@@ -1,5 +1,5 @@
-// <strata-tour-design>: how kiosks show a tour: light or dark room, colors, font and logo, with a
-// preview. Colors that visitors could not read are refused where they are chosen.
+// <strata-tour-design>: the appearance of a tour on kiosks: a light or dark room, colors, font and
+// logo, with a preview. It refuses colors that visitors could not read.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -24,8 +24,8 @@ export class StrataTourDesign extends LitElement {
   @property({ attribute: false }) tour: number | null = null;
   @property({ attribute: false }) theme: TourTheme = {};
   @property({ attribute: false }) files: readonly TourFile[] = [];
-  @property() heading = ""; // of the preview
-  /** The server's refusal. */
+  @property() heading = ""; // the heading of the preview
+  /** The text of the server's refusal. */
   @property() problem = "";
 
   static override styles = [

@@ -1,6 +1,6 @@
 // <strata-tour-dialog>: creates a tour of the model's views, or changes one: its languages and
-// stops, with the texts and contents of each. Nothing is sent before the user saves. If other
-// people save the tour in the meantime, the dialog says so and keeps all input.
+// stops, with their texts and contents. The dialog sends nothing before the user saves. If other
+// users save the tour in the meantime, it shows a message and keeps all input.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -48,21 +48,22 @@ const words = texts.tours;
 @customElement("strata-tour-dialog")
 export class StrataTourDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Null: a new tour. */
+  /** Null for a new tour. */
   @property({ attribute: false }) tour: TourEntry | null = null;
-  @state() private _draft: TourDraft | null = null; // null: still loading
-  @state() private _chosen: number | null = null; // id of a stop
-  @state() private _language = ""; // edited next to the first one
+  @state() private _draft: TourDraft | null = null; // null while the tour is loading
+  @state() private _chosen: number | null = null; // the id of the selected stop
+  @state() private _language = ""; // the language that is edited next to the first one
   @state() private _trying = false;
   @state() private _busy = false;
   @state() private _problem: { field: string; text: string } | null = null;
-  @state() private _theirs: Tour | null = null; // a version that another person has saved since
+  @state() private _theirs: Tour | null = null; // a version that another user has saved since
   @query("strata-dialog") private _dialog!: StrataDialog | null;
   @query("strata-tour-stop-fields") private _fields!: StrataTourStopFields | null;
-  private _base: Tour | null = null; // the version that this person has seen; null: not created yet
-  private _saved: TourDraft = emptyTour(""); // an equal draft can be discarded
+  // the version that this user has seen; null before the tour is created
+  private _base: Tour | null = null;
+  private _saved: TourDraft = emptyTour(""); // a draft equal to this one can be discarded
   private _key = newId();
-  private _asked: Promise<boolean> | null = null; // whether to discard the draft
+  private _asked: Promise<boolean> | null = null; // the open question whether to discard the draft
   private _letGo = (): void => {};
 
   constructor() {
@@ -165,7 +166,7 @@ export class StrataTourDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("beforeunload", this.onUnload);
-    // a stop is previewed on the page, where links lead elsewhere
+    // The preview of a stop is on the page, and links on the page leave the editor.
     this._letGo = holdPage(this.mayClose);
     void this.read();
   }
@@ -214,7 +215,7 @@ export class StrataTourDialog extends LitElement {
       yes: words.leave_yes,
       danger: true,
     }).finally(() => (this._asked = null));
-    return this._asked; // one question for all ways to leave
+    return this._asked; // all ways to leave share one question
   };
 
   // ── rendering ──────────────────────────────────────────────────────────────────────────────────
@@ -253,7 +254,7 @@ export class StrataTourDialog extends LitElement {
     const stop = draft.stops[index];
     const place = placeOf(this._problem?.field ?? "");
     const refused = place.stop !== null && place.stop === index;
-    const tour = this._base?.id ?? null; // null: files have no place yet
+    const tour = this._base?.id ?? null; // null means that the tour cannot have files yet
     return html`<div class="editor ${this._chosen === null ? "" : "in-stop"}" @file=${({ detail }: CustomEvent<TourFile>) => this.put({ files: [...this._draft!.files, detail] })}>
       ${this.about(draft)}
       <strata-tour-design
@@ -350,7 +351,7 @@ export class StrataTourDialog extends LitElement {
     ></strata-tour-trial>`;
   }
 
-  /** Index of the selected stop; wide windows always show one. */
+  /** Returns the index of the selected stop. Wide windows always show a stop. */
   private shownIndex({ stops }: TourDraft): number {
     return Math.max(
       0,
@@ -365,7 +366,7 @@ export class StrataTourDialog extends LitElement {
       ? this._problem.text
       : "";
   }
-  /** Whether the problem belongs to no field of the dialog. */
+  /** Returns whether the problem belongs to no field of the dialog. */
   private general(field: string): boolean {
     const { stop } = placeOf(field);
     if (stop !== null) return this._draft?.stops[stop] === undefined;
@@ -460,7 +461,7 @@ export class StrataTourDialog extends LitElement {
       } catch (again) {
         if (!(again instanceof ApiError)) throw again;
         if (again.status !== 404) return this.refuse("", again.message);
-        this._base = null; // the next attempt creates the tour again
+        this._base = null; // the next attempt to save creates the tour again
         this._theirs = null;
         this._key = newId();
         return this.refuse("", words.gone);
@@ -469,7 +470,7 @@ export class StrataTourDialog extends LitElement {
     this.refuse(error.problem.field ?? "", error.message);
   }
 
-  /** Shows the problem at its field and scrolls to it. */
+  /** Shows the problem at its field, and scrolls to it. */
   private refuse(field: string, text: string): void {
     this._problem = { field, text };
     const place = placeOf(field);
@@ -491,5 +492,5 @@ const told = ({ wrong, range }: DraftProblem): string =>
   wrong === "seconds"
     ? words.wrong_seconds(...(range ?? [0, 0]))
     : wrong === "contrast"
-      ? "" // <strata-tour-design> says it with the numbers
+      ? "" // <strata-tour-design> shows the problem with the numbers
       : words.wrong[wrong];

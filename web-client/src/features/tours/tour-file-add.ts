@@ -1,5 +1,5 @@
-// <strata-tour-file-add>: uploads files of a tour, one after the other, with progress and the
-// server's refusals. The event "added" carries each TourFile.
+// <strata-tour-file-add>: uploads files of a tour one at a time, with progress and the server's
+// refusals. The event "added" contains the TourFile.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -15,7 +15,7 @@ const words = texts.tours;
 @customElement("strata-tour-file-add")
 export class StrataTourFileAdd extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Id; null: the tour was not saved yet, and cannot have files. */
+  /** The tour's id; null for an unsaved tour, which cannot have files. */
   @property({ attribute: false }) tour: number | null = null;
   @property() label = "";
   @property() accept = "";

@@ -1,4 +1,4 @@
-// <strata-tour-languages>: the languages of a tour; the first is the default.
+// <strata-tour-languages>: the languages of a tour. The first one is the default.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// <strata-tour-list>: the tours of the model, for curators; part of the view panel, below the views
-// from which tours are made.
+// <strata-tour-list>: the tours of the model, for curators. It is in the view panel, below the
+// saved views that tours use.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// <strata-tour-media>: the pictures, sounds and videos of a stop in their order, with a caption and
-// a description in each language, and subtitles of videos.
+// <strata-tour-media>: the pictures, sounds and videos of a stop in their order. Each has a caption
+// and a description in every language. Videos can have subtitles.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -23,9 +23,9 @@ export class StrataTourMedia extends LitElement {
   @property({ attribute: false }) tour: number | null = null;
   @property({ attribute: false }) media: readonly MediumDraft[] = [];
   @property({ attribute: false }) files: readonly TourFile[] = [];
-  /** The languages that are edited. */
+  /** The languages that the user edits. */
   @property({ attribute: false }) languages: readonly string[] = [];
-  /** The refused field, as `media[0].alt.fr`. */
+  /** The refused field, such as `media[0].alt.fr`. */
   @property() wrong = "";
 
   static override styles = [
@@ -188,7 +188,7 @@ export class StrataTourMedia extends LitElement {
   private put(media: readonly MediumDraft[]): void {
     this.dispatchEvent(new CustomEvent("changed", { detail: media }));
   }
-  /** The tour's draft has to know the file. */
+  /** The tour's draft must contain the file. */
   private tell(file: TourFile): void {
     this.dispatchEvent(
       new CustomEvent<TourFile>("file", { detail: file, bubbles: true, composed: true }),

@@ -1,4 +1,4 @@
-// <strata-tour-records>: the records of a stop of a tour: their tables, keys, columns and the
+// <strata-tour-records>: the records at a stop of a tour: their tables, keys, columns and the
 // labels of these columns.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -25,9 +25,9 @@ const words = texts.tours;
 export class StrataTourRecords extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) records: readonly TourRecords[] = [];
-  /** The languages in which the labels of columns are edited. */
+  /** The languages in which the user edits the labels of columns. */
   @property({ attribute: false }) languages: readonly string[] = [];
-  /** The refused field, as `records[0].keys[2]`. */
+  /** The refused field, such as `records[0].keys[2]`. */
   @property() wrong = "";
   @property() problem = "";
   @state() private _tables: readonly Table[] = [];
@@ -131,7 +131,7 @@ export class StrataTourRecords extends LitElement {
     </section>`;
   }
 
-  /** The labels of the column on the card, in the edited languages. */
+  /** Renders the labels of the column on the card, in the edited languages. */
   private labels(index: number, table: Table, slug: string): TemplateResult {
     const column = table.columns.find((each) => each.slug === slug);
     const labels = this.records[index]?.columns.find((each) => each.column === slug)?.labels ?? {};

@@ -1,5 +1,5 @@
-// <strata-tour-stop-fields>: one stop of a tour: its view, its texts in each language, its times
-// and transition, its layers and records.
+// <strata-tour-stop-fields>: a stop of a tour: its view, its texts in each language, its times and
+// transition, its layers and records.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -37,15 +37,15 @@ const kTransitions: readonly TourTransition[] = ["move", "cut"];
 export class StrataTourStopFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) stop!: StopDraft;
-  /** Id; null: not saved yet. */
+  /** The tour's id; null for an unsaved tour. */
   @property({ attribute: false }) tour: number | null = null;
   @property({ attribute: false }) files: readonly TourFile[] = [];
-  /** Names of classes, of the whole tour. */
+  /** Names of classes, for the whole tour. */
   @property({ attribute: false }) classes: readonly TourClasses[] = [];
   @property({ attribute: false }) languages: readonly string[] = [];
   /** The language that is edited next to the first one. */
   @property() language = "";
-  /** The refused field, as `title.fr`; empty: none here. */
+  /** The refused field, such as `title.fr`; empty if no field of this stop was refused. */
   @property() wrong = "";
   @property() problem = "";
 
@@ -140,7 +140,7 @@ export class StrataTourStopFields extends LitElement {
     const find = (selector: string): HTMLElement | null =>
       this.renderRoot.querySelector<HTMLElement>(selector);
     const field = find('[aria-invalid="true"]') ?? find("#refusal") ?? find("strata-tour-records");
-    field?.scrollIntoView({ block: "center" }); // with the problem below it
+    field?.scrollIntoView({ block: "center" }); // includes the problem below the field
     field?.focus({ preventScroll: true });
   }
 
@@ -203,7 +203,8 @@ export class StrataTourStopFields extends LitElement {
   }
 
   /**
-   * The names on visitors' layer buttons. They belong to the layers and are saved there at once.
+   * Renders the names on visitors' layer buttons. They belong to the layers and are saved there
+   * immediately.
    */
   private layerNames(): TemplateResult | typeof nothing {
     const { session, stop } = this;
@@ -233,7 +234,7 @@ export class StrataTourStopFields extends LitElement {
       ${layers.filter(({ palette }) => palette.mode === "categorical").map((layer) => this.classNames(layer))}`;
   }
 
-  /** The names of classes at a tapped place. They belong to the tour. */
+  /** Renders the names of classes that appear after a tap on the model. They belong to the tour. */
   private classNames(layer: Layer): TemplateResult | typeof nothing {
     const { points } = layer.palette;
     const own = this.classes.find((each) => each.layer === layer.slug)?.classes ?? [];
@@ -308,7 +309,7 @@ export class StrataTourStopFields extends LitElement {
 
   // ── texts ──────────────────────────────────────────────────────────────────────────────────────
 
-  /** The first language, and the one that is edited next to it. */
+  /** The first language, and the language that is edited next to it. */
   private get written(): string[] {
     const [first = ""] = this.languages;
     const other =

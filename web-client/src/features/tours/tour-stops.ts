@@ -1,5 +1,5 @@
-// <strata-tour-stops>: the stops of a tour in their order, with one selected; adds, moves and
-// removes stops.
+// <strata-tour-stops>: the stops of a tour in their order, and the selected stop. It adds, moves
+// and removes stops.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -21,7 +21,7 @@ const words = texts.tours;
 
 export interface StopsChange {
   stops: readonly StopDraft[];
-  /** Id of the selected stop. */
+  /** The id of the selected stop. */
   chosen: number | null;
 }
 
@@ -31,10 +31,10 @@ export class StrataTourStops extends LitElement {
   @property({ attribute: false }) stops: readonly StopDraft[] = [];
   @property({ attribute: false }) languages: readonly string[] = [];
   @property({ attribute: false }) chosen: number | null = null;
-  /** Index of the refused stop. */
+  /** The index of the refused stop. */
   @property({ attribute: false }) wrong: number | null = null;
   @property() problem = "";
-  @state() private _removed: { stop: StopDraft; index: number }[] = []; // the latest last
+  @state() private _removed: { stop: StopDraft; index: number }[] = []; // the latest is last
   @query("select") private _select!: HTMLSelectElement | null;
   private readonly _drag = new DragOrder<number>(
     this,
@@ -138,7 +138,7 @@ export class StrataTourStops extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues<this>): void {
-    // their texts may be in a removed language
+    // the removed stops may have texts in a removed language
     if (changed.has("languages") && changed.get("languages") !== undefined) this._removed = [];
   }
 
@@ -250,7 +250,7 @@ export class StrataTourStops extends LitElement {
     this.put([...this.stops, stop], stop.id);
     await this.updateComplete;
     const next = [...(this._select?.options ?? [])].find(({ defaultSelected }) => defaultSelected);
-    if (next) next.selected = true; // also after a choice by the user
+    if (next) next.selected = true; // also replaces a choice by the user
   }
 
   private move(from: number, to: number): void {

@@ -1,5 +1,5 @@
-// <strata-tour-trial>: previews a stop of an edited tour on the model: the visitors' texts, buttons
-// to the previous and next stop, and back to the editor.
+// <strata-tour-trial>: previews a stop of the edited tour on the model. It shows the visitors'
+// texts, and buttons to the previous and next stop and to the editor.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -24,7 +24,8 @@ export class StrataTourTrial extends LitElement {
         position: fixed;
         z-index: 30;
         left: 50%;
-        top: 66px; /* below the header: notices and, on phones, the panel are at the bottom */
+        /* below the header, because notices and, on phones, the panel are at the bottom */
+        top: 66px;
         transform: translateX(-50%);
         display: grid;
         gap: var(--space-2);

@@ -1,5 +1,5 @@
-// The tours of the open model, for curators. The page receives no events about other people's
-// changes of tours, so it reads the tours again where that matters.
+// The tours of the open model, for curators. The page receives no events about other users' changes
+// to tours, so it loads the tours again when necessary.
 
 import { ApiError } from "../../net/api-error";
 import { type Api, ifVersion } from "../../net/api";
@@ -19,11 +19,11 @@ export class Tours {
   get loaded(): boolean {
     return this._known.loaded;
   }
-  /** The last read of the tours failed. */
+  /** Whether the last request for the tours failed. */
   get failed(): boolean {
     return this._known.failed;
   }
-  /** In order of creation. */
+  /** The tours in order of creation. */
   get all(): TourEntry[] {
     return this._known.all.sort((a, b) => a.id - b.id);
   }
@@ -37,7 +37,7 @@ export class Tours {
       this._changed();
   }
 
-  /** The current version, with its stops. */
+  /** Returns the current version, with its stops. */
   async read(id: number): Promise<Tour> {
     try {
       return this.put(
@@ -51,7 +51,7 @@ export class Tours {
     }
   }
 
-  /** `key`: the idempotency key, the same for all attempts at one tour. */
+  /** `key` is the idempotency key, the same for all attempts at one tour. */
   async make(tour: TourCreate, key: string): Promise<Tour> {
     return this.put(
       await this._api.json("POST /models/{model}/tours", {
@@ -62,7 +62,7 @@ export class Tours {
     );
   }
   /**
-   * Changes the version that was read; after another person's change the result is an ApiError with
+   * Changes the loaded version. If another user has changed the tour since, throws an ApiError with
    * status 412.
    */
   async change(
@@ -77,7 +77,9 @@ export class Tours {
       }),
     );
   }
-  /** Adds a picture, sound, video or subtitles; the tour uses it when it is saved with it. */
+  /**
+   * Uploads a picture, sound, video or subtitles. The tour uses the file after it is saved with it.
+   */
   addFile(tour: number, file: File, progress: Progress): Upload<TourFile> {
     return this._api.upload(
       "POST /models/{model}/tours/{tour}/files",
@@ -86,12 +88,12 @@ export class Tours {
       progress,
     );
   }
-  /** The address of a file, or of a small picture of it. */
+  /** Returns the address of a file, or of its thumbnail. */
   addressOf(tour: number, file: number, thumbnail?: 256): string {
     const address = `/api/v1/models/${this._modelId}/tours/${tour}/files/${file}`;
     return thumbnail ? `${address}?thumbnail=${thumbnail}` : address;
   }
-  /** Deletes under the same condition. */
+  /** Deletes the loaded version under the same condition. */
   async remove({ id, version }: TourEntry): Promise<void> {
     try {
       await this._api.send("DELETE /models/{model}/tours/{tour}", {

@@ -1,4 +1,4 @@
-// <strata-view-dialog>: saves the current view under a name, or with `view` changes its name and
+// <strata-view-dialog>: saves the current view under a name or, with `view`, changes its name and
 // text.
 
 import { html, LitElement, type TemplateResult } from "lit";
@@ -18,8 +18,8 @@ const words = texts.kept_views;
 export class StrataViewDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) view: View | null = null;
-  private _base: View | null = null; // the version that this person has seen
-  private _content: ViewContent | null = null; // of a new view: the state when the dialog opened
+  private _base: View | null = null; // the version that this user has seen
+  private _content: ViewContent | null = null; // the state when the dialog opened, for a new view
 
   override connectedCallback(): void {
     super.connectedCallback();

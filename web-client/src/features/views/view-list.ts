@@ -1,4 +1,4 @@
-// <strata-view-list>: the named views of the model, each with a button that applies it; part of the
+// <strata-view-list>: the saved views of the model, each with a button that applies it. Part of the
 // view panel.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -51,7 +51,7 @@ export class StrataViewList extends LitElement {
       li:has(> .go[aria-current="true"]) {
         background: var(--accent-soft);
       }
-      /* also below the pointer: text is hard to read on both tints together */
+      /* also under the pointer, because text is hard to read on two tints */
       li button.go[aria-current="true"]:not(:disabled) {
         background: none;
       }

@@ -1,4 +1,4 @@
-// The named views of the open model: the list, applying a view, and returning from it.
+// The saved views of the open model: lists them, applies them, and returns to the state before.
 
 import { ApiError } from "../../net/api-error";
 import { type Api, ifVersion } from "../../net/api";
@@ -13,14 +13,14 @@ import type { ViewControl } from "../../session/view-control";
 import type { AppearancePart, LayersPart, TablesPart } from "../../session/parts";
 
 const words = texts.kept_views;
-const kMostSaid = 300; // characters of a view's text in a notice
+const kMostSaid = 300; // number of characters of a view's text in a notice
 
 export interface ViewsHost {
   readonly view: ViewControl;
   readonly layers: LayersPart;
   readonly appearance: AppearancePart;
   readonly tables: TablesPart;
-  /** Runs the action now, or after the current stroke. */
+  /** Runs the action immediately, or after the current stroke. */
   whenFree(action: () => void): void;
   canCurate(): boolean;
   changed(): void;
@@ -29,7 +29,7 @@ export interface ViewsHost {
 export class Views {
   private _me = "";
   private readonly _known = new KnownItems<View>();
-  // the last applied view, and the state after it
+  // the last applied view, and the state after it was applied
   private _shown: { id: number; place: string; settings: string } | null = null;
   private _back: (() => void) | null = null;
   private _notice = 0;
@@ -45,18 +45,18 @@ export class Views {
   get loaded(): boolean {
     return this._known.loaded;
   }
-  /** The last read of the views failed. */
+  /** Whether the last request for the views failed. */
   get failed(): boolean {
     return this._known.failed;
   }
-  /** In order of creation. */
+  /** The views in order of creation. */
   get all(): View[] {
     return this._known.all.sort((a, b) => a.id - b.id);
   }
   find(id: number): View | null {
     return this._known.find(id);
   }
-  /** The applied view, as long as nothing was moved or changed since. */
+  /** The applied view; null after the first change to the camera or the settings. */
   get current(): View | null {
     return this._shown && this.isAtView ? this.find(this._shown.id) : null;
   }
@@ -67,7 +67,10 @@ export class Views {
     return `${location.origin}${pathOfModel(this._modelId)}${hashOfView(slug)}`;
   }
 
-  /** The server has identified this person. Earlier events are unknown, so all views are loaded. */
+  /**
+   * Runs when the server has identified this user. Earlier events are unknown, so this loads all
+   * views.
+   */
   welcome(user: string): void {
     this._me = user;
     void this.load();
@@ -96,7 +99,7 @@ export class Views {
       );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      // otherwise it remains until the next full read
+      // other errors keep the view until all views are loaded again
       if (error.status === 404) this.drop(id);
     }
   }
@@ -113,8 +116,8 @@ export class Views {
   // ── applying and returning ─────────────────────────────────────────────────────────────────────
 
   /**
-   * Applies the view, fitted to this person's window. `tells`: with a notice, for people without
-   * the list in sight.
+   * Applies the view, fitted to this user's window. `tells` shows a notice, for users who do not
+   * see the list.
    */
   goTo(view: View, tells = false): void {
     this._host.whenFree(() => {
@@ -127,14 +130,14 @@ export class Views {
     });
   }
 
-  /** By slug or id, as in addresses. */
+  /** Applies a view by slug or id, as in addresses. */
   follow(ref: string): void {
     const view = this.all.find(({ id, slug }) => slug === ref || String(id) === ref);
     if (view) this.goTo(view, true);
     else notices.show("info", words.missing);
   }
 
-  /** Applies the next view of the list, or with −1 the previous one. */
+  /** Applies the next view of the list. With −1, applies the previous one. */
   step(by: 1 | -1): void {
     const { all } = this;
     const at = all.findIndex(({ id }) => id === this._shown?.id);
@@ -143,7 +146,7 @@ export class Views {
     else notices.show("info", words.none);
   }
 
-  /** Whether there is a state before the first applied view to return to. */
+  /** Whether the user can return to the state before the first applied view. */
   get leadsBack(): boolean {
     return this._back !== null;
   }
@@ -158,7 +161,7 @@ export class Views {
 
   private show(view: View): void {
     const { view: control, layers, appearance, tables } = this._host;
-    const wasAtView = this.isAtView; // then its way back is kept
+    const wasAtView = this.isAtView; // if true, the saved state to return to is kept
     const { place } = control;
     const waysBack = [layers.showView(view), appearance.showView(view)];
     control.fly(placeLike(view.camera, control.camera));
@@ -194,13 +197,13 @@ export class Views {
 
   // ── saving ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** The current view of this person. */
+  /** Returns this user's current view. */
   content(): ViewContent {
     const { view, layers, appearance } = this._host;
     return { camera: view.camera.message(), layers: layers.toKeep(), ...appearance.toKeep() };
   }
 
-  /** `key`: the idempotency key, the same for all attempts at one view. */
+  /** `key` is the idempotency key, the same for all attempts at one view. */
   async keep(
     called: { name: string; text: string },
     content: ViewContent,
@@ -212,13 +215,13 @@ export class Views {
       header: { "Idempotency-Key": key },
     });
     this.put(made);
-    this._back = null; // the state is saved under a name now
+    this._back = null; // the state now has a name, so no return is necessary
     this.remember(made);
   }
 
   /**
-   * Changes the version that was read. If another person has changed it since, the function throws
-   * an ApiError with status 412, and the view is updated.
+   * Changes the loaded version. If another user has changed it since, throws an ApiError with
+   * status 412 and updates the view.
    */
   async describe(view: View, called: { name: string; text: string }): Promise<void> {
     await this.newestAfter(view, async () =>
@@ -241,7 +244,7 @@ export class Views {
       void this.putContent(changed, before).catch((error: unknown) => notices.error(error));
     notices.show("success", words.replaced(view.name), "", { label: words.undo, act: undo });
   }
-  /** Deletes under the same condition. */
+  /** Deletes the loaded version under the same condition. */
   async remove(view: View): Promise<void> {
     await this.newestAfter(view, () =>
       this._api.send("DELETE /models/{model}/views/{view}", {

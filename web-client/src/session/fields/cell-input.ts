@@ -1,5 +1,5 @@
-// <strata-cell-input>: the field for a value of a column, by its kind. Used in cells of the table
-// and in the form of a record.
+// <strata-cell-input>: the input field for a value of a column. Its type depends on the kind of the
+// column. Cells of the table and the form of a record use it.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -25,7 +25,7 @@ import { texts } from "../../texts";
 
 export type CellRead = { value: CellValue } | { problem: string };
 
-/** Whether typing can start a new value; other kinds are chosen. */
+/** Whether users type the values of the column. They choose values of other kinds. */
 export const takesTyping = (column: Column): boolean =>
   !namesRecords(column) &&
   !holdsMarks(column) &&
@@ -35,8 +35,8 @@ export const takesTyping = (column: Column): boolean =>
   column.kind !== "date";
 
 /**
- * Whether a character can be input for a cell of the column. Other characters are left to the
- * page's shortcuts.
+ * Whether a character can be part of a value of the column. All other characters are available for
+ * the page's shortcuts.
  */
 export function mayBeText(column: Column, character: string): boolean {
   if (isNumber(column)) return /[-+.,\d]/.test(character);
@@ -49,12 +49,12 @@ export class StrataCellInput extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) column!: Column;
   @property({ attribute: false }) value: CellValue = null;
-  /** The first typed text, which replaces the value. */
+  /** The text that the user typed to start editing. It replaces the value. */
   @property({ attribute: false }) typed: string | null = null;
   @property({ type: Boolean }) invalid = false;
-  /** The value can be read and copied, but not changed. */
+  /** Whether the value can be read and copied, but not changed. */
   @property({ type: Boolean, reflect: true }) fixed = false;
-  /** For columns of files: the record, if it exists. */
+  /** The record, for columns of files. Its key is null if it does not exist yet. */
   @property({ attribute: false }) record: { table: number; key: number | null } | null = null;
   @query("strata-files-field") private _files!: StrataFilesField | null;
   @query("strata-marks-field") private _marks!: StrataMarksField | null;
@@ -108,7 +108,7 @@ export class StrataCellInput extends LitElement {
       (this._control as HTMLInputElement).value = this.typed;
   }
 
-  /** The current value of the field. */
+  /** Returns the current value of the field. */
   read(): CellRead {
     const { column } = this;
     if (this._files) return { value: this._files.ids.length > 0 ? [...this._files.ids] : null };
@@ -126,7 +126,7 @@ export class StrataCellInput extends LitElement {
     return { problem: parsed.wrong === "whole" ? texts.tables.bad_whole : texts.tables.bad_number };
   }
 
-  /** Replaces the typed text. */
+  /** Replaces the value in the field. */
   put(value: CellValue): void {
     if (this._files) {
       this._files.ids = namedKeys(value);
@@ -141,7 +141,7 @@ export class StrataCellInput extends LitElement {
     else control.value = cellText(value);
   }
 
-  /** The field with pending files. */
+  /** The field for files, which may have pending files. */
   get files(): StrataFilesField | null {
     return this._files;
   }

@@ -1,14 +1,14 @@
-// A mistake in a condition or formula: the text with the wrong characters underlined, the server's
-// words, and a button for each text that would correct it. Used with `expressionProblemStyles`.
+// Shows a mistake in a condition or formula: the text with the wrong characters underlined, the
+// server's message, and a button for each correction. Use it with `expressionProblemStyles`.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { markedAt, type Mistake } from "../../domain/completion";
 import { texts } from "../../texts";
 
 export interface Correction {
-  /** Replaces the wrong characters. */
+  /** The text that replaces the wrong characters. */
   text: string;
-  /** A description, if the text is not clear by itself. */
+  /** A description, if the text alone is not clear. */
   hint?: string;
 }
 
@@ -16,7 +16,7 @@ export interface ExpressionProblem {
   /** The whole text of the condition. */
   text: string;
   message: string;
-  /** Null: the problem has no place in the text. */
+  /** Null if the problem has no position in the text. */
   mistake: Mistake | null;
   corrections: readonly Correction[];
   correct(by: string): void;

@@ -1,4 +1,4 @@
-// <strata-files-field>: the pictures or documents of a record in its form. Added files wait until
+// <strata-files-field>: the images or documents of a record in its form. New files are sent when
 // the form is saved.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
@@ -21,14 +21,14 @@ const words = texts.files;
 export class StrataFilesField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) column!: Column;
-  /** Ids of the table and the record; null: a record that does not exist yet. */
+  /** The ids of the table and the record. The record is null if it does not exist yet. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) record: number | null = null;
-  /** Ids of the record's files, in their order. */
+  /** The ids of the record's files, in their order. */
   @property({ attribute: false }) ids: number[] = [];
   @state() private _pending: File[] = [];
   @state() private _known = new Map<number, Attachment>();
-  @state() private _isKnown = false; // the visible files are loaded
+  @state() private _isKnown = false; // whether the visible files are loaded
   @query("input") private _input!: HTMLInputElement;
   private readonly _drop = new FileDrop(
     this,
@@ -113,11 +113,11 @@ export class StrataFilesField extends LitElement {
       void this.load();
   }
 
-  /** Files to send after the record exists. */
+  /** The files to send after the record exists. */
   get pending(): readonly File[] {
     return this._pending;
   }
-  /** The file was sent. */
+  /** Removes a file that was sent from the pending files. */
   sent(file: File): void {
     this._pending = this._pending.filter((each) => each !== file);
   }
@@ -171,7 +171,10 @@ export class StrataFilesField extends LitElement {
     </figure>`;
   }
 
-  /** Applies at once, since the file exists already. */
+  /**
+   * Shows the choice of the file's visibility. It applies immediately, because the file already
+   * exists.
+   */
   private seenBy(file: Attachment): TemplateResult | typeof nothing {
     const { session } = this;
     if (!session.canCurate && file.user !== session.user) return nothing;

@@ -1,6 +1,6 @@
-// <strata-marks-field>: the lines or points of a record in its form: those on this model one by
-// one, those on others as a number. New ones are drawn on the model; the event `draw` requests
-// this.
+// <strata-marks-field>: the lines or points of a record in its form. It lists those on this model
+// and shows the number of those on other models. The event `draw` requests the drawing of new ones
+// on the model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -17,7 +17,7 @@ const words = texts.marks;
 @customElement("strata-marks-field")
 export class StrataMarksField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** A column of lines or points. */
+  /** The column of lines or points. */
   @property({ attribute: false }) column!: Column;
   @property({ attribute: false }) marks: readonly Mark[] = [];
 

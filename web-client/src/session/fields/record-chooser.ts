@@ -1,5 +1,5 @@
-// <strata-record-chooser>: chooses one or several records of a table by their names. Terms are in
-// the order of their list, indented by depth.
+// <strata-record-chooser>: chooses one or several records of a table by their names. Terms are
+// listed in the order of their term list, indented by depth.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -14,12 +14,12 @@ import { termsWith } from "./term-rows";
 import type { TermTree } from "./term-tree";
 import { texts } from "../../texts";
 
-/** A record on offer. */
+/** A record that can be chosen. */
 interface Option {
   key: number;
   label: string;
-  depth: number; // in a tree
-  match: boolean; // false: shown as a parent of a match
+  depth: number; // depth in the tree
+  match: boolean; // false: it is only the parent of a match
 }
 
 const kIndentPx = 16;
@@ -27,17 +27,17 @@ const kIndentPx = 16;
 @customElement("strata-record-chooser")
 export class StrataRecordChooser extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Id of the table. */
+  /** The id of the table. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) chosen: readonly number[] = [];
   @property({ type: Boolean }) multiple = false;
   @property() label = "";
   @property({ type: Boolean }) invalid = false;
-  /** A key that is not on offer. */
+  /** A key that cannot be chosen. */
   @property({ attribute: false }) without: number | null = null;
   @state() private _text = "";
   @state() private _open = false;
-  @state() private _at = -1; // in the list
+  @state() private _at = -1; // index in the list
   @query("input") private _input!: HTMLInputElement;
   @query(".list") private _list!: HTMLElement;
 
@@ -158,7 +158,10 @@ export class StrataRecordChooser extends LitElement {
     `,
   ];
 
-  /** Null: not a list of terms, or too many terms to load. */
+  /**
+   * The terms of the list. Null if the table is not a term list, or if it has too many terms to
+   * load.
+   */
   private get terms(): TermTree | null {
     const terms = this.session.tables.terms(this.table);
     terms?.want();
@@ -182,7 +185,7 @@ export class StrataRecordChooser extends LitElement {
     return found.filter(({ key }) => key !== this.without);
   }
 
-  /** Records may load after the typing: Enter takes the first match. */
+  /** Selects the first match for Enter, because records may be loaded after the user has typed. */
   override willUpdate(): void {
     if (this._open && this._text !== "" && this._at < 0)
       this._at = this.found.findIndex(({ match }) => match);
@@ -246,14 +249,17 @@ export class StrataRecordChooser extends LitElement {
     this.show();
   }
 
-  /** Opens the list on request only, not when the form focuses its first field. */
+  /**
+   * Opens the list when the user clicks on the field, but not when the form focuses its first
+   * field.
+   */
   private onField(event: Event): void {
     const onChip = event.composedPath().some((each) => each instanceof HTMLButtonElement);
     this._input.focus();
     if (!onChip) this.show();
   }
 
-  /** Starts the choice. */
+  /** Opens the list of records. */
   open(): void {
     this.show();
   }
@@ -276,7 +282,10 @@ export class StrataRecordChooser extends LitElement {
     if (this._list.matches(":popover-open")) this._list.hidePopover();
   };
 
-  /** Unused keys are passed on: Enter without a match applies the whole field. */
+  /**
+   * Handles a key. Keys without a use here are passed on. For example, Enter without a match
+   * applies the whole field.
+   */
   private onKey(event: KeyboardEvent): void {
     const { found } = this;
     if (event.key === "ArrowDown" || event.key === "ArrowUp") {
@@ -317,5 +326,5 @@ export class StrataRecordChooser extends LitElement {
   }
 }
 
-/** A click on the list keeps the focus in the field. */
+/** Keeps the focus in the field when the user clicks on the list. */
 const keepFocus = (event: Event): void => event.preventDefault();

@@ -1,5 +1,5 @@
-// Measures of a record on the model, in addition to its columns: area, length of lines, number of
-// points.
+// Measures of a record on the model, in addition to its columns: its area, the length of its lines,
+// and the number of points.
 
 import { formatCount } from "../../core/locale";
 import { markColumns } from "../../domain/marks";
@@ -8,14 +8,14 @@ import type { Table, TableRecord } from "../../core/protocol.gen";
 import { texts } from "../../texts";
 
 export interface RecordMeasure {
-  /** The server's name, which also sorts records. */
+  /** The server's name of the measure, by which records can also be sorted. */
   name: "area_m2" | "length_m" | "point_count";
   label: string;
-  /** Empty where the record has none. */
+  /** Returns the measure as text. It is empty if the record has no such measure. */
   text(record: TableRecord): string;
 }
 
-/** The measures that the table's records can have, in the server's order. */
+/** Returns the measures that records of the table can have, in the server's order. */
 export function measuresOf(table: Pick<Table, "columns">): RecordMeasure[] {
   const words = texts.tables;
   const area: RecordMeasure = {

@@ -1,4 +1,4 @@
-// The display of a record's value, in cells of the table and on cards.
+// Displays the value of a record in cells of the table and on cards.
 
 import { html } from "lit";
 import { cellText, namedKeys, namesRecords } from "../../domain/cells";
@@ -9,16 +9,16 @@ import type { CellValue, Column } from "../../core/protocol.gen";
 import type { ModelSession } from "../model-session";
 import { texts } from "../../texts";
 
-const kMostPictures = 4; // in a cell
+const kMostPictures = 4; // number of images in a cell
 
-/** A file that is invisible to this person has no picture either. */
+/** Hides the image of a file that this user cannot see. */
 const showWhether =
   (isThere: boolean) =>
   (event: Event): void => {
     (event.target as HTMLElement).hidden = !isThere;
   };
 
-/** For a template; records are shown by name. */
+/** Returns a value for a template. Records are shown by name. */
 export function shownValue(session: ModelSession, column: Column, value: CellValue): unknown {
   if (value === null) return "";
   if (namesRecords(column)) {
@@ -46,7 +46,10 @@ export function shownValue(session: ModelSession, column: Column, value: CellVal
   return text;
 }
 
-/** "2 lines · 1.24 m": on this model; marks on others are counted. */
+/**
+ * Returns a summary such as "2 lines · 1.24 m" of the marks on this model. For marks on other
+ * models, it contains only their number.
+ */
 export function shownMarks(
   { model }: ModelSession,
   { kind }: Pick<Column, "kind">,

@@ -1,5 +1,5 @@
-// <strata-term-chooser>: chooses the painted term of a list, in a tree with search and keyboard
-// control, with the colors of the model.
+// <strata-term-chooser>: chooses the term to paint, in a tree with search and keyboard control. The
+// terms have the same colors as on the model.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -26,28 +26,29 @@ const kFingers = hasFingers();
 const kRowPx = Math.round((kFingers ? 44 : 30) * growth());
 const kTreePx = Math.round(300 * growth());
 const kIndentPx = 16;
-const kAbove = 4; // rows rendered beyond the visible ones
+const kAbove = 4; // rows rendered above and below the visible ones
 
 @customElement("strata-term-chooser")
 export class StrataTermChooser extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** A layer of a term list. */
+  /** A layer whose values are terms of a list. */
   @property({ attribute: false }) layer!: Layer;
-  /** Key of a term. */
+  /** The key of the chosen term. */
   @property({ attribute: false }) chosen = 0;
   @state() private _text = "";
   @state() private _found: FoundTerms | null = null;
   @state() private _problem = "";
-  @state() private _folded: ReadonlySet<number> = new Set(); // in the whole tree
+  // keys of folded terms in the whole tree
+  @state() private _folded: ReadonlySet<number> = new Set();
   @state() private _foundFolded: ReadonlySet<number> = new Set();
   @state() private _at: number | null = null; // key of the term that Enter chooses
   @query("input") private _input!: HTMLInputElement;
   @query(".tree") private _tree!: HTMLElement | null;
   private _rows: TermRow[] = [];
-  // height of the tree without a search, so that the content below stays in place
+  // The height of the tree without a search, which keeps the content below at its position.
   private _wholePx = 0;
-  private _walks = false; // the arrow keys move in the tree, not in the text
-  private _generation = 0; // of the folded terms
+  private _walks = false; // whether arrow keys move in the tree, not in the text
+  private _generation = 0; // generation of the folded terms
   private _searching: Promise<void> | null = null;
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
@@ -177,7 +178,7 @@ export class StrataTermChooser extends LitElement {
       : rowsOf(terms?.terms ?? [], this._folded);
   }
 
-  /** The terms were loaded or have changed. */
+  /** Takes terms that were loaded or have changed. */
   private take(terms: TermTree): void {
     if (this._generation === 0) this._folded = foldedAtFirst(terms.terms, this.chosen);
     this._generation = terms.generation;
@@ -185,7 +186,7 @@ export class StrataTermChooser extends LitElement {
     if (this._text !== "") this.search();
   }
 
-  /** Unfolds and scrolls to the chosen term. */
+  /** Unfolds the ancestors of the chosen term and scrolls to it. */
   private reveal(): void {
     const above = pathTo(this.terms?.terms ?? [], this.chosen);
     if (above.some(({ key }) => this._folded.has(key)))
@@ -237,7 +238,7 @@ export class StrataTermChooser extends LitElement {
   }
 
   /**
-   * Describes the brush's term in words, also for people who cannot see the tree or hover over a
+   * Describes the brush's term in words, also for users who cannot see the tree or hover over a
    * term.
    */
   private now({ terms }: TermTree): TemplateResult {
@@ -246,7 +247,7 @@ export class StrataTermChooser extends LitElement {
       [terms, found?.terms ?? []].find((some) => some.some(({ key }) => key === chosen)) ?? [];
     const term = known.find(({ key }) => key === chosen);
     const above = pathTo(known, chosen);
-    // in a very large list
+    // In a very large list, the chosen term may not be loaded.
     const name =
       term?.name ??
       this.session.tables.label(this.layer.table ?? 0, chosen) ??
@@ -278,7 +279,10 @@ export class StrataTermChooser extends LitElement {
     </div>`;
   }
 
-  /** The term's color in this person's palette; none where another column sets the color. */
+  /**
+   * Shows the term's color in this user's palette. The swatch is empty if another column sets the
+   * color.
+   */
   private swatch(key: number): TemplateResult {
     const palette = this.session.layers.palette(this.layer);
     const color = colorOf(palette, key);
@@ -288,7 +292,7 @@ export class StrataTermChooser extends LitElement {
       : html`<span></span>`;
   }
 
-  /** The note about terms that are not shown; empty: all are shown. */
+  /** Returns a note about terms that are not shown. It is empty if all terms are shown. */
   private told(terms: TermTree, found: FoundTerms | null): string {
     if (found)
       return found.total === 0
@@ -328,13 +332,16 @@ export class StrataTermChooser extends LitElement {
     this.dispatchEvent(new CustomEvent<number>("chosen", { detail: key }));
   }
 
-  /** A press on the tree keeps the focus, and with it a phone's on-screen keyboard. */
+  /**
+   * Keeps the focus in the field when the user presses on the tree. The on-screen keyboard of a
+   * phone then stays open.
+   */
   private keepFocus(event: Event): void {
     event.preventDefault();
   }
 
   private onFold(event: Event, term: ListedTerm, parent: boolean, folded: boolean): void {
-    if (!parent) return; // without children, the press selects the term
+    if (!parent) return; // for a term without children, the press selects it
     event.stopPropagation();
     this.fold(term.key, !folded);
   }
@@ -362,7 +369,10 @@ export class StrataTermChooser extends LitElement {
     event.stopPropagation();
   }
 
-  /** Left and right move the text's caret until the arrow keys have entered the tree. */
+  /**
+   * Handles a key of the tree. Left and right move the caret in the text until the user has moved
+   * into the tree.
+   */
   private onTreeKey(key: string): boolean {
     if ((key === "ArrowLeft" || key === "ArrowRight") && !this._walks && this._text !== "")
       return false;
@@ -382,7 +392,7 @@ export class StrataTermChooser extends LitElement {
     return true;
   }
 
-  /** Waits for the search of the typed text. */
+  /** Chooses the current term after the search for the typed text has ended. */
   private async onEnter(): Promise<void> {
     await this._searching;
     if (this._at === null) return;
@@ -412,7 +422,7 @@ export class StrataTermChooser extends LitElement {
     this._searching ??= this.find().finally(() => (this._searching = null));
   }
 
-  /** Searches until the result matches the current text. */
+  /** Repeats the search until its result belongs to the current text. */
   private async find(): Promise<void> {
     for (;;) {
       const { terms } = this;
@@ -431,7 +441,7 @@ export class StrataTermChooser extends LitElement {
     }
   }
 
-  /** Null: shows the whole tree. */
+  /** Shows the found terms, or the whole tree if `found` is null. */
   private show(found: FoundTerms | null): void {
     this._found = found;
     this._walks = false;

@@ -1,21 +1,24 @@
-// A tree of terms as rows from top to bottom, and its keyboard control.
+// Converts a tree of terms to rows from top to bottom, and handles its keys.
 
 import { plainText } from "../../core/search";
 import type { ListedTerm } from "../../core/protocol.gen";
 
 export interface TermRow {
   term: ListedTerm;
-  /** Whether terms of this tree are below it. */
+  /** Whether the term has children in this tree. */
   parent: boolean;
   folded: boolean;
-  /** Position among the siblings, from 1, and their number. */
+  /** The position among the siblings, from 1, and the number of siblings. */
   place: number;
   of: number;
 }
 
-const kMostUnfolded = 60; // a larger tree is folded at first
+const kMostUnfolded = 60; // a larger tree is folded initially
 
-/** Keys of the terms that are folded at first: in a large tree all except those above `chosen`. */
+/**
+ * Returns the keys of the terms that are folded initially. In a large tree, these are all terms
+ * except those above `chosen`.
+ */
 export function foldedAtFirst(terms: readonly ListedTerm[], chosen: number): Set<number> {
   const folded = new Set<number>();
   if (terms.length <= kMostUnfolded) return folded;
@@ -26,7 +29,7 @@ export function foldedAtFirst(terms: readonly ListedTerm[], chosen: number): Set
   return folded;
 }
 
-/** The terms above a term, the topmost first. */
+/** Returns the ancestors of a term, the topmost first. */
 export function pathTo(terms: readonly ListedTerm[], key: number): ListedTerm[] {
   const path: ListedTerm[] = [];
   let index = terms.findIndex((term) => term.key === key);
@@ -41,8 +44,8 @@ export function pathTo(terms: readonly ListedTerm[], key: number): ListedTerm[] 
 }
 
 /**
- * The terms with all of the words in their names, ignoring case and accents, together with their
- * ancestors, which do not `match`.
+ * Returns the terms with all of the words in their names, ignoring case and accents, and the
+ * ancestors of these terms. `match` is false for ancestors that do not match themselves.
  */
 export function termsWith(terms: readonly ListedTerm[], words: string): ListedTerm[] {
   const wanted = plainText(words)
@@ -50,7 +53,7 @@ export function termsWith(terms: readonly ListedTerm[], words: string): ListedTe
     .filter((word) => word !== "");
   const matches = terms.map(({ name }) => wanted.every((word) => plainText(name).includes(word)));
   const shown = new Set<number>();
-  let depth = 0; // of the shown term below; its ancestors have smaller depths
+  let depth = 0; // depth of the next shown term; its ancestors have smaller depths
   for (let index = terms.length - 1; index >= 0; --index) {
     const term = terms[index]!;
     if (matches[index] || term.depth < depth) {
@@ -65,10 +68,10 @@ export function termsWith(terms: readonly ListedTerm[], words: string): ListedTe
   );
 }
 
-/** `terms`: each before its children. */
+/** Returns the visible rows of the tree. Each term in `terms` precedes its children. */
 export function rowsOf(terms: readonly ListedTerm[], folded: ReadonlySet<number>): TermRow[] {
   const rows: TermRow[] = [];
-  let hiddenBelow = Infinity; // depth of the folded term that hides the following ones
+  let hiddenBelow = Infinity; // depth of the folded term that hides the following terms
   terms.forEach((term, index) => {
     if (term.depth > hiddenBelow) return;
     const parent = hasBelow(terms, index);
@@ -83,9 +86,11 @@ export function rowsOf(terms: readonly ListedTerm[], folded: ReadonlySet<number>
 const hasBelow = (terms: readonly ListedTerm[], index: number): boolean =>
   (terms[index + 1]?.depth ?? 0) > terms[index]!.depth;
 
-/** Siblings have the same depth, without a smaller depth between them. */
+/**
+ * Numbers the siblings. Siblings have the same depth, and no term between them has a smaller depth.
+ */
 function numberSiblings(rows: readonly TermRow[]): void {
-  const open: TermRow[][] = []; // by depth: the siblings so far
+  const open: TermRow[][] = []; // siblings so far, by depth
   const close = (depth: number): void => {
     for (const siblings of open.splice(depth)) for (const row of siblings) row.of = siblings.length;
   };
@@ -100,8 +105,9 @@ function numberSiblings(rows: readonly TermRow[]): void {
 }
 
 /**
- * The effect of a key at a row (-1: none): moves to another row, folds or unfolds its term. Null:
- * the tree does not use the key. `page`: number of visible rows.
+ * Returns the effect of a key at a row: it moves to another row, or folds or unfolds the row's
+ * term. `at` is -1 if no row is current. `page` is the number of visible rows. Returns null if the
+ * tree does not use the key.
  */
 export function treeStep(
   key: string,

@@ -1,5 +1,6 @@
-// The terms of a list in the person's language. Loaded at the first use, and again when the list
-// changes; for very large lists only the first ones, since the server can search the others.
+// The terms of a list in the user's language. They are loaded at the first use, and again when the
+// list changes. Of very large lists, only the first terms are loaded. The server can search the
+// others.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -11,15 +12,15 @@ export const kMostTerms = 2000;
 const kMostFound = 300;
 
 export class TermTree {
-  terms: readonly ListedTerm[] = []; // each before its children
-  total = 0; // including terms that are not loaded
+  terms: readonly ListedTerm[] = []; // each term precedes its children
+  total = 0; // number of terms, including those that are not loaded
   problem = "";
-  /** Increases when the terms change. */
+  /** A number that increases when the terms change. */
   generation = 0;
   private _state: "unasked" | "loading" | "loaded" = "unasked";
   private _again = false;
   private _places: ReadonlyMap<number, number> = new Map();
-  private _placed = 0; // the generation of `_places`
+  private _placed = 0; // generation of `_places`
 
   constructor(
     private readonly _api: Api,
@@ -28,7 +29,7 @@ export class TermTree {
     private readonly _language = personLanguages()[0]!,
   ) {}
 
-  /** Position of each term in the tree, by key; loads the terms. */
+  /** The position of each term in the tree, by key. Loads the terms if necessary. */
   get places(): ReadonlyMap<number, number> {
     this.want();
     if (this._placed !== this.generation) {
@@ -38,7 +39,7 @@ export class TermTree {
     return this._places;
   }
 
-  /** Call this before showing the terms. */
+  /** Loads the terms if necessary. Call this before the terms are shown. */
   want(): void {
     if (this._state === "unasked") void this.load();
   }
@@ -46,12 +47,12 @@ export class TermTree {
     return this.generation > 0;
   }
 
-  /** The terms with all of the words, together with their ancestors. */
+  /** Returns the terms with all of the words, and the ancestors of these terms. */
   async search(words: string): Promise<FoundTerms> {
     return this.ask({ limit: kMostFound, offset: 0, ...(words === "" ? {} : { q: words }) });
   }
 
-  /** A page of the tree in depth-first order. */
+  /** Returns a page of the tree in depth-first order. */
   private ask(page: { limit: number; offset: number; q?: string }): Promise<FoundTerms> {
     return this._api.json("GET /tables/{table}/terms", {
       path: { table: this._table },
@@ -74,7 +75,7 @@ export class TermTree {
         while (terms.length < Math.min(total, kMostTerms)) {
           const page = await this.ask({ limit: kAtOnce, offset: terms.length });
           total = page.total;
-          if (page.terms.length === 0) break; // some were deleted in the meantime
+          if (page.terms.length === 0) break; // some terms were deleted in the meantime
           terms.push(...page.terms);
         }
         this.terms = terms;

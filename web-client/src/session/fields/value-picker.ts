@@ -1,5 +1,5 @@
-// <strata-value-picker>: chooses the painted value of the selected layer: a class, a term or a
-// number, or shows the only possible one.
+// <strata-value-picker>: chooses the value to paint in the selected layer: a class, a term or a
+// number. If only one value is possible, the picker shows it.
 
 import { readRecord } from "../../net/records";
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
@@ -27,7 +27,7 @@ export class StrataValuePicker extends LitElement {
   @property({ attribute: false }) value = 0;
   @state() private _wrongValue = "";
   @state() private _asking = false;
-  @state() private _missing: number | null = null; // a typed key without a record
+  @state() private _missing: number | null = null; // a typed key that has no record
 
   constructor() {
     super();
@@ -175,8 +175,8 @@ export class StrataValuePicker extends LitElement {
   }
 
   /**
-   * Only keys of records can be painted: for a key without one, the picker offers to create the
-   * record.
+   * Finds the record for a typed key. Only keys of records can be painted, so the picker offers to
+   * create a missing record.
    */
   private async findRecord(layer: Layer, table: number, key: number): Promise<void> {
     try {

@@ -1,5 +1,5 @@
-// The keys of the page's commands: the only place that names them. A key is written as
-// "Ctrl+Shift+Z"; letters are capital. `shell/commands` defines what the commands do.
+// The keys of the page's commands. They are defined only in this file. A key is written as
+// "Ctrl+Shift+Z", with capital letters. `shell/commands` defines the actions of the commands.
 
 import { texts } from "../../texts";
 
@@ -56,7 +56,7 @@ export type KeyedCommand = keyof typeof kCommandKeys;
 
 const onMac = (): boolean => globalThis.navigator?.platform?.startsWith("Mac") ?? false;
 
-/** The key's caps, with the names on this person's keyboard. */
+/** Returns the key caps of a key, with the key names in the user's language. */
 function capsOf(key: string): string[] {
   const names: Readonly<Record<string, string>> = texts.help.key_caps;
   return key.split(/\+(?=.)/).map((part) => {
@@ -65,9 +65,9 @@ function capsOf(key: string): string[] {
   });
 }
 
-/** The caps of the command's first key. */
+/** Returns the key caps of the command's first key. */
 export const keyCapsOf = (command: KeyedCommand): string[] => capsOf(kCommandKeys[command][0]);
 
-/** A title with the command's key, for tooltips. */
+/** Returns a title with the command's key, for tooltips. */
 export const withKey = (title: string, command: KeyedCommand): string =>
   `${title} (${keyCapsOf(command).join(" + ")})`;

@@ -1,4 +1,4 @@
-// Names of keys in a text as key caps, as they are printed on a keyboard.
+// Shows the names of keys in a text as key caps.
 
 import { html, type TemplateResult } from "lit";
 
@@ -12,7 +12,7 @@ const kSeparators = /( · |, | \+ | – )/;
 
 /**
  * Splits a text such as "Ctrl + Enter · C, then click". A key is a single character or one of
- * `names`, alone between separators.
+ * `names`, if it is alone between separators.
  */
 export function keyPieces(text: string, names: readonly string[]): KeyPiece[] {
   const pieces: KeyPiece[] = [];
@@ -25,7 +25,7 @@ export function keyPieces(text: string, names: readonly string[]): KeyPiece[] {
   return pieces;
 }
 
-/** `names`: separated by " · ". */
+/** Renders a text with key caps. The key names in `names` are separated by " · ". */
 export const keyCaps = (text: string, names: string): (TemplateResult | string)[] =>
   keyPieces(text, names.split(" · ")).map(({ text, isKey }) =>
     isKey ? html`<kbd>${text}</kbd>` : text,

@@ -1,4 +1,5 @@
-// <strata-empty>: one line in place of an empty list; an (i) shows what the list is for.
+// <strata-empty>: one line in place of an empty list. An (i) button explains the purpose of the
+// list.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -9,7 +10,7 @@ import { texts } from "../../texts";
 @customElement("strata-empty")
 export class StrataEmpty extends LitElement {
   @property() line = "";
-  /** Empty: without an (i). */
+  /** The explanation. If it is empty, there is no (i) button. */
   @property() more = "";
   @state() private _open = false;
 

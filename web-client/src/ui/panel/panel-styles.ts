@@ -20,7 +20,7 @@ export const panelHeadingStyles = css`
   }
 `;
 
-/** Lines in a panel, each a button with three columns: person, content and time. */
+/** Lines in a panel. Each is a button with three columns: user, content and time. */
 export const panelLineStyles = css`
   ul {
     display: grid;
@@ -46,7 +46,7 @@ export const panelLineStyles = css`
   }
 `;
 
-/** Heading of a list in a panel, with its buttons. */
+/** The heading of a list in a panel, with its buttons. */
 export const listHeadStyles = css`
   :host {
     display: grid;
@@ -72,7 +72,7 @@ export const listHeadStyles = css`
   }
 `;
 
-/** Rows of such a list: a button with a name, as wide as the panel, and its menu. */
+/** The rows of such a list: a button with a name, as wide as the panel, and a menu. */
 export const listRowStyles = css`
   ul {
     margin-left: calc(-1 * var(--space-2));

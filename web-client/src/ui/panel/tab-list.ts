@@ -1,5 +1,5 @@
-// Tabs: a row of buttons, one of which is chosen and names the panel below it. A single Tab stop,
-// with arrow keys, Home and End, that choose at once (the tabs pattern of ARIA).
+// Tabs: a row of buttons. The chosen button is the name of the panel below it. The row is a single
+// Tab stop. Arrow keys, Home and End choose immediately (the tabs pattern of ARIA).
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { icon, type IconName } from "../icons";
@@ -9,15 +9,15 @@ export interface TabChoice<T extends string> {
   value: T;
   glyph: IconName;
   text: string;
-  /** The key that chooses it. */
+  /** The key that chooses the tab. */
   key: string;
-  /** At the corner of its icon. */
+  /** Content at the corner of the icon. */
   badge?: unknown;
 }
 
 export interface TabList<T extends string> {
   label: string;
-  /** Id of the element with the content of the chosen tab. */
+  /** The id of the element with the content of the chosen tab. */
   panel: string;
   choices: readonly TabChoice<T>[];
   chosen: T;

@@ -45,7 +45,10 @@ const person = (user: string, fullName = "", more: Partial<Person> = {}): Person
 const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError =>
   new ApiError({ status, title: "Refused", ...more });
 
-/** An Api whose server gives these answers in turn, with the requests that it received. */
+/**
+ * Returns an Api whose server returns these responses in turn, and the requests that the server
+ * received.
+ */
 function apiOf(...answers: [status: number, body: unknown, headers?: Record<string, string>][]): {
   api: Api;
   asked: { what: string; body: unknown; headers: Record<string, string> }[];

@@ -28,7 +28,7 @@ describe("a log of activity", () => {
     expect(
       ids(withFirstPage(known, { lines: [line(9, 59), line(8, 58)], next: "earlier" })),
     ).toEqual([9, 8]);
-    // comment 3 was deleted
+    // comment 3 has been deleted
     const gone = withFirstPage(known, { lines: [line(4, 40), line(2, 20)], next: "earlier" });
     expect(ids(gone)).toEqual([4, 2, 1]);
     expect(ids(withFirstPage(known, { lines: [], next: undefined }))).toEqual([]);
@@ -105,7 +105,7 @@ describe("the activity of a model", () => {
     activity.outdated();
     vi.advanceTimersByTime(200);
     await settle();
-    expect(asked).toHaveLength(4); // the second event may not have been saved by then
+    expect(asked).toHaveLength(4); // the server may not have saved the second event before
     vi.advanceTimersByTime(2900);
     await settle();
     expect(asked).toHaveLength(5);
@@ -118,7 +118,7 @@ describe("the activity of a model", () => {
   it("is unseen after another person's change, until it is read", async () => {
     activity.outdated("ada");
     activity.outdated();
-    expect(activity.unseen).toBe(false); // this person's own change
+    expect(activity.unseen).toBe(false); // this user's own change
     activity.outdated("bea");
     expect(activity.unseen).toBe(true);
     activity.watch(true);

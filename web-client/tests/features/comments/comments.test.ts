@@ -171,7 +171,7 @@ describe("the comment tool", () => {
   });
 });
 
-/** A ball of radius 1 around the origin, seen from the front (from −y). */
+/** Returns a camera that sees a ball of radius 1 around the origin from the front (from −y). */
 function frontCamera(): OrbitCamera {
   const camera = new OrbitCamera();
   camera.setModel({ min: [-1, -1, -1], max: [1, 1, 1] }, "z");
@@ -211,7 +211,7 @@ describe("what is seen of pins", () => {
   });
 
   it("is what nothing lies before, once it rests", async () => {
-    // An obstacle is in front of the place at the side; the back is visible through a hole.
+    // an obstacle is in front of the point at the side; the back is visible through a hole
     surface = () => [front.position, back.position, [0.55, -1.5, 0]];
     await sight.look();
     expect(asked[0]).toHaveLength(3);
@@ -229,10 +229,10 @@ describe("what is seen of pins", () => {
   });
 
   it("is nothing that a section cuts away, which the server is not asked of", async () => {
-    camera.section = [[0, 1, 0, 0]]; // keeps the half behind
+    camera.section = [[0, 1, 0, 0]]; // keeps the half on the far side
     surface = () => [back.position, back.position];
     await sight.look();
-    expect(asked[0]).toHaveLength(2); // a single place is requested twice
+    expect(asked[0]).toHaveLength(2); // a single point is requested twice
     expect([front, back, side].map((place) => sight.isSeen(place))).toEqual([false, true, false]);
   });
 

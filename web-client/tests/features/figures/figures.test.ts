@@ -230,7 +230,7 @@ describe("what is asked for", () => {
 
 // ── with a server ────────────────────────────────────────────────────────────────────────────────
 
-let answers: Map<string, () => Response | Promise<Response>>; // by method and path
+let answers: Map<string, () => Response | Promise<Response>>; // keyed by method and path
 let calls: { method: string; path: string; body: unknown; headers: Record<string, string> }[];
 let api: Api;
 let told: readonly Notice[];
@@ -285,7 +285,7 @@ beforeEach(() => {
   );
 });
 afterEach(() => {
-  vi.advanceTimersByTime(120_000); // closes notices
+  vi.advanceTimersByTime(120_000); // time after which the notices close
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
@@ -301,7 +301,7 @@ describe("a figure", () => {
     state = job("running");
     answers.set(kFigures, () => json(job("queued"), 202));
     answers.set("GET /api/v1/jobs/5", () => json(state));
-    // As on the server: a request that accepts only JSON gets no drawing.
+    // as on the server, a request that accepts only JSON gets no drawing
     answers.set("GET /api/v1/jobs/5/file", () =>
       calls.at(-1)!.headers["Accept"] === "*/*"
         ? new Response("%PDF-1.7")
@@ -421,7 +421,7 @@ describe("a face that is asked for", () => {
     camera = new OrbitCamera();
     camera.setModel({ min: [-50, -50, -50], max: [50, 50, 50] }, "z");
     camera.resize(400, 400);
-    camera.standardView("front"); // looks along +y
+    camera.standardView("front"); // the camera looks along +y
     turned = 0;
     const navigator = { orbit: () => void (turned += 1), pan: () => {}, tap: () => {} };
     pick = new FacePick(api, {

@@ -21,7 +21,7 @@ const problem = (status: number): NonNullable<Job["problem"]> => ({
   detail: "Start it again.",
 });
 
-/** Answers of GET /jobs/7, one after the other: a job, or the status of a refusal. */
+/** Takes the responses to GET /jobs/7 in order: a job, or the status of a refusal. */
 function importing(...answers: (Job | number)[]): { imports: Imports; sent: string[] } {
   const sent: string[] = [];
   const api = fakeApi({

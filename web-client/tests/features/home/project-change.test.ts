@@ -6,11 +6,11 @@ import { ApiError } from "../../../src/net/api-error";
 import type { Versioned } from "../../../src/net/api";
 import type { Project } from "../../../src/core/protocol.gen";
 
-/** A server with one project. */
+/** A fake server with one project. */
 class FakeServer {
   now: Project = { id: 4, name: "Villa", slug: "villa", description: "Frescoes" };
   version = 1;
-  /** Runs after the next read. */
+  /** Runs after the next read of the project. */
   meanwhile: (() => void) | null = null;
 
   readonly api = fakeApi({
@@ -45,7 +45,8 @@ const wanted = { name: "Villa Giulia", text: "Frescoes" };
 describe("a change of a project", () => {
   it("is made of the project that this person sees", async () => {
     const server = new FakeServer();
-    const seen = { ...server.now, role: "administrator" } as Project; // as in lists
+    // the project as the server lists it
+    const seen = { ...server.now, role: "administrator" } as Project;
     expect(await new ProjectChange(server.api, seen).save(wanted, false)).toMatchObject({
       name: "Villa Giulia",
     });

@@ -8,10 +8,10 @@ import type { Project, Table } from "../../../src/core/protocol.gen";
 const villa: Project = { id: 4, name: "Villa  Ñuño", slug: "villa", description: "" };
 const table = (id: number): Table => ({ id }) as Table;
 
-/** A server with tables that refer to others, and one project. */
+/** A fake server with one project, and with tables that refer to other tables. */
 class FakeServer {
   readonly done: (number | string)[] = [];
-  /** Errors to answer first, once for each table. */
+  /** Errors that the server returns first, once for each table. */
   readonly faults = new Map<number, ApiError>();
 
   readonly api = fakeApi({
@@ -86,7 +86,7 @@ describe("deleting a project", () => {
     expect(server.done).toEqual([1]);
     await removeProject(server.api, villa, [table(1), table(2)]);
     expect(server.done).toEqual([1, 2, "villa"]);
-    await removeProject(server.api, villa, []); // another person was faster
+    await removeProject(server.api, villa, []); // another user has already deleted the project
   });
 
   it("fails where there is more in it than was shown", async () => {
@@ -101,7 +101,7 @@ describe("deleting a project", () => {
 describe("the name that is typed", () => {
   it("is the project's as it is seen", () => {
     expect(isNameOf("Villa Ñuño", villa)).toBe(true);
-    // a keyboard that composes letters
+    // some keyboards produce composed letters
     expect(isNameOf("  Villa N\u0303un\u0303o ", villa)).toBe(true);
     for (const other of ["", "villa ñuño", "Villa", "Villa Ñuño 2"])
       expect(isNameOf(other, villa)).toBe(false);

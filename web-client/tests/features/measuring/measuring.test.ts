@@ -7,14 +7,14 @@ import { Api } from "../../../src/net/api";
 import { OrbitCamera } from "../../../src/math/camera";
 import { MeasureTool, type MeasureHost } from "../../../src/features/measuring/measure-tool";
 
-// A wall in the plane y = 0, 100 mm wide and high, seen from the front in parallel projection: a
-// pixel is a millimeter.
+// The model is a wall in the plane y = 0, 100 mm wide and high. The camera sees it from the front
+// in parallel projection, so a pixel is a millimeter.
 const comes = (check: () => void): Promise<void> => vi.waitFor(check, { timeout: 20_000 });
 const atMm = (x: number, z: number): { x: number; y: number } => ({ x: 200 + x, y: 200 - z });
 
 let camera: OrbitCamera;
 let asked: { path: string; body: Record<string, unknown> }[];
-let hold: Promise<void> | null; // delays answers
+let hold: Promise<void> | null; // delays responses
 let sees: (x: number, z: number) => boolean;
 let measuring: Measuring;
 
@@ -175,7 +175,7 @@ describe("measuring", () => {
   it("follows what is nearest where not all places are seen from here, or where that is wanted", async () => {
     measuring.setAt(atMm(-30, 0));
     await comes(() => expect(measuring.places).toHaveLength(1));
-    sees = (x) => x > 0; // an obstacle is now in front of the first one
+    sees = (x) => x > 0; // an obstacle is now in front of the first point
     measuring.setAt(atMm(30, 0));
     await comes(() => expect(measuring.profile?.way).toBe("nearest"));
     expect(measuring.along).toBeCloseTo(60, 6);

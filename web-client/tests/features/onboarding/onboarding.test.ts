@@ -93,7 +93,7 @@ describe("that the tour is over", () => {
     getItem: (name) => kept.get(name) ?? null,
     setItem: (name, value) => void kept.set(name, value),
   });
-  /** Another page of the same browser. */
+  /** Loads the module as another page of the same browser does. */
   const page = async (): Promise<typeof import("../../../src/ui/preferences")> => {
     vi.resetModules();
     return import("../../../src/ui/preferences");

@@ -122,7 +122,7 @@ describe("the selected area", () => {
   it("has a limited number of outlines", () => {
     for (let i = 0; i < kMostOutlines; ++i) draw({ shift: true });
     expect(area.refusesMore({ x: 0, y: 0, shift: true })).toBe(true);
-    expect(area.refusesMore({ x: 0, y: 0 })).toBe(false); // begins another selection
+    expect(area.refusesMore({ x: 0, y: 0 })).toBe(false); // starts another selection
   });
 
   it("Enter fills it, Escape discards it, Backspace removes the last outline", () => {

@@ -84,7 +84,7 @@ describe("the shapes that all people share", () => {
 });
 
 describe("a picture as a shape", () => {
-  /** Gray levels; a level below 0 is transparent. */
+  /** Makes pixels from gray levels. A level below 0 is transparent. */
   const pixels = (
     width: number,
     levels: number[],

@@ -16,7 +16,7 @@ describe("the changed area", () => {
   let cleared: number;
   let show: (request: LitRequest) => Promise<SelectResponse>;
   let area: ChangedArea;
-  let told: unknown[]; // what was measured at each change
+  let told: unknown[]; // the measured area at each change
   beforeEach(() => {
     vi.useFakeTimers();
     asked = [];
@@ -65,7 +65,7 @@ describe("the changed area", () => {
     expect(asked).toEqual([]);
     expect(told).toEqual([{ texels: 0, area_m2: 0, share: 0 }]);
     area.follow(3, kLayers);
-    expect(told.at(-1)).toBeNull(); // no area of another state
+    expect(told.at(-1)).toBeNull(); // the area of another state is discarded
   });
 
   it("tells a refusal, but not that a later request replaced it", async () => {

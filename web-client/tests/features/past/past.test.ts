@@ -7,7 +7,7 @@ import type { Timeline, TimelineStep } from "../../../src/core/protocol.gen";
 import { notices } from "../../../src/ui/notices";
 
 const iso = (minute: number): string => new Date(Date.UTC(2026, 4, 4, 12, minute)).toISOString();
-const kEnds = [2, 3, 7, 8, 12]; // strokes with several batches each
+const kEnds = [2, 3, 7, 8, 12]; // the last edits of strokes with several batches
 const steps: TimelineStep[] = kEnds.map((last, index) => ({
   first: (kEnds[index - 1] ?? 0) + 1,
   last,
@@ -100,7 +100,7 @@ describe("the past of a model", () => {
     expect(past.time).toBeNull();
     expect(past.place).toBe(0);
     for (let i = 0; i < 5; ++i) await past.goBy(true);
-    // the state after the newest edit is now
+    // the state after the newest edit is the current one
     expect(shown.slice(-5).map(([at]) => at)).toEqual([2, 3, 7, 8, null]);
     await past.goBy(true);
     expect(past.at).toBeNull();

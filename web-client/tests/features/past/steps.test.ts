@@ -4,13 +4,13 @@ import type { UndoStep, UndoSteps } from "../../../src/core/protocol.gen";
 import { Steps } from "../../../src/features/past/steps";
 import { Api } from "../../../src/net/api";
 
-/** A server with steps of one layer: undo takes the newest, as the real one does. */
+/** A fake server with steps of one layer. As on the real server, undo takes the newest step. */
 class FakeSteps {
   done: UndoStep[];
   undone: UndoStep[] = [];
   reads = 0;
   posted: string[] = [];
-  /** Called before each answer. */
+  /** Called before each response. */
   meanwhile: () => void = () => {};
 
   constructor(count: number) {
@@ -77,7 +77,7 @@ describe("A person's own steps", () => {
     await steps.load();
     server.meanwhile = () => void steps.load();
     expect((await steps.goTo(server.done[3]!))?.ended).toBe("there");
-    expect(server.reads).toBe(3); // at first, before and after the undos
+    expect(server.reads).toBe(3); // once at the start, and before and after the undos
   });
 
   it("stop where the list was closed, also before the first undo", async () => {

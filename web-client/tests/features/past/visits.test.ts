@@ -66,7 +66,7 @@ describe("visits", () => {
     ben.close();
     const ada = visit();
     await ada.welcome("ada", 6);
-    expect(ada.news).toBeNull(); // her first visit
+    expect(ada.news).toBeNull(); // this is her first visit
     ada.close();
     const again = visit();
     await again.welcome("ben", 6);

@@ -35,7 +35,7 @@ beforeEach(() => {
   camera = new OrbitCamera();
   camera.setModel({ min: [-10, -10, -10], max: [10, 10, 10] }, "z");
   camera.resize(1600, 1200);
-  camera.standardView("front"); // looks along +y: x to the right, z up
+  camera.standardView("front"); // looks along +y, with x to the right and z up
   asked = [];
   calm = false;
   ready = true;
@@ -58,7 +58,7 @@ describe("where others point", () => {
     expect([only().x, only().y, only().radius]).toEqual([400, 300, null]);
     cursors.receive([bea([2, -5, 3], 1.5)]);
     vi.advanceTimersByTime(1000);
-    // Computed by hand: half the field is tan(17.5°), the eye at −distance.
+    // Computed by hand: half the field of view is tan(17.5°), and the eye is at −distance.
     const pxPerUnit = 300 / Math.tan((17.5 * Math.PI) / 180) / (camera.distance - 5);
     expect(only().x).toBeCloseTo(400 + 2 * pxPerUnit, 6);
     expect(only().y).toBeCloseTo(300 - 3 * pxPerUnit, 6);
@@ -102,7 +102,7 @@ describe("where others point", () => {
     cursors.receive([bea([0, 0, 0])]);
     cursors.onChange = () => ++drawn;
     vi.advanceTimersByTime(9000);
-    cursors.receive([bea([0, 0, 0])]); // other participants moved
+    cursors.receive([bea([0, 0, 0])]); // the participants moved, except this one
     drawn = 0;
     expect(only().faded).toBe(false);
     vi.advanceTimersByTime(1100);
@@ -144,7 +144,7 @@ describe("a place behind the surface", () => {
 
   it("is hidden where the own section has cut it away", () => {
     cursors.receive([bea([2, 0, 0])]);
-    camera.section = [[-1, 0, 0, 1]]; // keeps x ≤ 1
+    camera.section = [[-1, 0, 0, 1]]; // keeps the part with x ≤ 1
     expect(only().hidden).toBe(true);
     camera.section = [[1, 0, 0, 1]];
     expect(only().hidden).toBe(false);

@@ -61,7 +61,7 @@ const bea = (more: Partial<PresenceUser> = {}): PresenceUser => ({
 const here = (...users: PresenceUser[]): void =>
   socket().receive({ op: "presence", users: [me, ...users] });
 
-/** A camera of Bea's, from another side. */
+/** Returns a camera of Bea's, from another side. */
 function hers(azimuth: number): OrbitCamera {
   const camera = new OrbitCamera();
   camera.setModel({ min: [...bounds.min], max: [...bounds.max] }, "z");
@@ -103,7 +103,7 @@ beforeEach(async () => {
 });
 afterEach(() => {
   session.close();
-  vi.advanceTimersByTime(60_000); // closes notices
+  vi.advanceTimersByTime(60_000); // time after which the notices close
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
@@ -157,7 +157,7 @@ describe("following somebody", () => {
     move();
     expect([session.together.followed, said()]).toEqual([null, { op: "presence", pointer: null }]);
     const mine = session.view.camera.eye();
-    here(bea({ camera: hers(3).message() })); // was pending
+    here(bea({ camera: hers(3).message() })); // the request was pending
     vi.advanceTimersByTime(1000);
     expect(session.view.camera.eye()).toEqual(mine);
   });
@@ -345,7 +345,7 @@ describe("what others see of the pointer", () => {
       session.painting.radiusWindowPx() * camera.unitPerPixel(camera.depthOf(position)),
       9,
     );
-    // The surface there may become known after the position was sent.
+    // The surface under the pointer may become known after the position was sent.
     session.gestures.hover({ x: 402, y: 300 });
     vi.advanceTimersByTime(200);
     const nearer: [number, number, number] = [50, 20, 60];

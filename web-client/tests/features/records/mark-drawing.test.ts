@@ -27,9 +27,9 @@ const isTold = (title: string): Promise<void> =>
   comes(() => expect(shown.at(-1)?.title).toBe(title));
 
 let stored: { key: number; version: number; values: Record<string, unknown> };
-let told: string[]; // requests to the server
+let told: string[]; // requests that the server received
 let beforeChange: () => void;
-let newest: number; // entry of the table's journal
+let newest: number; // the newest entry of the table's journal
 let undone: number[];
 let host: MarkDrawingHost;
 let marks: MarkDrawing;
@@ -138,7 +138,7 @@ describe("what is drawn on the surface", () => {
     const mine = { model: 9, coordinates: [[1, 2, 3]] };
     await comes(() => expect(stored.values["samples"]).toEqual([other, mine, mine]));
     await isTold(texts.marks.point_set("North"));
-    expect(shown).toHaveLength(1); // offers to undo the latest
+    expect(shown).toHaveLength(1); // the notice offers to undo the latest drawing
   });
 
   it("is taken back by its notice, unless something came after it", async () => {

@@ -16,7 +16,7 @@ describe("the record that the mouse rests on", () => {
   let hover: RecordHover;
   let changes: number;
   const rest = (): unknown => vi.advanceTimersByTime(kLongMs);
-  /** The answer to the pointer's request there. */
+  /** Simulates the response to the pointer's request. */
   const lies = (found: RecordAt | null): void => {
     here = found;
     hover.picked();
@@ -47,11 +47,11 @@ describe("the record that the mouse rests on", () => {
   });
 
   it("is shown when the answer comes late, and only the answer about that place", () => {
-    [here, settled] = [record(3), false]; // at the pointer's previous position
+    [here, settled] = [record(3), false]; // the response is for the pointer's previous position
     hover.move({ x: 10, y: 10 });
     rest();
     expect(hover.shown).toBeNull();
-    lies(record(4)); // at a position in between
+    lies(record(4)); // the response is for a position in between
     expect(hover.shown).toBeNull();
     settled = true;
     lies(record(7));

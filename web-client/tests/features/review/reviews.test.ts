@@ -1,4 +1,4 @@
-// The edits that wait for review, against a small fake server.
+// The edits that wait for review, with a small fake server.
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { Reviews } from "../../../src/features/review/reviews";
@@ -38,7 +38,7 @@ function make(role: "annotator" | "curator") {
     [2, queueOf([])],
   ]);
   const asked: number[] = [];
-  const delays: Promise<void>[] = []; // of the next answers
+  const delays: Promise<void>[] = []; // delays of the next responses
   const sent: Review[] = [];
   let refusal: ApiError | null = null;
   const api = fakeApi({
@@ -106,7 +106,7 @@ describe("what waits for review", () => {
     const annotator = make("annotator");
     await annotator.reviews.loadAll();
     expect(annotator.asked).toEqual([1]);
-    expect(annotator.reviews.count).toBe(1); // her own
+    expect(annotator.reviews.count).toBe(1); // only the annotator's own edit
     expect(annotator.reviews.waiting.map(({ layer }) => layer.id)).toEqual([1]);
     const curator = make("curator");
     await curator.reviews.loadAll();

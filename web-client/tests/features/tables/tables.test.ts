@@ -110,9 +110,9 @@ describe("cells", () => {
       title_column: 1,
     };
     expect(labelColumn(titled)?.slug).toBe("note");
-    // records without a title use the usual name
+    // records without a value in the title column use the usual name
     expect(labelOfRecord(titled, record(1, { code: "SU 1", note: null }))).toBe("SU 1");
-    // a dropped or invisible column
+    // the title column was dropped or is invisible
     expect(labelColumn({ ...titled, title_column: 77 })).toBe(code);
     const byTerm = { ...titled, title_column: 3 };
     expect(
@@ -181,12 +181,12 @@ describe("the rows of a table", () => {
     expect(rows.row(100)).toBeNull();
     rows.want(5050, 5350);
     expect(asked.map(({ offset }) => offset)).toEqual([0, 5000, 5100]);
-    rows.want(9950, 9999); // scrolled on: rows in between are not requested
+    rows.want(9950, 9999); // after further scrolling, rows in between are not requested
     await answers[1]!(10_000);
     expect(asked.map(({ offset }) => offset)).toEqual([0, 5000, 5100, 9900]);
     await answers[3]!(10_000);
     rows.want(9950, 10_050);
-    expect(asked).toHaveLength(4); // no rows after the last
+    expect(asked).toHaveLength(4); // no rows after the last one are requested
     expect(rows.row(9999)?.key).toBe(9999);
   });
 
@@ -194,7 +194,7 @@ describe("the rows of a table", () => {
     rows.want(0, 10);
     await answers[0]!(300);
     rows.setQuery({ sortby: "-n" });
-    expect(rows.row(0)?.key).toBe(0); // until the new ones arrive
+    expect(rows.row(0)?.key).toBe(0); // old rows stay until the new ones arrive
     rows.setQuery({ sortby: "n" });
     expect(asked.slice(1).map(({ sortby }) => sortby)).toEqual(["-n", "n"]);
     await answers[2]!(200);
@@ -216,7 +216,7 @@ describe("the rows of a table", () => {
     expect(rows.problem?.offset).toBe(3);
     expect(rows.row(5)?.key).toBe(5);
     rows.want(0, 10);
-    expect(asked).toHaveLength(2); // it is not requested repeatedly
+    expect(asked).toHaveLength(2); // rows with a problem are not requested repeatedly
     rows.setQuery({ filter: "n > 3" });
     expect(rows.problem).toBeNull();
     await answers[2]!(300);
@@ -230,9 +230,9 @@ describe("the rows of a table", () => {
     expect(rows.row(1)).toEqual({ ...record(1, { n: 7 }, 5), area_m2: 2 });
     rows.put(record(1, { n: 8 }, 6));
     expect(rows.row(1)).toEqual({ ...record(1, { n: 8 }, 6), area_m2: 2 });
-    rows.put(record(1, { n: 9 }, 4)); // a late answer
+    rows.put(record(1, { n: 9 }, 4)); // this response arrived late
     expect(rows.row(1)?.values["n"]).toBe(8);
-    rows.put(record(99, { n: 9 }, 4)); // a row that is not loaded
+    rows.put(record(99, { n: 9 }, 4)); // this row is not loaded
   });
 
   it("are measured anew when their lines or points change, and keep what they measured until then", async () => {
@@ -248,8 +248,8 @@ describe("the rows of a table", () => {
     rows.want(0, 10);
     await answers[0]!(3);
     rows.put({ ...record(1, { cracks }, 5), area_m2: 2, length_m: 1 });
-    expect(outdated).toBe(0); // for the layer
-    rows.put({ ...record(1, { cracks, n: 8 }, 6), length_m: 7 }); // for all models
+    expect(outdated).toBe(0); // these measures are for the layer
+    rows.put({ ...record(1, { cracks, n: 8 }, 6), length_m: 7 }); // this length is for all models
     expect([rows.row(1)?.length_m, outdated]).toEqual([1, 0]);
     rows.put({ ...record(1, { cracks: [...cracks, ...cracks] }, 7), length_m: 8 });
     expect([rows.row(1)?.length_m, rows.row(1)?.area_m2, outdated]).toEqual([1, 2, 1]);
@@ -282,7 +282,7 @@ describe("the rows of a table", () => {
   });
 });
 
-/** A server with one record: a write must match its version. */
+/** A fake server with one record. The version in a write must match the record's version. */
 class FakeTable {
   stored = record(7, { depth: 1, code: "SU 7" }, 4);
   told: string[] = [];
@@ -370,7 +370,8 @@ describe("what is written into cells", () => {
     await edits.insist(edit!);
     expect(server.stored.values["depth"]).toBe(2);
     expect(edits.open).toEqual([]);
-    row = record(7, { depth: 5 }, server.stored.version); // known from an event
+    // the page received this version with an event
+    row = record(7, { depth: 5 }, server.stored.version);
     server.stored = row;
     await edits.write(7, "depth", 6, 2);
     expect(edits.open[0]?.theirs?.value).toBe(5);
@@ -423,7 +424,7 @@ describe("the names of records", () => {
     names.put(record(1, { code: "late" }));
     expect(offsets).toEqual([]);
     expect(names.label(1)).toBeNull();
-    expect(names.lacks(7)).toBe(false); // not known yet
+    expect(names.lacks(7)).toBe(false); // unknown before the names are loaded
     await settle();
     expect(names.label(1)).toBe("SU 1");
     expect(names.label(2)).toBeNull();
@@ -554,7 +555,7 @@ describe("the card of a record", () => {
     tables.showCard(layer, picked(3));
     await settle();
     expect(tables.card?.record?.key).toBe(3);
-    tables.showCard(layer, picked(9)); // a key without a record
+    tables.showCard(layer, picked(9)); // this key has no record
     await settle();
     expect(tables.card).toBeNull();
     tables.showCard(layer, picked(3));

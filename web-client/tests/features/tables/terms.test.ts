@@ -89,7 +89,7 @@ describe("the rows of a tree of terms", () => {
 
 describe("the keys in a tree of terms", () => {
   const folded = new Set([6]);
-  const rows = rowsOf(tree, folded); // 1 2 3 4 5 6
+  const rows = rowsOf(tree, folded); // the rows are 1 2 3 4 5 6
   const step = (key: string, from: number): unknown =>
     treeStep(key, rows, keys(rows).indexOf(from), 3);
 

@@ -28,7 +28,7 @@ import {
 import { FakeSocket, welcome } from "../../fake-socket";
 
 const words = texts.kept_views;
-// A building in UTM coordinates: doubles must resolve millimeters there.
+// A building in UTM coordinates. Doubles must resolve millimeters there.
 const bounds = {
   min: [500_000, 4_100_000, 600] as [number, number, number],
   max: [500_040, 4_100_020, 612] as [number, number, number],
@@ -77,7 +77,8 @@ const look = (id: number, more: Partial<Look> = {}): Look =>
     ...more,
   }) as Look;
 
-const share = fc.integer({ min: 0, max: 1000 }).map((step) => step / 1000); // of the page's sliders
+// the range of the page's sliders
+const share = fc.integer({ min: 0, max: 1000 }).map((step) => step / 1000);
 const sideShares = fc
   .tuple(share, share)
   .map(([a, b]) => [Math.min(a, b) * 0.9, 0.05 + Math.max(a, b) * 0.95] as const);
@@ -121,7 +122,7 @@ describe("the section of a view", () => {
           ),
         );
         if (choice.mode !== "box") expect(again.mode).toBe(choice.mode);
-        // a box with one side is a cut
+        // a box with one side is the same as a cut
         else expect(planes.length > 1 ? again.mode : "box").toBe("box");
       }),
     );
@@ -212,7 +213,7 @@ describe("the address of a view", () => {
 // ── in a session ─────────────────────────────────────────────────────────────────────────────────
 
 let sockets: FakeSocket[];
-let answers: Map<string, [status: number, body: unknown]>; // by method and path
+let answers: Map<string, [status: number, body: unknown]>; // keyed by method and path
 let calls: { method: string; path: string; body: unknown; headers: Record<string, string> }[];
 let session: OpenModelSession;
 let told: readonly Notice[];
@@ -290,7 +291,7 @@ beforeEach(() => {
 });
 afterEach(() => {
   discardUnsaved();
-  vi.advanceTimersByTime(60_000); // closes notices
+  vi.advanceTimersByTime(60_000); // time after which the notices close
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
@@ -362,7 +363,7 @@ function see(seen: Seen): void {
   });
 }
 
-/** Positions of the model's corners in the window. */
+/** Returns the window positions of the corners of the model's bounding box. */
 function places({ view, projection }: Pick<CameraMessage, "view" | "projection">): number[] {
   const points = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) =>
     [0, 1, 2].map((axis) => (corner & (1 << axis) ? bounds.max : bounds.min)[axis]!),
@@ -392,7 +393,7 @@ function expectSame({ camera, ...rest }: ViewContent, then: ViewContent | View):
     expect(Math.abs(placesNow[index]! - place) / Math.max(1, Math.abs(place))).toBeLessThan(1e-6),
   );
 }
-/** The last message to the server. */
+/** Returns the settings in the last message to the server. */
 const sent = (): ViewContent["layers"] =>
   [...(socket().of("layers").at(-1)?.layers ?? [])].sort(
     (a, b) => Number(a.layer) - Number(b.layer),
@@ -413,7 +414,7 @@ describe("going to a view", () => {
         expect(sent()).toEqual(content.layers);
         session.views.goBack();
         const back = session.views.content();
-        // no table is open
+        // highlights are omitted, because no table is open
         expectSame(
           { ...back, layers: back.layers.map(({ highlight: _, ...rest }) => rest) },
           { ...own, layers: own.layers.map(({ highlight: _, ...rest }) => rest) },
@@ -617,7 +618,7 @@ describe("the list of views", () => {
     await settle();
     socket().receive({ op: "view", event: "deleted", view: 2 });
     expect(names()).toEqual(["West", "V3"]);
-    answers.set(`GET ${path}/1`, [200, viewWith(1, content)]); // a pending answer
+    answers.set(`GET ${path}/1`, [200, viewWith(1, content)]); // the response to a pending request
     socket().receive({ op: "view", event: "changed", view: 1 });
     await settle();
     answers.set(`GET ${path}/3`, [404, { title: "Not found" }]);
