@@ -1,6 +1,6 @@
 #version 450 core
 #include "shared/shade.h"
-// The background's gradient from the picture's top to its bottom.
+// Draws the gradient of the background from the top to the bottom of the frame.
 layout(std140, binding = 0) uniform ShadeUniformBlock { ShadeUniforms shade; };
 layout(location = 0) out vec4 picture;
 

@@ -1,12 +1,13 @@
 #version 450 core
 #include "shared/cluster.h"
 #include "shared/depth_probe.h"
-// Disables the draws of clusters whose box is behind the depth drawn so far in every cell of the
-// coarse grid that it overlaps. One level of the grid is enough: boxes of many cells are rare, and
-// the loop ends at the first cell in which they are visible.
+// Disables the draws of hidden clusters. A cluster is hidden if its box is behind the depth drawn
+// so far in all cells of the coarse grid that the box overlaps. One level of the grid is enough,
+// because few boxes overlap many cells. The loop ends at the first cell in which the box is
+// visible.
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Cells { float cells[]; };
-layout(std430, binding = 1) readonly buffer Boxes { float boxes[]; };  // a cluster: min x y z, max x y z
+layout(std430, binding = 1) readonly buffer Boxes { float boxes[]; };  // per cluster: min x y z, max x y z
 layout(std430, binding = 2) buffer Commands { DrawCommand commands[]; };
 layout(location = 0) uniform mat4 clip_from_model;
 layout(location = 1) uniform ivec2 window;
@@ -22,7 +23,7 @@ void main() {
     vec3 position = vec3(boxes[box + ((corner & 1u) != 0u ? 3u : 0u)], boxes[box + ((corner & 2u) != 0u ? 4u : 1u)],
                          boxes[box + ((corner & 4u) != 0u ? 5u : 2u)]);
     vec4 clip = clip_from_model * vec4(position, 1.0);
-    if (clip.w <= 0.0 || clip.z < -clip.w) return;  // extends in front of the near plane
+    if (clip.w <= 0.0 || clip.z < -clip.w) return;  // the box crosses the near plane
     vec3 ndc = clip.xyz / clip.w;
     low = min(low, ndc);
     high = max(high, ndc);
@@ -31,7 +32,7 @@ void main() {
   vec2 size = vec2(window);
   vec2 cell = vec2(float(kDepthCell));
   ivec2 last = (window + int(kDepthCell) - 1) / int(kDepthCell) - 1;
-  // Clamped before the cast: a box near the eye may extend beyond the range of an int.
+  // Clamp before the cast, because a box near the eye may extend beyond the range of an int.
   vec2 limit = vec2(last);
   ivec2 from = ivec2(clamp(floor(((low.xy * 0.5 + 0.5) * size - kClusterMarginPx) / cell), vec2(0.0), limit));
   ivec2 to = ivec2(clamp(floor(((high.xy * 0.5 + 0.5) * size + kClusterMarginPx) / cell), vec2(0.0), limit));

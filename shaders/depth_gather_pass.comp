@@ -1,5 +1,5 @@
 #version 450 core
-// Depth at a list of pixels.
+// Reads the depths at a list of pixels.
 layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler2D depth;
 layout(std430, binding = 0) readonly buffer Pixels { ivec2 pixels[]; };

@@ -1,6 +1,7 @@
 #version 450 core
 #include "shared/depth_probe.h"
-// Largest depth of each cell of the coarse grid: everything behind it in the whole cell is hidden.
+// Computes the largest depth of each cell of the coarse grid. Any point behind this depth is hidden
+// everywhere in the cell.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depth;
 layout(std430, binding = 0) writeonly buffer Cells { float cells[]; };

@@ -1,14 +1,14 @@
 #version 450 core
 #include "shared/depth_probe.h"
 #include "shared/edit.h"
-// Lists the parts of the block tree that a stroke may touch, and their tiles: projects spheres to
-// the window and tests them against the tool's segments and the coarse grid of largest depths.
-// Conservative: never rejects a texel that the edit would write. A group tests a node of the tree
-// and its 64 parts; most groups end after the node.
+// Lists the parts of the block tree that a stroke may touch, and their tiles. Projects spheres to
+// the window, and tests them against the tool's segments and the coarse grid of largest depths. The
+// test is conservative: it never rejects a texel that the edit would write. A group tests a node of
+// the tree and its 64 parts. Most groups end after the test of the node.
 layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform EditUniformBlock { EditUniforms edit; };
-layout(std430, binding = 0) readonly buffer Nodes { vec4 nodes[]; };      // center, radius; one for each 64 parts
-layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; };  // a part
+layout(std430, binding = 0) readonly buffer Nodes { vec4 nodes[]; };      // center, radius; per 64 parts
+layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; };  // per part
 layout(std430, binding = 2) readonly buffer Parts { EditPart parts[]; };
 layout(std430, binding = 3) readonly buffer Segments { EditSegment segments[]; };
 layout(std430, binding = 4) readonly buffer Cells { float cells[]; };
@@ -19,7 +19,7 @@ shared uint node_segments, group_count, group_first;
 
 struct WindowBox {
   vec4 box;  // x0, y0, x1, y1; the whole window if the eye's plane intersects the sphere
-  float z0;  // nearest window depth
+  float z0;  // nearest depth in the window
   float w0;  // smallest w
 };
 
@@ -28,8 +28,8 @@ vec4 row(int i) {
               edit.clip_from_model[3][i]);
 }
 
-// Bounds of (a_row · p) / (w_row · p) over a sphere: the planes a_row - k w_row that touch it. This
-// form of the root avoids cancellation in float.
+// Returns the bounds of (a_row · p) / (w_row · p) over a sphere: the values k for which the plane
+// a_row - k w_row touches the sphere. This form of the root avoids cancellation in float.
 vec2 ratio_bounds(vec3 a_row, float a, vec3 w_row, float w, float radius) {
   float reach = radius * length(w_row);
   vec3 across = w * a_row - a * w_row, both = cross(a_row, w_row);
@@ -69,18 +69,18 @@ float distance_to_axis(EditSegment s, vec2 point) {
   return distance(point, s.ends.xy + along * t);
 }
 
-// Tests the circle around the box against the segment's axis: the boxes of long slanted segments
-// are much larger than the segments.
+// Tests the circle around the box against the segment's axis, because the box of a long slanted
+// segment is much larger than the segment.
 bool lies_under(vec4 box, EditSegment s) {
   float radius = max(s.tool.x, s.tool.y) * (1.0 + kCullMarginRadius);
   vec4 of_segment = vec4(min(s.ends.xy, s.ends.zw) - radius, max(s.ends.xy, s.ends.zw) + radius);
   vec2 center = 0.5 * (box.xy + box.zw);
   return overlap(box, of_segment) &&
-         // √2: the corners of squares
+         // √2: the distance to the corners of a square tool
          distance_to_axis(s, center) <= radius * sqrt(2.0) + distance(center, box.zw);
 }
 
-// Whether the segment covers the whole box; then the other segments have no effect.
+// Returns whether the segment covers the whole box. If it does, the other segments have no effect.
 bool covers(EditSegment s, vec4 box) {
   vec2 center = 0.5 * (box.xy + box.zw);
   return distance_to_axis(s, center) + distance(center, box.zw) + kCullMarginPx < edit.inner_radius * min(s.tool.x, s.tool.y);
@@ -93,7 +93,7 @@ bool is_hidden(WindowBox window) {
   float nearest = window.z0 - bias - kCullMarginDepth;
   float cell = float(kDepthCell);
   ivec2 count = ivec2(ceil(edit.window.xy / cell));
-  // Clamped before the cast: a box near the eye may extend beyond the range of an int.
+  // Clamp before the cast, because a box near the eye may extend beyond the range of an int.
   ivec2 from = ivec2(clamp(floor(max(window.box.xy, edit.tool_box.xy) / cell), vec2(0.0), vec2(count - 1)));
   ivec2 to = ivec2(clamp(floor(min(window.box.zw, edit.tool_box.zw) / cell), vec2(0.0), vec2(count - 1)));
   for (int y = from.y; y <= to.y; ++y)
@@ -102,7 +102,7 @@ bool is_hidden(WindowBox window) {
   return true;
 }
 
-// The bits of the segments in `runs` that may cover the box.
+// Returns the bits of the segments in `runs` that may cover the box.
 uint segments_over(vec4 box, uint runs) {
   uint found = 0u;
   for (; runs != 0u; runs &= runs - 1u) {

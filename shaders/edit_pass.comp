@@ -1,22 +1,22 @@
 #version 450 core
 #include "shared/edit.h"
 #include "shared/pages.h"
-// Texture editing and padding in one dispatch: every texel of the blocks listed by
-// edit_cull_pass.comp is projected to the window and tested as in the paper's texture editing
-// algorithm. Gutter texels have their owner's position, so they follow it without a second pass.
-// One thread processes a row of 8 texels. A block that is listed for several of its parts is
-// written several times with the same values. TEXEL_FORMAT is r8ui, r16ui or r32ui. With
-// TOOL_TEXTURE the tool is a texture of distances to the nearest cell of its shape.
+// Texture editing and padding in one dispatch. All texels of the blocks that edit_cull_pass.comp
+// listed are projected to the window and tested as in the paper's texture editing algorithm. A
+// gutter texel has its owner's position, so it needs no second pass. One thread processes a row of
+// 8 texels. If several parts of a block are listed, the block is written several times with the
+// same values. TEXEL_FORMAT is r8ui, r16ui or r32ui. With TOOL_TEXTURE the tool is a texture of
+// distances to the nearest cell of its shape.
 layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform EditUniformBlock { EditUniforms edit; };
 layout(std430, binding = 0) readonly buffer PageTables { uint page_tables[]; };
-layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; };  // a part: center, radius
+layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; };  // per part: center, radius
 layout(std430, binding = 2) readonly buffer Parts { EditPart parts[]; };
 layout(std430, binding = 3) readonly buffer Segments { EditSegment segments[]; };
-layout(std430, binding = 4) readonly buffer PackedBoxes { float packed_boxes[]; };  // a slot: min x y z, step x y z
+layout(std430, binding = 4) readonly buffer PackedBoxes { float packed_boxes[]; };  // per slot: min x y z, step x y z
 layout(std430, binding = 5) readonly buffer Touched { EditTiles tiles; };
 layout(std430, binding = 6) readonly buffer TouchedParts { TouchedPart touched[]; };
-// by number of the tile
+// The index is the tile's index in EditTiles::tiles.
 layout(std430, binding = 7) buffer Edited { EditedTile edited[]; };
 layout(binding = 0) uniform usampler2DArray positions;
 layout(binding = 1) uniform sampler2D depth;
@@ -25,7 +25,7 @@ layout(binding = 2) uniform usampler2D shape_distances;
 #endif
 layout(TEXEL_FORMAT, binding = 0) uniform writeonly uimage2DArray values;
 layout(r8ui, binding = 1) uniform writeonly uimage2DArray valid;
-// The pages of one chunk are bound at a time. Blocks without a page are processed with the first.
+// A dispatch binds the pages of one chunk. The first dispatch also processes blocks without a page.
 layout(location = 0) uniform uint chunk;
 layout(location = 1) uniform uint is_first_chunk;
 
@@ -33,9 +33,9 @@ shared uint part_is_written[kEditPartsPerGroup];
 
 #ifdef TOOL_TEXTURE
 
-// Whether a line between two points of the shape's raster meets a set cell of it. Each step leaves
-// the square of cells around the current one in which no cell is set, so there are few steps, at
-// most one for each cell along the line.
+// Returns whether a line between two points of the shape's raster meets a set cell. Each step
+// leaves the empty square of cells around the current cell. Therefore only a few steps are needed,
+// at most one for each cell along the line.
 bool meets_shape(vec2 a, vec2 b) {
   const float side = float(kShapeCells);
   vec2 d = b - a;
@@ -68,8 +68,8 @@ bool meets_shape(vec2 a, vec2 b) {
   return false;
 }
 
-// Maps a window point into the shape's raster at both ends of the segment; the raster's rows go
-// down.
+// Maps a window point into the shape's raster at both ends of the segment. The raster's first row
+// is the top row.
 bool in_segment(vec2 p, EditSegment s) {
   const vec2 center = vec2(0.5 * float(kShapeCells)), half_side = vec2(0.5, -0.5) * float(kShapeCells);
   return meets_shape(center + (p - s.ends.xy) * (half_side / s.tool.x), center + (p - s.ends.zw) * (half_side / s.tool.y));
@@ -92,8 +92,8 @@ bool in_disc(vec2 p, EditSegment s) {
   return dot(d, d) < radius * radius;
 }
 
-// The point is inside the square around a + t (b - a) for some t in [0, 1]: four linear conditions
-// c + t g > 0.
+// A point is inside the swept square if, for some t in [0, 1], it is inside the square around a + t
+// (b - a). These are four linear conditions c + t g > 0.
 bool in_square(vec2 p, EditSegment s) {
   vec2 a = p - s.ends.xy;
   vec2 step = s.ends.zw - s.ends.xy;
@@ -126,9 +126,9 @@ bool in_tool(vec2 p, uint runs) {
   return false;
 }
 
-// On a slanted surface the depth of the texel differs from that of the pixel's center by up to half
-// a pixel of its slope. The smaller of two one-sided differences gives this slope without errors at
-// silhouettes.
+// On a slanted surface, the depths of a texel and of the pixel's center differ by up to the change
+// of depth within half a pixel. The smaller of two one-sided differences gives this slope without
+// errors at silhouettes.
 float depth_bias(ivec2 pixel, float here, float w) {
   if ((edit.flags & kEditFixedBias) != 0u) return edit.bias.x;
   ivec2 last = textureSize(depth, 0) - 1;
@@ -141,8 +141,8 @@ float depth_bias(ivec2 pixel, float here, float w) {
   return base + min(edit.bias.z * slope, edit.bias.w * base);
 }
 
-// Computes the limit described in render/edit/facing_limit.h. At the window's border the existing
-// neighbor is used; where a pixel shows no surface, nothing is painted.
+// Tests the limit that render/edit/facing_limit.h describes. Uses the existing neighbor at the
+// window's border. Rejects pixels without surface.
 bool is_facing(ivec2 pixel, float here) {
   ivec2 last = textureSize(depth, 0) - 1;
   float left = here - texelFetch(depth, ivec2(max(pixel.x - 1, 0), pixel.y), 0).r;
@@ -181,8 +181,8 @@ bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint runs) {
   return (edit.flags & kEditFacing) == 0u || is_facing(pixel, here);
 }
 
-// The painted texels of a row, lowest first. `page` may be kNoPage: erasing an empty tile only
-// counts the texels as written.
+// Paints a row and returns the bits of the written texels, lowest first. If `page` is kNoPage, an
+// eraser has nothing to erase, but the texels still count as written.
 uint paint_row(EditPart part, uint y, uint page, uint runs) {
   uint element = part.slot * 64u + y * 8u;
   ivec3 source = ivec3(element & (kPositionRow - 1u), (element >> kPositionRowBits) & (kPositionRow - 1u),
@@ -211,8 +211,8 @@ uint ordered(float value) {
   return (bits >> 31) != 0u ? ~bits : bits | 0x80000000u;
 }
 
-// Most parts of a tile are inside the box of the previous ones: the comparison avoids atomic
-// operations.
+// Most parts of a tile are inside the box of the previous parts. The comparison avoids atomic
+// operations for them.
 void widen_box(uint tile, vec4 sphere) {
   for (int i = 0; i < 3; ++i) {
     uint low = ~ordered(sphere[i] - sphere.w), high = ordered(sphere[i] + sphere.w);

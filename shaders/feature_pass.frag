@@ -1,14 +1,13 @@
 #version 450 core
 #include "shared/features.h"
-// Lines with round ends and points. Light casings separate them from the surface, also in
-// grayscale. All casings are drawn before the inner parts, so that segments of a line do not cut
-// each other. A pixel belongs to the nearest place of the segment and is drawn if that place is
-// shown.
+// Draws points, and lines with round ends. Light casings separate them from the surface, also in
+// grayscale. All casings are drawn before the inner parts, so no segment of a line covers another.
+// A pixel is drawn if the nearest tested point of the segment is shown.
 layout(location = 0) in vec2 place;
 layout(location = 1) flat in vec4 ends;
 layout(location = 2) flat in float mark_half_width;
 layout(location = 3) flat in vec4 mark_color;
-layout(location = 4) flat in uvec2 places;  // how many, and the bits of the shown ones
+layout(location = 4) flat in uvec2 places;  // number of tested points, and bits of the shown ones
 layout(location = 0) out vec4 picture;
 
 void main() {

@@ -1,9 +1,9 @@
 #version 450 core
 #include "shared/features.h"
-// A rectangle of two triangles around each segment; nothing for a hidden one.
+// Makes a rectangle of two triangles around each visible segment.
 layout(std140, binding = 0) uniform FeatureBlock { FeatureUniforms marks; };
 layout(std430, binding = 0) readonly buffer SegmentBlock { FeatureSegment segments[]; };
-layout(location = 0) out vec2 place;  // pixels
+layout(location = 0) out vec2 place;  // in pixels
 layout(location = 1) flat out vec4 ends;
 layout(location = 2) flat out float mark_half_width;
 layout(location = 3) flat out vec4 mark_color;

@@ -1,10 +1,10 @@
 #version 450 core
 #include "shared/features.h"
 #include "shared/section.h"
-// Finds which places of marks the surface hides: the visibility of its place decides whether a
-// symbol is drawn; the surface around it never cuts it. A place is visible if its depth below the
-// visible surface, measured perpendicular to that surface, is at most its reach. Two dispatches:
-// CLOSE_GAPS 0 tests the places, CLOSE_GAPS 1 closes short gaps of lines.
+// Tests which points of marks are visible. A symbol is drawn completely if its point is visible,
+// even if the surface around the point would hide a part of it. A point is visible if its depth
+// below the visible surface, measured perpendicular to that surface, is at most its reach. Two
+// dispatches are necessary: CLOSE_GAPS 0 tests the points, CLOSE_GAPS 1 closes short gaps in lines.
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer SegmentBlock { FeatureSegment segments[]; };
 layout(location = 0) uniform uint segment_count;
@@ -20,10 +20,10 @@ bool is_visible(vec3 place, float pixel_depth, float reach_px) {
   if ((flags & kFeatureCutOpen) != 0u && (floatBitsToUint(here) & kInsideMark) != 0u) return false;
   float left = depth_at(pixel - ivec2(1, 0)), right = depth_at(pixel + ivec2(1, 0));
   float below = depth_at(pixel - ivec2(0, 1)), above = depth_at(pixel + ivec2(0, 1));
-  // The smaller step of each axis: the other one may cross an edge.
+  // Uses the smaller difference of each axis, because the other one may cross an edge.
   vec2 slope = vec2(min(abs(left - here), abs(right - here)), min(abs(below - here), abs(above - here)));
   float steep = min(length(slope), kFeatureSteepest * pixel_depth);
-  // a place may be anywhere in its pixel
+  // The point may be anywhere in its pixel.
   float farthest = max(here, max(max(left, right), max(below, above)));
   return place.z <= farthest + reach_px * length(vec2(pixel_depth, steep));
 }
@@ -41,8 +41,8 @@ void main() {
   segments[i].seen = seen;
 }
 #else
-// The number of steps to the next visible place; more than kFeatureClosedPlaces if it is too far,
-// or the line ends before.
+// Returns the number of steps to the next visible point. Returns more than kFeatureClosedPlaces if
+// that point is too far or the line ends before it.
 uint steps_to_seen(uint i, uint place, bool back) {
   for (uint step = 1u; step <= kFeatureClosedPlaces; ++step) {
     if (back && place == 0u) {

@@ -1,10 +1,11 @@
 #version 450 core
 #include "shared/mesh.h"
 #include "shared/museum_light.h"
-// Texture coordinate (16 bits each, floor of uv * 65536, which maps exactly to texels of a
-// power-of-two resolution) and lit base color. The alpha is the light, by which layers are lit
-// later. HEADLIGHT, RAKING_LIGHT or UNLIT replace the museum light; EXPOSED makes the picture brighter
-// or darker; LOOKS is the number of pictures over the colors of the vertices.
+// Outputs the texture coordinate and the lit base color. The texture coordinate has 16 bits per
+// axis: floor(uv * 65536), which maps exactly to texels of a power-of-two resolution. The alpha is
+// the light, which shade_pass applies to the layers. HEADLIGHT, RAKING_LIGHT or UNLIT replace the
+// museum light. EXPOSED makes the colors brighter or darker. LOOKS is the number of surface images
+// over the vertex colors.
 layout(location = 0) in vec2 surface_uv;
 #ifndef LIT_VERTICES
 layout(location = 1) in vec4 surface_normal;
@@ -13,7 +14,7 @@ layout(location = 2) in vec4 surface_color;
 layout(std140, binding = 0) uniform MeshBlock { MeshUniforms mesh; };
 
 #if LOOKS > 0
-layout(binding = 0) uniform sampler2D looks[LOOKS];  // sRGB codes, as all colors here
+layout(binding = 0) uniform sampler2D looks[LOOKS];  // sRGB codes, like all colors in this shader
 #endif
 
 layout(location = 0) out uint packed_uv;
@@ -41,7 +42,8 @@ float light_here() {
 }
 
 void main() {
-  // 65534 in y: never kBackground. Signed numbers, which processors convert in one step.
+  // The limit 65534 in y ensures that the result is never kBackground. The numbers are signed,
+  // because processors convert signed numbers in one step.
   ivec2 q = ivec2(clamp(surface_uv * 65536.0, vec2(0.0), vec2(65535.0, 65534.0)));
   packed_uv = uint(q.x | q.y << 16);
 
@@ -54,16 +56,16 @@ void main() {
 #endif
   float light = light_here();
   color *= light;
-#ifdef EXPOSED  // otherwise no color is too bright: what a scan stores is shown as it is
+#ifdef EXPOSED  // without exposure, no color is too bright
   color = tone_mapped(color * mesh.rim_light.w);
 #endif
-  lit = vec4(color, light);  // the format ends at 1
+  lit = vec4(color, light);  // the format clamps to 1
 #ifdef SECTION
   bool inside = !gl_FrontFacing && mesh.eye_is_cut_away != 0u;
   gl_FragDepth = marked_depth(gl_FragCoord.z, inside);
   if (inside) {
-    packed_uv = kBackground;  // nothing is painted there
-    lit = vec4(1.0);  // shade_pass colors it
+    packed_uv = kBackground;  // layers do not cover the inside of a solid
+    lit = vec4(1.0);  // shade_pass colors the inside
   }
 #endif
 }

@@ -1,9 +1,9 @@
 #version 450 core
 #include "shared/mesh.h"
 #include "shared/museum_light.h"
-// The common vertex stage of the mesh, for g-buffers and for depth only, so that their depths are
-// bitwise equal. LIT_VERTICES: the museum light of small triangles, computed at their vertices
-// instead of in each pixel.
+// The vertex stage of the mesh for g-buffers and for depth only. Both use it, so their depths are
+// bitwise equal. With LIT_VERTICES, the museum light of small triangles is computed at their
+// vertices instead of at each pixel.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in vec2 uv;
@@ -16,9 +16,9 @@ out float gl_ClipDistance[kSectionPlanes];
 #endif
 layout(location = 0) out vec2 surface_uv;
 #ifndef LIT_VERTICES
-layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye
+layout(location = 1) out vec4 surface_normal;  // w: cosine of the angle to the eye
 #endif
-// a: the light from all around; LIT_VERTICES: all light
+// The alpha is the light from all around, or all light with LIT_VERTICES.
 layout(location = 2) out vec4 surface_color;
 
 void main() {

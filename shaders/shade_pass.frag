@@ -3,12 +3,12 @@
 #include "shared/mesh.h"
 #include "shared/pages.h"
 #include "shared/shade.h"
-// Colors the surface of a picture: its lit base color and the layers bottom to top, sampled by
-// texture coordinate. CHUNK_COUNT (0…6) pairs of value and valid textures are bound; another draw
-// handles texels whose chunk is not bound. LAYERS, if defined, lists the layers, each as
-// SHADE_LAYER(index, mode, type, bits of the units that may contain it, whether it has patterns).
-// Software renderers run both sides of every branch, so each layer gets specialized code. Otherwise
-// there is a loop over layer_count.
+// Colors the surface of a frame with its lit base color and the layers from bottom to top. Layers
+// are sampled by texture coordinate. CHUNK_COUNT (0…6) pairs of value and valid textures are bound.
+// Another draw handles texels whose chunk is not bound. LAYERS, if defined, lists the layers, each
+// as SHADE_LAYER(index, mode, type, bits of the units that may contain it, kind of its patterns,
+// blending mode). Each layer then gets specialized code, because software renderers run both sides
+// of each branch. Without LAYERS, a loop runs over layer_count.
 layout(std140, binding = 0) uniform ShadeUniformBlock { ShadeUniforms shade; };
 layout(std430, binding = 0) readonly buffer Tables { uint page_tables[]; };
 layout(std430, binding = 1) readonly buffer Points { PalettePoint points[]; };
@@ -20,13 +20,13 @@ layout(binding = 2) uniform sampler2D palettes;
 layout(binding = 3) uniform usampler2DArray chunk_values[CHUNK_COUNT];
 layout(binding = 9) uniform usampler2DArray chunk_valid[CHUNK_COUNT];
 #endif
-// The first draw replaces the content. Later ones (OVER) draw over it: picture + kept * content.
+// The first draw replaces the content. Later draws (OVER) output picture + kept * content.
 layout(location = 0, index = 0) out vec4 picture;
 #ifdef OVER
 layout(location = 0, index = 1) out vec4 kept;
 #endif
 
-// What is drawn over the content: added + kept * content.
+// The result of a draw is added + kept * content.
 struct Color {
   vec3 added, kept;
 };
@@ -42,7 +42,7 @@ float number_of(uint bits, uint type) {
   return uintBitsToFloat(bits);
 }
 
-// Key for the generated color of an unlisted value: its integer value, as 32 bits.
+// Returns the key for the generated color of an unlisted value: its integer value, as 32 bits.
 uint key_of(uint bits, uint type) {
   if (type <= kTypeU32) return bits;
   if (type == kTypeI8) return uint(int(bits << 24) >> 24);
@@ -51,7 +51,7 @@ uint key_of(uint bits, uint type) {
   return uint(int(number_of(bits, type)));
 }
 
-// The same as strata::generated_color.
+// Computes the same color as strata::generated_color.
 vec4 generated_color(uint key) {
   uint h = key * 2654435761u;
   float hue = float(h >> 8) / 16777216.0 * 6.0;
@@ -69,7 +69,7 @@ struct Ink {
 Ink ink_of(PalettePoint point) { return Ink(unpackUnorm4x8(point.color), point.pattern); }
 
 Ink step_ink(ShadeLayer layer, float value) {
-  uint low = 0u, high = layer.point_count;  // first point above the value is in [low, high]
+  uint low = 0u, high = layer.point_count;  // the first point above the value is in [low, high]
   while (low < high) {
     uint middle = (low + high) / 2u;
     if (uintBitsToFloat(points[layer.points + middle].key) <= value) low = middle + 1u;
@@ -102,7 +102,7 @@ Ink ink_of(ShadeLayer layer, uint mode, uint type, uint bits) {
 }
 
 #if CHUNK_COUNT > 0
-// x: bits, y: 1 if the texel has a value.
+// Returns x: the bits of the texel, y: 1 if it has a value.
 uvec2 texel_of(ShadeLayer layer, uint units, uint q) {
   uint shift = 16u - layer.resolution_bits;
   uvec2 texel = uvec2(q & 0xffffu, q >> 16) >> shift;
@@ -122,7 +122,7 @@ uvec2 texel_of(ShadeLayer layer, uint units, uint q) {
   return found;
 }
 
-// The share of a pixel that hatch or dots cover, 0…1.
+// Returns the share of a pixel that hatch or dots cover, 0…1.
 float pattern_cover(uint pattern) {
   float spacing = unpackHalf2x16(pattern >> 16).x / shade.patterns.z;
   if (spacing <= 0.0) spacing = kPatternPixels * shade.patterns.w;
@@ -131,7 +131,7 @@ float pattern_cover(uint pattern) {
   vec2 along = vec2(cos(angle), sin(angle));
   vec2 from = gl_FragCoord.xy - shade.patterns.xy;
   vec2 place = vec2(dot(from, along), dot(from, vec2(-along.y, along.x))) / spacing;
-  vec2 middle = (place - floor(place) - 0.5) * spacing;  // in pixels from the center of the cell
+  vec2 middle = (place - floor(place) - 0.5) * spacing;  // pixels from the center of the cell
   float inside = (pattern & 3u) == kPatternDots ? kDotRadius * spacing - length(middle) : kHatchShare * 0.5 * spacing - abs(middle.y);
   return clamp(inside + 0.5, 0.0, 1.0);
 }
@@ -161,7 +161,7 @@ void add_layer(inout Color color, ShadeLayer layer, uint mode, uint type, uint u
     cover *= is_outline ? border : mix(is_bare ? 0.0 : kPatternGround, 1.0, max(border, pattern_cover(ink.pattern)));
   }
   vec3 lit = ink.color.rgb * light;
-  // What is below is lit already: multiplied, the ink filters it.
+  // The colors below are already lit, so a multiplied ink is not lit again.
   vec3 kept = blend == kBlendMultiply ? 1.0 - cover + cover * ink.color.rgb : blend == kBlendScreen ? 1.0 - cover * lit : vec3(1.0 - cover);
   color.added = color.added * kept + (blend == kBlendMultiply ? vec3(0.0) : cover * lit);
   color.kept *= kept;
@@ -169,8 +169,8 @@ void add_layer(inout Color color, ShadeLayer layer, uint mode, uint type, uint u
 #endif
 
 #ifdef CUT
-// Of the g-buffer: an inside has light but no texture coordinate. The border of the picture is no
-// border of the cut.
+// Returns whether a pixel shows the inside of a solid: the g-buffer then contains light but no
+// texture coordinate. Pixels are clamped, so the border of the frame is not a border of the cut.
 bool is_inside(ivec2 pixel) {
   pixel = clamp(pixel, ivec2(0), textureSize(surface_uv, 0) - 1);
   return texelFetch(surface_uv, pixel, 0).r == kBackground && texelFetch(surface_light, pixel, 0).a > 0.0;
@@ -198,7 +198,7 @@ void main() {
 #endif
 #if CHUNK_COUNT > 0
   uint q = texelFetch(surface_uv, pixel, 0).r;
-  if (q != kBackground) {  // not the inside of a cut solid
+  if (q != kBackground) {  // not the inside of a solid
 #ifdef LAYERS
 #define SHADE_LAYER(index, mode, type, units, patterns, blend) \
   add_layer(color, layers[index], mode, type, units, patterns, blend, q, surface.a);

@@ -1,7 +1,7 @@
 #version 450 core
 #include "shared/pages.h"
-// Packs whole tiles for read-back: 512 words of valid bits, then the values, both row by row. One
-// thread processes 32 texels. TEXEL_BYTES is 1, 2 or 4.
+// Packs whole tiles for read-back. Each tile has 512 words of valid bits, and then the values, both
+// row by row. One thread processes 32 texels. TEXEL_BYTES is 1, 2 or 4.
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Pages { uint pages[]; };
 layout(std430, binding = 1) writeonly buffer Packed { uint packed_words[]; };

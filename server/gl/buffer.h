@@ -10,16 +10,16 @@
 
 namespace strata::gl {
 
-// Immutable-storage buffer. Empty when default-constructed or moved from.
+// A buffer with immutable storage. Empty if default-constructed or moved from.
 class Buffer {
  public:
   enum class Use {
     fixed,      // filled at creation or by `upload`, read by the GPU
-    read_back,  // always mapped; the GPU writes, the CPU reads behind a fence
+    read_back,  // always mapped; the GPU writes, the CPU reads after a fence
   };
 
   Buffer() = default;
-  // An Error `out_of_memory` if the driver has no memory for it.
+  // Returns the Error `out_of_memory` if the driver has no memory for the buffer.
   static Result<Buffer> create(std::size_t bytes, Use use, std::string_view label);
 
   GLuint id() const { return object_.id(); }
@@ -32,14 +32,15 @@ class Buffer {
   void upload_values(std::size_t offset, std::span<const T> values) {
     upload(offset, std::as_bytes(values));
   }
-  // Ranges must be inside the buffers and begin and end at multiples of 4. A barrier must precede
-  // these calls if shaders wrote the range.
-  void clear(std::size_t offset, std::size_t bytes) const;                          // to zeros
-  void copy_to(const Buffer& target, std::size_t offset, std::size_t bytes) const;  // to its start
+  // Ranges must be inside the buffers, and must begin and end at multiples of 4. If shaders wrote
+  // the range, a barrier must precede these calls.
+  void clear(std::size_t offset, std::size_t bytes) const;  // writes zeros
+  // Copies to the target's start.
+  void copy_to(const Buffer& target, std::size_t offset, std::size_t bytes) const;
   void bind_storage(GLuint binding) const;
   void bind_uniform(GLuint binding) const;
 
-  // `read_back` only.
+  // Empty unless the use is `read_back`.
   std::span<const std::byte> mapped() const { return {mapped_, mapped_ ? size_ : 0}; }
 
  private:

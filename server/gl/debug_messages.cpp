@@ -14,7 +14,7 @@ void GLAPIENTRY on_message(GLenum, GLenum type, GLuint id, GLenum severity, GLsi
   if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR &&
       severity != GL_DEBUG_SEVERITY_HIGH)
     return;
-  // check_memory reports a failed allocation to its caller; it is not a programming error.
+  // A failed allocation is not a programming error. check_memory reports it to its caller.
   if (id == GL_OUT_OF_MEMORY) return;
   auto* messages = static_cast<DebugMessages*>(const_cast<void*>(user));
   messages->count_error();

@@ -8,7 +8,7 @@
 
 namespace strata::gl {
 
-// Counts and logs KHR_debug errors of the current context after `install`. Must outlive the
+// After `install`, counts and logs KHR_debug errors of the current context. Must outlive the
 // context.
 class DebugMessages {
  public:
@@ -20,8 +20,8 @@ class DebugMessages {
   std::atomic<int> errors_{0};
 };
 
-// Call this after an allocation: returns an Error `out_of_memory` that names `what` if the driver
-// had no memory for `bytes`.
+// Checks the allocation before this call. Returns an Error `out_of_memory` that names `what` if the
+// driver had no memory for `bytes`.
 Result<void> check_memory(std::string_view what, std::size_t bytes);
 
 }  // namespace strata::gl

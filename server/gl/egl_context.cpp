@@ -21,7 +21,8 @@ bool has_extension(const char* list, std::string_view name) {
   return padded.find(" " + std::string(name) + " ") != std::string::npos;
 }
 
-// Calls the EXT entry on purpose: libepoxy cannot resolve the core one before a display exists.
+// Calls the EXT function, because libepoxy cannot resolve the core function before a display
+// exists.
 EGLDisplay platform_display(EGLenum platform, void* native) {
   return eglGetPlatformDisplayEXT(platform, native, nullptr);
 }
@@ -70,7 +71,7 @@ std::string hex(EGLint error) {
 }
 
 EGLContext create_context(EGLDisplay display, const EglOptions& options, bool robust) {
-  // If the display supports it, a context without surfaces uses no configuration.
+  // A context without surfaces needs no configuration if the display supports such contexts.
   EGLConfig config = EGL_NO_CONFIG_KHR;
   if (!has_extension(eglQueryString(display, EGL_EXTENSIONS), "EGL_KHR_no_config_context")) {
     const std::array<EGLint, 5> config_attributes{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
@@ -156,8 +157,7 @@ EglContext& EglContext::operator=(EglContext&& other) noexcept {
 
 EglContext::~EglContext() { destroy(); }
 
-// The display stays initialized: EGL shares it among all contexts of the process, and terminating
-// it would end them.
+// Does not terminate the display, because all contexts of the process share it.
 void EglContext::destroy() {
   if (context_ == EGL_NO_CONTEXT) return;
   if (eglGetCurrentContext() == context_)
@@ -165,7 +165,7 @@ void EglContext::destroy() {
   eglDestroyContext(display_, std::exchange(context_, EGL_NO_CONTEXT));
 }
 
-// GL may report a reset only once, so the result is kept.
+// Keeps the result, because GL may report a reset only once.
 bool EglContext::lost() {
   lost_ = lost_ || (robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR);
   return lost_;

@@ -9,15 +9,15 @@
 namespace strata::gl {
 
 struct EglOptions {
-  bool debug = false;  // KHR_debug context
+  bool debug = false;  // whether to create a KHR_debug context
 };
 
-// A GL 4.5 core context without a window, current on the thread that creates it, which must also
-// destroy it. Uses a hardware device if EGL offers one; then Mesa's surfaceless platform; then any
-// device (software). Robust access and reset notification are requested if available. Move-only.
+// A GL 4.5 core context without a window. It is current on the thread that creates it, and the same
+// thread must destroy it. Tries hardware devices first, then Mesa's surfaceless platform, and then
+// software devices. Requests robust access and reset notification if they are available. Move-only.
 class EglContext {
  public:
-  // The error lists every platform tried and the reason of its failure.
+  // The Error lists each tried platform and the reason for its failure.
   static Result<EglContext> create(const EglOptions& options);
 
   EglContext() = default;
@@ -27,7 +27,7 @@ class EglContext {
 
   explicit operator bool() const { return context_ != EGL_NO_CONTEXT; }
   const std::string& platform() const { return platform_; }
-  // True after a reset of the device: all GL objects are lost.
+  // Returns true after a reset of the device, when all GL objects are lost.
   bool lost();
 
  private:

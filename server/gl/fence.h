@@ -6,18 +6,19 @@
 
 namespace strata::gl {
 
-// Marks a position in the command stream. Move-only; an empty fence counts as passed.
+// Marks a position in the command stream. An empty fence counts as passed. Move-only.
 class Fence {
  public:
   Fence() = default;
-  // Placed after every command issued so far, and flushed.
+  // Places a fence after all commands issued so far, and flushes.
   static Fence place();
   Fence(Fence&& other) noexcept;
   Fence& operator=(Fence&& other) noexcept;
   ~Fence();
 
   explicit operator bool() const { return sync_ != nullptr; }
-  // True after the GPU has passed it; waits at most `timeout_ns`. A lost context counts as passed.
+  // Waits at most `timeout_ns`. Returns true if the GPU has passed the fence or the context is
+  // lost.
   bool passed(std::uint64_t timeout_ns = 0);
 
  private:

@@ -9,11 +9,13 @@
 
 namespace strata::gl {
 
-// Renders into textures, which must outlive it. Empty when default-constructed or moved from.
+// A framebuffer that renders into textures, which must outlive it. Empty if default-constructed or
+// moved from.
 class Framebuffer {
  public:
   Framebuffer() = default;
-  // `depth` may be null. An Error `unavailable` if the driver cannot render into this combination.
+  // `depth` may be null. Returns the Error `unavailable` if the driver does not support this
+  // combination of textures.
   static Result<Framebuffer> create(std::initializer_list<const Texture*> colors,
                                     const Texture* depth, std::string_view label);
 

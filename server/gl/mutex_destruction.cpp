@@ -1,11 +1,11 @@
-// Works around a race in Mesa's llvmpipe (22.3 and the main branch of 2026). Its last drawing
+// Works around a race in Mesa's llvmpipe (22.3, and the main branch of 2026). The last drawing
 // thread marks a scene as complete while it still holds the mutex of the scene's fence. Another
-// thread reads the mark without the mutex and may free the fence. The drawing thread's unlock then
-// writes 0 into freed memory, and a later allocation crashes.
+// thread reads the mark without the mutex and may free the fence. The drawing thread then unlocks
+// the mutex, which writes 0 into freed memory, and a later allocation crashes.
 //
-// A program's own function of this name is used instead of the C library's, also by libraries that
-// are loaded later. It waits until the thread inside the mutex has left; otherwise it does the
-// same.
+// If a program defines pthread_mutex_destroy, its function replaces that of the C library, also for
+// libraries that are loaded later. The function below waits until no thread holds the mutex. Then
+// it calls the function of the C library.
 
 #include <dlfcn.h>
 #include <pthread.h>
@@ -15,8 +15,8 @@
 
 namespace {
 
-// POSIX does not define the destruction of a locked mutex. A library that does it by mistake must
-// not wait forever.
+// POSIX does not define the destruction of a locked mutex. A library that destroys one by mistake
+// must not wait forever.
 constexpr std::time_t kLongestWait_s = 1;
 
 using Destroy = int(pthread_mutex_t*);

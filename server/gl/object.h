@@ -7,9 +7,9 @@
 
 namespace strata::gl {
 
-// Name of a GL object with one owner: movable, not copyable; 0 is the empty, moved-from state.
-// `Traits` has `void destroy(GLuint)` and `kIdentifier`, the object's kind for debug labels. GPU
-// thread only.
+// The only owner of a GL object. Movable, not copyable. The id 0 is the empty, moved-from state.
+// `Traits` has `void destroy(GLuint)` and `kIdentifier`, the kind of the object for debug labels.
+// GPU thread only.
 template <class Traits>
 class Object {
  public:

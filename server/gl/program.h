@@ -10,12 +10,12 @@
 
 namespace strata::gl {
 
-// A linked program from shader files; the ending of a file gives the stage (.vert, .frag, .comp).
-// Move-only.
+// A linked program from shader files. The extension of a file gives its stage (.vert, .frag,
+// .comp). Move-only.
 class Program {
  public:
   Program() = default;
-  // The error contains the compiler's message and the file name.
+  // The Error contains the file name and the message of the compiler.
   static Result<Program> load(const std::filesystem::path& directory,
                               const std::vector<std::string>& files,
                               const std::vector<std::string>& defines = {});

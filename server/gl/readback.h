@@ -12,8 +12,9 @@ namespace strata::gl {
 
 class ReadbackPool;
 
-// One transfer from the GPU: fill `buffer()` by GL commands, call `submit()`, wait until `ready()`,
-// read `data()`. The destructor returns the memory to the pool, which must outlive it.
+// One transfer from the GPU. Fill `buffer()` with GL commands, call `submit()`, wait until
+// `ready()` is true, and read `data()`. The destructor returns the memory to the pool, which must
+// outlive this object.
 class Readback {
  public:
   Readback() = default;
@@ -38,8 +39,8 @@ class Readback {
   std::size_t size_ = 0;
 };
 
-// Persistently mapped buffers that transfers reuse; sizes are powers of two. At most `kept_bytes`
-// of unused buffers are kept.
+// Persistently mapped buffers that transfers reuse. Their sizes are powers of two. At most
+// `kept_bytes` bytes of unused buffers are kept.
 class ReadbackPool {
  public:
   explicit ReadbackPool(std::size_t kept_bytes = std::size_t{64} << 20) : kept_bytes_(kept_bytes) {}

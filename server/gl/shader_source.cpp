@@ -9,7 +9,8 @@ namespace {
 
 constexpr const char* kTitle = "Shader cannot be built";
 
-// Appends the text of `file` with its includes in place; `line` numbers refer to the file.
+// Appends the text of `file`, and replaces each include by the included file. `#line` directives
+// keep the line numbers of the files.
 Result<void> append(const std::filesystem::path& directory, const std::string& file,
                     std::set<std::string>& seen, std::string& text) {
   if (file.find("..") != std::string::npos)
@@ -24,7 +25,7 @@ Result<void> append(const std::filesystem::path& directory, const std::string& f
   for (int number = 1; std::getline(stream, line); ++number) {
     constexpr std::string_view kInclude = "#include \"";
     if (!line.starts_with(kInclude)) {
-      // Each file is included once; the pragma is for C++ only.
+      // Each file is included only once. The pragma is for C++.
       text += line.starts_with("#pragma once") ? "\n" : line + "\n";
       continue;
     }

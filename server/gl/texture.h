@@ -8,12 +8,12 @@
 
 namespace strata::gl {
 
-// Immutable-storage 2D texture or 2D texture array, clamped: with one level and nearest filter
-// (also for integer formats), or with mipmaps and linear filters.
+// A 2D texture or 2D texture array with immutable storage, clamped at its edges. It has either one
+// level and the nearest filter (also for integer formats), or mipmaps and linear filters.
 class Texture {
  public:
   Texture() = default;
-  // An Error `out_of_memory` if the driver has no memory for it.
+  // Return the Error `out_of_memory` if the driver has no memory for the texture.
   static Result<Texture> create_2d(GLenum format, int width, int height, std::string_view label);
   static Result<Texture> create_mipmapped(GLenum format, int width, int height, int levels,
                                           std::string_view label);
@@ -46,7 +46,7 @@ class Texture {
   int width_ = 0, height_ = 0, layers_ = 0, levels_ = 1;
 };
 
-// Bytes a texel of the sized formats in use.
+// Returns the bytes per texel of a sized format. Covers the formats in use.
 std::size_t bytes_per_texel(GLenum format);
 
 }  // namespace strata::gl

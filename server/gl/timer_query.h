@@ -4,7 +4,7 @@
 
 namespace strata::gl {
 
-// GPU time between `begin` and `end`. Only one timer may run at a time.
+// Measures the GPU time between `begin` and `end`. Only one timer may run at a time.
 class TimerQuery {
  public:
   TimerQuery() = default;

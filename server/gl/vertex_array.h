@@ -14,16 +14,16 @@ struct VertexAttribute {
   GLint components;
   GLenum type;
   bool normalized;
-  GLuint offset;  // bytes in the vertex
+  GLuint offset;  // in bytes, from the start of the vertex
 };
 
-// The layout of one interleaved vertex buffer and one index buffer, which must outlive it.
+// The layout of one interleaved vertex buffer and one index buffer. Both must outlive it.
 class VertexArray {
  public:
   VertexArray() = default;
   VertexArray(const Buffer& vertices, int stride, std::span<const VertexAttribute> attributes,
               const Buffer& indices, std::string_view label);
-  // Without buffers, for passes that generate their vertices.
+  // Makes a layout without buffers, for passes that generate their vertices.
   explicit VertexArray(std::string_view label);
 
   GLuint id() const { return object_.id(); }

@@ -14,13 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// of a material library, a glTF's JSON, a PLY's header
+// The largest size of a material library, of a glTF's JSON and of a PLY's header.
 constexpr std::size_t kMaxText = std::size_t{64} << 20;
 
-// A name may be in quotation marks.
+// Characters to remove around names, which may be in quotation marks.
 constexpr std::string_view kAroundNames = " \t\r\"";
 
-// Returns the file for `reference`, as a path below the folder.
+// Returns the file that `reference` names, as a path relative to the folder.
 std::optional<fs::path> below(const fs::path& folder, std::string_view reference) {
   std::string slashes(reference);
   std::ranges::replace(slashes, '\\', '/');
@@ -33,7 +33,8 @@ std::optional<fs::path> below(const fs::path& folder, std::string_view reference
   return std::nullopt;
 }
 
-// Names may contain spaces and follow options: returns the longest end of the line that is a file.
+// Returns the longest end of the line that is a file, because names may contain spaces and may
+// follow options.
 std::optional<fs::path> file_at_end(const fs::path& folder, std::string_view words) {
   for (words = trimmed(words, kAroundNames); !words.empty(); words = trimmed(words, kAroundNames)) {
     if (auto file = below(folder, words)) return file;
@@ -44,7 +45,7 @@ std::optional<fs::path> file_at_end(const fs::path& folder, std::string_view wor
   return std::nullopt;
 }
 
-// Passes the rest of each line whose first word `is_relevant` accepts.
+// Passes the rest of a line to `take` if `is_relevant` accepts the line's first word.
 void each_line(std::string_view text, const std::function<bool(const std::string&)>& is_relevant,
                const std::function<void(std::string_view)>& take) {
   while (!text.empty()) {

@@ -27,7 +27,7 @@ constexpr const char* kModel = "Demo pot";
 constexpr const char* kAuthor = "Strata";
 
 Layer sherds_layer() {
-  // Light and dark tones alternate, so that neighbors are distinct for all types of color vision.
+  // Light and dark tones alternate, so neighbors are distinct for all types of color vision.
   static constexpr Rgba kColors[DemoRules::kSherds] = {
       {230, 159, 0, 255},   {86, 180, 233, 255},  {0, 114, 178, 255},  {240, 228, 66, 255},
       {213, 94, 0, 255},    {204, 121, 167, 255}, {120, 94, 240, 255}, {255, 176, 124, 255},
@@ -39,7 +39,7 @@ Layer sherds_layer() {
   layer.palette = {PaletteMode::categorical, 1, DemoRules::kSherds, {}, {}};
   for (int i = 0; i < DemoRules::kSherds; ++i)
     layer.palette.points.push_back({double(i + 1), kColors[i], "Sherd " + std::to_string(i + 1)});
-  layer.opacity = 0.55;  // relief and color of the clay stay visible
+  layer.opacity = 0.55;  // keeps the relief and the color of the clay visible
   layer.order = 0;
   return layer;
 }
@@ -111,8 +111,8 @@ Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Laye
   return store.layers().create(requested);
 }
 
-// Makes one fill: every texel gets the value that the rule returns for it, if any. Tiles are in the
-// order of their addresses.
+// Makes one fill: each texel gets the value that the rule returns for its position. 0 means no
+// value. Tiles are in the order of their addresses.
 template <class Rule>
 store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer,
                                  double metres_per_unit, const Rule& rule) {
@@ -184,7 +184,7 @@ Result<Model> make_demo_at(store::Store& store, Progress& progress, double detai
   const auto pot = STRATA_TRY(find_or_create_pot(store, detail, progress));
   const auto pieces = STRATA_TRY(find_or_create_layer(store, pot, sherds_layer()));
   const auto cracks = STRATA_TRY(find_or_create_layer(store, pot, cracks_layer()));
-  // A layer that a user has painted on, or emptied, stays unchanged.
+  // Does not change a layer that a user has painted on or emptied.
   if (pieces.sequence == 0 || cracks.sequence == 0) {
     const auto stored = STRATA_TRY(store.models().geometry(pot.id));
     const auto geometry = STRATA_TRY(mesh::decode_geometry(stored));

@@ -9,10 +9,10 @@
 
 namespace strata::jobs {
 
-inline constexpr const char* kDemoProject = "demo";  // slugs
+inline constexpr const char* kDemoProject = "demo";  // slugs of the project and the model
 inline constexpr const char* kDemoModel = "demo-pot";
 
-// As make_demo of jobs/import_job.h; `time` is that of the fills.
+// Like make_demo in jobs/import_job.h, but with a given time of the fills.
 Result<Model> make_demo_at(store::Store& store, Progress& progress, double detail,
                            std::chrono::system_clock::time_point time);
 

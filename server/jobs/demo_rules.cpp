@@ -13,10 +13,11 @@ namespace {
 constexpr int kCrazeCells = 110;
 constexpr std::size_t kCandidates = 4000;
 
-// Lengths as shares of the radius, which is about 50 mm.
+// Widths as shares of the radius, which is about 50 mm.
 constexpr double kOpenWidth = 0.020, kCrackWidth = 0.013, kHairlineWidth = 0.0065;
 
-// Each new seed is the candidate farthest from all before it: the cells get similar sizes.
+// Chooses each new seed as the candidate that is farthest from all earlier seeds, so the cells get
+// similar sizes.
 std::vector<glm::dvec3> spread_seeds(const std::vector<glm::dvec3>& candidates, int count,
                                      std::size_t first) {
   std::vector<glm::dvec3> seeds;
@@ -32,7 +33,8 @@ std::vector<glm::dvec3> spread_seeds(const std::vector<glm::dvec3>& candidates, 
   return seeds;
 }
 
-// The nearest and second nearest seed, and the distance to the border between them.
+// The nearest and the second nearest seed of a point, and the point's distance to the border
+// between them.
 struct Cell {
   int nearest = 0, second = 0;
   double to_border = 0;
@@ -55,7 +57,7 @@ Cell cell_of(const std::vector<glm::dvec3>& seeds, const glm::dvec3& p) {
   return cell;
 }
 
-// Returns 0…1 for the border of two cells, the same from both sides.
+// Returns a number 0…1 for the border of two cells. It is the same on both sides of the border.
 double chance_of(const Cell& cell) {
   const auto [low, high] = std::minmax(cell.nearest, cell.second);
   return mesh::lattice_noise(low, high, 7) * 0.5 + 0.5;
@@ -78,8 +80,8 @@ DemoRules::DemoRules(std::span<const glm::vec3> surface) {
   center_ = (low + high) / 2.0;
   const glm::dvec3 extent = high - low;
   radius_ = std::max({extent.x, extent.y, extent.z}) / 2;
-  // Sorted by height and without duplicates: the demo then does not depend on the order and the
-  // number of copies of the mesh's points, which the cuts of an atlas change.
+  // The points are sorted by height, and duplicates are removed. So the demo does not depend on the
+  // order and the number of copies of points, which the cuts of an atlas change.
   std::vector<glm::vec3> sorted(surface.begin(), surface.end());
   std::ranges::sort(sorted, [](const glm::vec3& a, const glm::vec3& b) {
     return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
@@ -92,7 +94,8 @@ DemoRules::DemoRules(std::span<const glm::vec3> surface) {
   craze_seeds_ = spread_seeds(candidates, kCrazeCells, candidates.size() / 2);
 }
 
-// Projects to the unit sphere around the middle: both faces of the wall have the same position.
+// Projects a point to the unit sphere around the center, so both faces of the wall get the same
+// position.
 glm::dvec3 DemoRules::towards(const glm::vec3& position) const {
   const glm::dvec3 from_center = (glm::dvec3(position) - center_) / radius_;
   const double length = glm::length(from_center);

@@ -7,18 +7,18 @@
 
 namespace strata::jobs {
 
-// The values of the demo's two layers at a point of the pot. The pot is broken along the borders of
-// cells around seeds: sherds are cells with borders made rough by noise, as seen from the pot's
-// middle, so that a sherd extends through the wall. Cracks are bands along some of these borders;
-// hairlines are borders of smaller cells, drawn in part, so that they branch and end.
-// Deterministic.
+// Computes the values of the demo's two layers at a point of the pot. The pot is broken along the
+// borders of cells around seeds. A sherd is a cell whose border is made rough by noise. The cells
+// are measured on a sphere around the pot's center, so a sherd extends through the wall. Cracks are
+// bands along some of these borders. Hairlines are parts of the borders of smaller cells, so they
+// branch and end. Deterministic.
 class DemoRules {
  public:
   static constexpr int kSherds = 14;
   enum Crack : std::uint8_t { none = 0, hairline = 1, crack = 2, open_crack = 3 };
 
-  // Points of the surface in any order, model units, from which the seeds are chosen evenly; at
-  // least kSherds points.
+  // `surface` contains at least kSherds points of the surface, in model units and in any order. The
+  // seeds are chosen evenly from them.
   explicit DemoRules(std::span<const glm::vec3> surface);
 
   struct Marks {
@@ -31,7 +31,7 @@ class DemoRules {
   glm::dvec3 towards(const glm::vec3& position) const;
 
   glm::dvec3 center_{0};
-  double radius_ = 1;  // of the sphere around the middle on which cells are measured
+  double radius_ = 1;  // of the sphere on which cells are measured
   std::vector<glm::dvec3> sherd_seeds_, craze_seeds_;
 };
 

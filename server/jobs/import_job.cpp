@@ -21,12 +21,12 @@
 namespace strata::jobs {
 namespace {
 
-// Layers from this resolution on fit the atlas: its gutters are sized for the coarsest.
+// The lowest resolution of layers. The gutters of the atlas are wide enough for it.
 constexpr int kLowestResolution = 2048;
 constexpr int kMaxResolution = 16384;
 constexpr std::size_t kMaxNameLength = 200;
 
-// Shares of the whole import, as measured on scans of 100 000 to 1 000 000 triangles.
+// Shares of the import time, as measured on scans of 100 000 to 1 000 000 triangles.
 constexpr double kRead = 0.15, kUnfolded = 0.7, kPainted = 0.77, kBuilt = 0.85;
 
 std::string stem(const std::string& filename) {
@@ -48,8 +48,8 @@ std::vector<std::string> names_of(std::span<const ImportFile> files) {
   return names;
 }
 
-// Returns the files under their base names; later files of the same name from other folders are
-// numbered.
+// Returns the files with their base names. Later files with the same name from other folders get
+// numbers.
 std::vector<store::NewModel::Source> sources_of(std::span<const ImportFile> files) {
   std::vector<store::NewModel::Source> sources;
   std::set<std::string> taken;
@@ -74,8 +74,8 @@ Result<void> refuse_faults(const std::vector<Repair>& repairs) {
               "strict");
 }
 
-// Returns the file's own texture coordinates if they are suitable for layers; otherwise a new
-// unfolding, and a note with the reason.
+// Returns an atlas with the texture coordinates of the file if they are suitable for layers.
+// Otherwise unfolds the surface, and adds the reason to `repairs`.
 Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair>& repairs,
                               Progress& progress) {
   if (!mesh.corner_uvs.empty()) {
@@ -154,7 +154,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   progress.report(0, "Building the model");
   if (progress.cancelled()) return cancelled_problem();
   mesh::Geometry geometry = mesh::build_geometry(loaded.mesh, atlas);
-  loaded.mesh = {};  // it is in the geometry now; large scans need the memory
+  loaded.mesh = {};  // frees memory for large scans, because the geometry contains the mesh
   atlas.corner_uvs = {};
 
   Model& model = fresh.model;

@@ -16,37 +16,38 @@ namespace strata::jobs {
 using ImportFile = mesh::InputFile;
 
 struct ImportRequest {
-  // One scan: a mesh alone or with the files that it refers to (.mtl, textures, .bin), in any
-  // order, or one zip of them. All are stored bit for bit.
+  // One scan: a mesh, alone or with the files that it refers to (.mtl, textures, .bin), in any
+  // order, or one zip of these files. All files are stored unchanged.
   std::vector<ImportFile> files;
-  std::string name;  // of the model; empty: from the name of the mesh
+  std::string name;  // of the model; empty: the name of the mesh file
   std::string project = "default";
-  std::optional<Unit> unit;  // empty: from the file, or else meters, `unit_assumed`
-  // values that the file lacks are as proposed (mesh/repair/scale_proposal.h), `unit_assumed`
+  std::optional<Unit> unit;  // no value: from the file, or else meters, with `unit_assumed`
+  // If the file has no unit, use the proposed one (mesh/repair/scale_proposal.h), with
+  // `unit_assumed`.
   bool unit_proposed = false;
-  std::string up;  // "" (from the file, or else z) or of kUpDirections
+  std::string up;  // one of kUpDirections; empty: from the file, or else z
   bool up_proposed = false;
   std::string crs;
-  int resolution = 0;        // default of new layers; 0: 2048
-  double weld_distance = 0;  // vertices closer than this are joined; in the file's units
-  bool strict = false;       // refuse a file that needs repair
+  int resolution = 0;        // default resolution of new layers; 0: 2048
+  double weld_distance = 0;  // joins vertices at a smaller distance; in the file's units
+  bool strict = false;       // reject a file that needs repair
 };
 
-// Checks everything except the content of the files, before they are uploaded: `invalid` or
-// unsupported, with the field's name. Of the files, only the names are checked.
+// Checks a request before the files are uploaded. It checks the names of the files, but not their
+// content. Returns the Errors `invalid` or `unsupported` with the name of the field.
 Result<void> check(const ImportRequest& request);
 
-// Files → mesh → atlas → geometry → one transaction, which also stores the caller's answer. All or
-// nothing: a bad file or a cancel leaves nothing. The memory of textures while they become the base
-// color is reserved in `memory` (null: not counted); if it is insufficient, the base color is
-// smaller, and `repairs` reports it.
+// Imports a model: files → mesh → atlas → geometry → one transaction, which also stores the
+// caller's response. A bad file or a cancellation leaves no data. The memory of textures during the
+// computation of the base color is reserved in `memory` (null: not counted). If it is insufficient,
+// the base color is smaller, and `repairs` reports this.
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
                            const store::IdempotentResponse<Model>& answer = {},
                            MemoryLedger* memory = nullptr);
 
-// Makes the demo project: the pot of mesh::make_demo_pot with two filled layers, `cracks` and
-// `pieces` (as in the paper's figure 1), painted by rule on its surface map. Idempotent: returns
-// the existing model, if any.
+// Makes the demo project: the pot of mesh::make_demo_pot with two layers, `cracks` and `pieces` (as
+// in figure 1 of the paper). DemoRules fills the layers. Idempotent: returns the existing model, if
+// there is one.
 Result<Model> make_demo(store::Store& store, Progress& progress, double detail = 1.0);
 
 }  // namespace strata::jobs

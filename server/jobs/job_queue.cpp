@@ -22,7 +22,7 @@ constexpr std::size_t kMaxRemembered = 1000;
 
 constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure"};
 
-// Returns the problem of a job that a restart of the server ended.
+// Returns the Error of a job that ended because the server restarted.
 Error lost_problem(JobKind kind) {
   constexpr const char* kTitle = "Server restarted";
   switch (kind) {
@@ -54,7 +54,7 @@ Error lost_problem(JobKind kind) {
 
 ErrorCode code_of(const nlohmann::json& stored) {
   if (const auto code = error_code_named(stored.value("code", std::string()))) return *code;
-  // Jobs of release 0.1, which are kept for seven days, contain an HTTP status.
+  // Jobs of release 0.1 contain an HTTP status. Jobs are kept for seven days.
   switch (stored.value("status", 500)) {
     case 422: return ErrorCode::invalid;
     case 499: return ErrorCode::cancelled;
@@ -121,7 +121,7 @@ struct Job {
   JobStatus status;
 };
 
-// Returns the present state: a running job reports through its progress.
+// Returns the current state. A running job reports its state in its progress.
 JobStatus snapshot(const Job& job) {
   JobStatus status = job.status;
   if (status.state == JobState::running) {
@@ -152,10 +152,11 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
 struct JobQueue::Impl {
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::map<JobId, Job> jobs;  // by id: in the order of the requests
+  std::map<JobId, Job> jobs;  // by id, which is the order of the requests
   std::deque<JobId> waiting;
-  std::size_t coming = 0;  // jobs that are being stored, before they wait
-  // In milliseconds: fewer than a thousand jobs a second are requested on average.
+  std::size_t coming = 0;  // number of jobs that are being stored, before they wait
+  // Starts at the time in milliseconds. Therefore new ids are higher than all earlier ids, if there
+  // are on average fewer than 1000 jobs per second.
   std::int64_t last_id = std::chrono::duration_cast<std::chrono::milliseconds>(
                              std::chrono::system_clock::now().time_since_epoch())
                              .count();
@@ -176,7 +177,8 @@ struct JobQueue::Impl {
     }
   }
 
-  // A job that the end of the server interrupts is not changed: the next server finds it.
+  // Stores the result of a job. A job that the shutdown of the server interrupts is not changed,
+  // and the next server process handles it.
   void keep_end(const JobStatus& status, bool cut_short) const {
     if (!store || cut_short) return;
     if (auto saved = store->end(stored_of(status)); !saved)
@@ -195,7 +197,7 @@ struct JobQueue::Impl {
     return {};
   }
 
-  // Writes the end of the job into `status`.
+  // Writes the result of the job to `status`.
   static void end(Job& job, Result<JobResult> result, JobStatus& status) {
     job.work = nullptr;
     if (result) {
@@ -226,7 +228,7 @@ struct JobQueue::Impl {
     for (;;) {
       changed.wait(lock, [&] { return stopping || !waiting.empty(); });
       if (stopping) return;
-      // the reference stays valid during the job: only finished jobs are deleted
+      // The reference stays valid during the job, because only finished jobs are deleted.
       Job& job = jobs.at(waiting.front());
       waiting.pop_front();
       job.status.state = JobState::running;
@@ -240,8 +242,8 @@ struct JobQueue::Impl {
       JobStatus ended = job.status;
       end(job, std::move(result), ended);
       lock.unlock();
-      // Stored before it is published, so that a restart does not change the result that a client
-      // has read.
+      // The result is stored before it is published. So a restart does not change a result that a
+      // client has read.
       keep_end(ended, cut_short);
       lock.lock();
       job.status = std::move(ended);

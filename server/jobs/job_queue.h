@@ -18,7 +18,7 @@ class Jobs;
 
 namespace strata::jobs {
 
-// The result type of a job.
+// The kind of a job's result.
 enum class JobKind { import, layers, image, figure };
 enum class JobState { queued, running, done, failed, cancelled };
 
@@ -27,17 +27,17 @@ struct JobResult {
   JobResult(ModelId the_model)
       : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only a model
   ModelId model = 0;
-  std::vector<LayerId> layers;          // new ones on it
-  std::optional<SurfaceImageId> image;  // a new one on it
-  // a report for the user, see the schema `TransferReport`; null: no report
+  std::vector<LayerId> layers;          // new layers of the model
+  std::optional<SurfaceImageId> image;  // a new surface image of the model
+  // A report for the user (see the schema `TransferReport`). Null: no report.
   nlohmann::json report;
   std::shared_ptr<const TemporaryFile> file;
 };
 
 struct JobStatus {
   JobId id = 0;
-  ProjectId project = 0;  // only its members may see the job
-  std::string user;       // the user who started it; empty: the server
+  ProjectId project = 0;  // only members of this project may see the job
+  std::string user;       // the user who started the job; empty: the server
   JobKind kind = JobKind::import;
   JobState state = JobState::queued;
   double progress = 0;
@@ -46,24 +46,25 @@ struct JobStatus {
   std::optional<JobResult> result;
 };
 
-// Runs long work, one job at a time on a separate thread, in the order of the requests. Keeps the
-// newest 1000 finished jobs, and the files of the newest kFilesKept jobs that made one, until the
-// queue is destroyed. Ids are higher than those of all earlier queues, so that an old id never
-// names a new job.
+// Runs long work on a separate thread, one job at a time, in the order of the requests. Until the
+// queue is destroyed, it keeps the newest 1000 finished jobs, and the files of the newest
+// kFilesKept jobs with a file. Ids are higher than those of all earlier queues, so an old id never
+// refers to a new job.
 class JobQueue {
  public:
   static constexpr int kFilesKept = 16;
-  // With `store`, jobs outlive the queue for store::Jobs::kDaysKept days, without their files:
-  // unfinished jobs of an earlier queue have failed. `store` must outlive the queue. Blocks.
+  // With `store`, jobs are kept for store::Jobs::kDaysKept days, also after the queue is destroyed,
+  // but without their files. Unfinished jobs of an earlier queue count as failed. `store` must
+  // outlive the queue. Blocks.
   explicit JobQueue(store::Jobs* store = nullptr);
-  ~JobQueue();  // cancels the running job, joins
+  ~JobQueue();  // cancels the running job and joins the thread
   using Work = std::function<Result<JobResult>(Progress&)>;
-  // Refused (unavailable) when 64 jobs wait, or as the store refuses. Blocks while the store is
-  // written.
+  // Fails with `busy` if 64 jobs wait, with `unavailable` if the queue is stopping, or with the
+  // Error of the store. Blocks while it writes to the store.
   Result<JobId> add(ProjectId project, Work work, std::string user = {},
                     JobKind kind = JobKind::import);
   std::optional<JobStatus> status(JobId id) const;
-  std::vector<JobStatus> all() const;  // newest first
+  std::vector<JobStatus> all() const;  // newest job first
   bool cancel(JobId id);
 
  private:

@@ -12,21 +12,21 @@ namespace strata::jobs {
 
 namespace {
 
-// A part of a stage of `progress`, which cannot be divided.
+// The message of a part of a stage, because stages of `progress` cannot be nested.
 constexpr const char* kShading = "Shading the model";
 
-// Without memory for it, the model has no light from all around, which is no reason to refuse it.
+// Ignores all Errors except a cancellation: a model without light from all around is still valid.
 Result<void> unless_cancelled(const Result<void>& baked) {
   if (baked || baked.error().code != ErrorCode::cancelled) return {};
   return tl::unexpected(baked.error());
 }
 
-// Makes the coarser copies, and bakes the light into all of them.
+// Makes the coarser copies. Bakes the light into the full mesh and its copies.
 Result<std::vector<mesh::Geometry>> shaded_levels(mesh::Geometry& geometry, Progress& progress) {
   const auto traced = [](const mesh::Geometry& level) {
     return level.triangle_count() <= mesh::kMostTracedTriangles;
   };
-  if (traced(geometry)) {  // the copies have its vertices
+  if (traced(geometry)) {  // the copies have the baked vertices
     STRATA_TRY(unless_cancelled(mesh::bake_openness(geometry, progress)));
     return mesh::make_detail_levels(geometry, progress);
   }
@@ -56,7 +56,7 @@ Result<void> put_geometry(mesh::Geometry geometry, Progress& progress, store::Ne
     model.bounds_min = glm::min(model.bounds_min, position);
     model.bounds_max = glm::max(model.bounds_max, position);
   }
-  // In parallel: making the coarser copies keeps one core busy for as long.
+  // Runs in parallel, because making the coarser copies uses one core for about the same time.
   auto open_edges =
       std::async(std::launch::async, [&geometry] { return mesh::measure_open_edges(geometry); });
   const auto levels = STRATA_TRY(shaded_levels(geometry, progress));

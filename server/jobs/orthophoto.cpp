@@ -15,7 +15,7 @@ double pixel_area(const query::WorldFile& world) {
   return std::abs(world.x_per_column * world.y_per_row - world.x_per_row * world.y_per_column);
 }
 
-constexpr int kGutterRing = 8;  // width in pixels of the exact continuation around the islands
+constexpr int kGutterRing = 8;  // pixels around the islands to which colors are continued exactly
 
 template <class Visit>
 void for_each_pixel_of(TileAddress address, const TileMask& mask, int resolution, Visit&& visit) {
@@ -23,7 +23,7 @@ void for_each_pixel_of(TileAddress address, const TileMask& mask, int resolution
   for_each_texel(mask, [&](int texel) {
     const auto x = std::size_t{address.x} * kTileSize + static_cast<std::size_t>(texel % kTileSize);
     const auto y = std::size_t{address.y} * kTileSize + static_cast<std::size_t>(texel / kTileSize);
-    visit(4 * ((side - 1 - y) * side + x), texel);  // tiles count from the bottom
+    visit(4 * ((side - 1 - y) * side + x), texel);  // tiles are counted from the bottom
   });
 }
 
@@ -32,8 +32,8 @@ Picture empty_picture(int resolution) {
   return {resolution, resolution, std::vector<std::uint8_t>(4 * side * side)};
 }
 
-// Returns the covered part as a picture that continues around the islands like the colors: off the
-// surface, no cover is defined.
+// Returns an image of the covered part of the surface. Off the surface no cover is defined, so it
+// continues around the islands like the colors.
 Picture cover_of(const TileMap& colors, const mesh::SurfaceMap& map) {
   Picture cover = empty_picture(map.resolution);
   const int tiles = map.resolution / kTileSize;

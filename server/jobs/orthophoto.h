@@ -15,36 +15,36 @@ struct SurfaceMap;
 
 namespace strata::jobs {
 
-// Converts an orthophoto to a surface image: projects its colors along its plane onto the surface,
-// as a picture on the atlas.
+// Converts an orthophoto to a surface image: projects its colors perpendicular to its plane onto
+// the surface, and stores them as an image in the atlas.
 
-constexpr int kMaxOrthophotoSurfaceImage = 8192;  // texels a side: the size of surface images on
-                                                  // the GPU
+// The largest number of texels along a side: the size of surface images on the GPU.
+constexpr int kMaxOrthophotoSurfaceImage = 8192;
 
-// Returns the texels a side at which a texel covers no more surface than a pixel, from the atlas'
-// lowest resolution to the largest.
+// Returns the resolution at which a texel covers at most the area of a pixel. It is at least the
+// atlas' lowest resolution and at most kMaxOrthophotoSurfaceImage.
 int orthophoto_resolution(const Model& model, const query::WorldFile& world);
 
-// The orthophoto's colors by places in its plane. Thread-safe.
+// Samples the orthophoto's colors at points in its plane. Thread-safe.
 class OrthophotoSampler {
  public:
-  // `texel_area` in the square of the plane's unit: pixels much smaller than it are averaged in
-  // linear light.
+  // `texel_area` is the area of a texel, in the square of the plane's unit. Much smaller pixels are
+  // averaged in linear light.
   OrthophotoSampler(Picture picture, const query::WorldFile& world, double texel_area);
-  // Interpolates between the pixels: RGB with an alpha of 255, the first byte red. Nothing outside
-  // of the picture, or where less than half is opaque.
+  // Returns the interpolated color, with an alpha of 255. The lowest byte is red. Returns nothing
+  // outside the image, and for points that are less than half opaque.
   std::optional<std::uint32_t> color_at(const glm::dvec2& place) const;
 
  private:
   query::PixelFinder finder_;
   int height_;
   render::MipmappedPicture::Level level_;  // lowest row first
-  double scale_;                           // from pixels of the picture to those of `level_`
+  double scale_;                           // from pixels of the orthophoto to pixels of `level_`
 };
 
-// Returns the picture of u32 texels from `color_at`, top row first. Surface without a color is
-// transparent, in colors that continue from the nearest ones; off the surface, colors and cover
-// continue from the islands. So neither seams nor borders are visible after filtering.
+// Returns the image of u32 texels with the colors of `color_at`, top row first. Surface without a
+// color is transparent, but its color continues from the nearest texels. Off the surface, colors
+// and cover continue from the islands. So no seams or borders are visible after filtering.
 Picture orthophoto_surface_image(const TileMap& colors, const mesh::SurfaceMap& map);
 
 }  // namespace strata::jobs

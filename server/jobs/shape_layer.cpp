@@ -20,17 +20,17 @@ namespace strata::jobs {
 namespace {
 
 using GeometryPtr = std::shared_ptr<const mesh::Geometry>;
-// Returns the value at a place of a triangle, NaN: no value. Called on several threads.
+// Returns the value at a point of a triangle. NaN: no value. Called on several threads.
 using SurfaceValue = std::function<double(std::uint32_t triangle, const glm::vec3& weights)>;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-// Share of the whole: measuring takes most of the time for kinds with rays or neighborhoods.
+// Shares of the progress. Measuring takes most of the time for kinds with rays or neighborhoods.
 constexpr double kMeasured = 0.7;
-constexpr double kPrepared = 0.15;  // for kinds that make samples or rays first
-// A flatter surface has no azimuth.
+constexpr double kPrepared = 0.15;  // for kinds that first make samples or rays
+// If the horizontal part of the normal is shorter, the surface has no azimuth.
 constexpr float kFlat = 0.02f;
 
-// Clockwise from north as seen from above, 0…360 degrees.
+// Returns the azimuth of a normal: clockwise from north as seen from above, 0…360 degrees.
 float azimuth(const Compass& compass, const glm::vec3& normal) {
   const float x = glm::dot(normal, glm::vec3(compass.east)),
               y = glm::dot(normal, glm::vec3(compass.north));
@@ -90,7 +90,7 @@ class Measure {
                               .position_index];
     return point;
   }
-  // Returns a spacing of points about as in a scan of a million triangles, independent of this
+  // Returns the spacing of `points` points that cover the surface evenly. It does not depend on the
   // mesh.
   float even_spacing(double points) const {
     return static_cast<float>(std::sqrt(std::max(model_.area, 1e-300) / points));
@@ -107,7 +107,7 @@ class Measure {
 
   Result<SurfaceValue> height() {
     const glm::dvec3 up = up_frame(model_.up).up;
-    // `up` has one component: the lowest corner of the box is as high as the lowest point.
+    // `up` is an axis, so the lowest corner of the box has the height of the lowest point.
     const double zero = recipe_.absolute ? 0
                                          : std::min(glm::dot(up, model_.bounds_min),
                                                     glm::dot(up, model_.bounds_max));
@@ -210,7 +210,8 @@ class Measure {
     return tl::unexpected(std::move(problem));
   }
 
-  // Reads the named source, or the only one that has such a property.
+  // Reads the property from the named source file, or else from the only source file with this
+  // property.
   Result<SurfaceValue> property() {
     std::vector<std::string> having;
     for (const SourceFile& source : model_.source_files) {
@@ -251,7 +252,7 @@ class Measure {
   std::string other_model_, source_;
 };
 
-// Returns the range of the painted values, from a part of the tiles' texels at even steps.
+// Returns the range of the painted values, computed from texels at equal steps.
 ValueRange range_of(const TileMap& tiles, ValueType type) {
   constexpr std::size_t kMaxValues = 1'000'000;
   const std::size_t step = std::max<std::size_t>(1, tiles.size() * kTexelsPerTile / kMaxValues);
@@ -275,8 +276,8 @@ ValueRange range_of(const TileMap& tiles, ValueType type) {
   return {least, quantile(0.02), quantile(0.98), most};
 }
 
-// `rounds`: measured values are rounded if the type needs whole numbers; given numbers must fit the
-// type. `from`: share of the work that is already done.
+// Paints values at all texels. If `rounds` is true, measured values are rounded for integer types.
+// Otherwise all values must fit the type. `from` is the share of the work that is already done.
 Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value, ValueType type,
                       int resolution, bool rounds, double from, Progress& progress) {
   progress.begin_stage(from, (1 + from) / 2);

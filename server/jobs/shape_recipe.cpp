@@ -30,15 +30,15 @@ double diagonal_mm(const Model& model) {
   return millimetres(glm::length(model.bounds_max - model.bounds_min), model);
 }
 
-// A little more than the mean: a mesh of equal equilateral triangles has edges of 1.52 √(area of
-// one).
+// Returns a little more than the mean length of an edge: 1.52 √(mean area), the edge length in a
+// mesh of equal equilateral triangles.
 double edge_mm(const Model& model) {
   return millimetres(1.52 * std::sqrt(model.area / static_cast<double>(std::max<std::uint64_t>(
                                                        1, model.triangles))),
                      model);
 }
 
-// Rounds to two digits, for people.
+// Rounds to two digits for display.
 double rounded(double value) {
   if (!(value > 0)) return value;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
@@ -110,7 +110,8 @@ Palette viridis(double low, double high) {
   return palette;
 }
 
-// Blue is hollow or behind, red bulges or is in front: distinct for all types of color vision.
+// Blue means hollow or behind, red means bulging or in front. The colors are distinct for all types
+// of color vision.
 Palette diverging(double limit) {
   return linear(-limit, limit,
                 {{33, 102, 172, 255},

@@ -28,35 +28,36 @@ enum class ShapeKind {
 std::string_view name(ShapeKind kind);
 std::optional<ShapeKind> parse_shape_kind(std::string_view name);
 
-// The parameters of a layer that is computed from a model's shape. Empty members take a default
-// that suits the model (`completed`).
+// The parameters of a layer that is computed from a model's shape. `completed` replaces empty
+// members by defaults for the model.
 struct ShapeRecipe {
   ShapeKind kind = ShapeKind::height;
-  std::optional<double> radius_mm;    // curvatures, roughness: of the neighborhood
-  std::optional<double> distance_mm;  // ambient occlusion, model distance: maximum distance
-  std::optional<int> rays;            // ambient occlusion
-  // height: the world's coordinate, not the height above the lowest point
+  std::optional<double> radius_mm;    // curvatures, roughness: radius of the neighborhood
+  std::optional<double> distance_mm;  // ambient occlusion, model distance: largest distance
+  std::optional<int> rays;            // ambient occlusion: number of rays
+  // Height: the world coordinate instead of the height above the lowest point.
   bool absolute = false;
-  std::string model;  // model distance: the other model, id or slug
-  // vertex property: its name, and the source file ("": the only one that has it)
+  std::string model;  // model distance: id or slug of the other model
+  // Vertex property: its name and the source file. Empty: the only source file with this property.
   std::string property, source;
 };
 
-// `invalid` naming the member (`compute.radius_mm`) if it does not belong to the kind, is missing,
-// or is out of range for the model.
+// Returns the recipe with defaults for empty members. Returns the Error `invalid` if a member is
+// missing, does not belong to the kind, or is out of range for the model. The Error names the
+// member (`compute.radius_mm`).
 Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model);
-// as in the body of POST …/layers, and as in the journal
+// Returns the format of the body of POST …/layers and of the journal.
 nlohmann::json to_json(const ShapeRecipe& recipe);
 
 // Return the unit of the values ("mm", "1/m²", "°", ""), and a description of the values and of
-// their computation in a few plain sentences.
+// their computation in a few sentences.
 std::string unit_of(const ShapeRecipe& recipe, const Model& model);
 std::string description_of(const ShapeRecipe& recipe, const Model& model,
                            const std::string& other_model);
 
-// Returns colors that suit the kind, over the range of the values: `low` and `high` are its 2nd and
-// 98th percentile, `least` and `most` its ends. Diverging around 0 for signed values, a circle for
-// azimuths.
+// Returns a palette for the kind over the range of the values. `low` and `high` are the 2nd and the
+// 98th percentile of the values, `least` and `most` are the ends of their range. Palettes of signed
+// values diverge around 0, and that of azimuths is circular.
 struct ValueRange {
   double least = 0, low = 0, high = 1, most = 1;
 };

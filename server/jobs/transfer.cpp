@@ -20,7 +20,7 @@ namespace {
 using GeometryPtr = std::shared_ptr<const mesh::Geometry>;
 constexpr float kNoUv = -1;
 
-// One side of a transfer, with the data for finding the counterparts of texels.
+// One model of a transfer, with the data to find the counterparts of texels.
 struct Side {
   GeometryPtr geometry;
   std::shared_ptr<const mesh::SearchTree> tree;
@@ -61,8 +61,8 @@ std::optional<mesh::SearchTree::Hit> counterpart(const Side& from, const Side::S
                                  spot.normal, tolerance.least_cos);
 }
 
-// Sums of texels' areas in parts, each by one thread: no lock, and the same sum for any number of
-// threads.
+// Adds the areas of texels in parts. One thread adds each part, so no lock is needed, and the sum
+// is the same for any number of threads.
 class AreaSum {
  public:
   explicit AreaSum(std::size_t texels) : parts_(texels / mesh::kTexelsAtOnce + 1) {}
@@ -73,7 +73,7 @@ class AreaSum {
   std::vector<double> parts_;
 };
 
-// The layers of one resolution.
+// The layers with the same resolution.
 class Group {
  public:
   Group(const TransferTarget& target, const Side& here, const Side& there,
@@ -89,7 +89,7 @@ class Group {
   int resolution() const { return resolution_; }
   double matched_m2() const { return matched_m2_; }
 
-  // Finds the place on the source from which each of the target's texels takes its values.
+  // Finds the point on the source from which each texel of the target takes its values.
   Result<void> match(double from, double to) {
     progress_.begin_stage(from, from + 0.2 * (to - from));
     auto map = STRATA_TRY(target_.surface_map(resolution_));
@@ -110,7 +110,7 @@ class Group {
     return done;
   }
 
-  // Painted surface of each layer on the source, and the part of it without a counterpart on the
+  // The painted area of a layer on the source, and the part of it without a counterpart on the
   // target.
   struct Balance {
     double source_m2 = 0, lost_m2 = 0;
@@ -178,7 +178,7 @@ class Group {
   Progress& progress_;
   std::shared_ptr<const mesh::SurfaceMap> map_;
   mesh::TexelOwners owners_;
-  std::vector<glm::vec2> source_uv_;  // of the target's texels; x is kNoUv: no counterpart
+  std::vector<glm::vec2> source_uv_;  // for each texel of the target; x = kNoUv: no counterpart
   double matched_m2_ = 0;
 };
 

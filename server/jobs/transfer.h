@@ -30,31 +30,32 @@ struct TransferTarget {
 
 struct TransferRequest {
   Model source;
-  std::vector<Layer> layers;  // of the source
+  std::vector<Layer> layers;  // layers of the source
   double tolerance_mm = 1;
   double max_angle_degrees = 60;
 };
 
-// One layer on the target, with its areas.
+// A transferred layer on the target, with its areas.
 struct TransferredLayer {
   const Layer* from = nullptr;
-  int resolution = 0;  // that of the source, or the target's lowest if that is higher
+  int resolution = 0;  // of the source layer, but at least the target's lowest
   TileMap tiles;
-  double source_m2 = 0;       // painted surface of the source
-  double transferred_m2 = 0;  // painted surface of the target
-  double lost_m2 = 0;         // part of source_m2 without a counterpart on the target
+  double source_m2 = 0;       // painted area on the source
+  double transferred_m2 = 0;  // painted area on the target
+  double lost_m2 = 0;         // the part of source_m2 without a counterpart on the target
 };
 
 struct TransferSummary {
-  double area_m2 = 0, matched_m2 = 0;  // surface of the target; part of it with a counterpart
+  double area_m2 = 0, matched_m2 = 0;  // area of the target, and the part of it with a counterpart
 };
 
-// For every texel of the target, finds the nearest place of the source within the tolerance whose
-// triangle faces the same way within the angle, and copies each layer's value there: of one texel,
-// without mixing, so that keys stay valid. The world coordinates of both models must be of one
-// system, each in its own units. Edits of the source that are not yet durable are ignored.
-// `deliver` receives one layer after the other and may refuse, which ends the transfer. Long:
-// reports progress, honors cancel. Thread: any that may block.
+// Transfers layers. For each texel of the target, finds the nearest point of the source within the
+// tolerance. The triangle at that point must face the same direction within the angle. Copies the
+// value of one source texel for each layer, without mixing values, so keys stay valid. The world
+// coordinates of both models must belong to the same system, each in the model's own unit. Ignores
+// edits of the source that are not durable yet. Passes one layer after another to `deliver`. An
+// Error of `deliver` ends the transfer. Takes long, reports progress and can be canceled. May run
+// on any thread that may block.
 using Deliver = std::function<Result<void>(TransferredLayer layer)>;
 Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarget& target,
                                         const TransferRequest& request, const Deliver& deliver,

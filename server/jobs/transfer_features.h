@@ -9,14 +9,16 @@
 namespace strata::jobs {
 
 struct TransferredFeatures {
-  std::vector<SurfaceFeature> features;  // on the target
-  // number of given features of which at least a part has no counterpart within the tolerance
+  std::vector<SurfaceFeature> features;  // features on the target
+  // The number of given features with at least one part that has no counterpart within the
+  // tolerance.
   std::size_t lost_features = 0;
 };
 
-// Moves lines and points of the source to the target: each place moves to the nearest one of the
-// target's surface. A line is split where that is farther than the tolerance. The world coordinates
-// of both models must be of one system, each in its own units.
+// Moves lines and points of the source to the target. Each vertex moves to the nearest point of the
+// target's surface. A line is split at vertices for which that point is farther than the tolerance.
+// The world coordinates of both models must belong to the same system, each in the model's own
+// unit.
 TransferredFeatures transfer_features(std::span<const SurfaceFeature> features, const Model& source,
                                       const TransferTarget& target, double tolerance_mm);
 

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// libpng reports errors by longjmp, which only `guarded` catches: code inside it must not hold
-// objects with destructors. For files that link libpng.
+// libpng reports errors by longjmp, which only `guarded` catches. Code inside `guarded` must not
+// hold objects with destructors. This header is for files that link libpng.
 
 struct PngMessage {
   char text[200] = "damaged";
@@ -22,7 +22,7 @@ inline void keep_png_message(png_structp png, png_const_charp text) {
 
 inline void ignore_png_warning(png_structp, png_const_charp) {}
 
-// False: an error, with its text in the message.
+// Returns false after an error, whose text is then in the PngMessage.
 template <class Call>
 bool guarded(png_structp png, const Call& call) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
@@ -30,7 +30,7 @@ bool guarded(png_structp png, const Call& call) {
   return true;
 }
 
-// `info` is null if libpng cannot start.
+// Owns the structs for writing. `info` is null if libpng cannot start.
 struct PngWriter {
   PngMessage message;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_png_message,

@@ -8,7 +8,7 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// Reads numbers of a TIFF structure, in its byte order; nothing beyond its end.
+// Reads numbers of a TIFF structure in its byte order. Returns nothing beyond its end.
 class TiffReader {
  public:
   TiffReader(Bytes bytes, bool little) : bytes_(bytes), little_(little) {}
@@ -69,7 +69,7 @@ JpegFacts read_jpeg_facts(Bytes bytes) {
       facts.adobe = true;
     const bool is_frame =
         marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-    // Several scans: spectral selection in any variant.
+    // These are the markers of progressive JPEG, which has several scans.
     if (is_frame)
       facts.progressive = marker == 0xc2 || marker == 0xc6 || marker == 0xca || marker == 0xce;
     at += 2 + length;

@@ -66,14 +66,14 @@ std::string_view brand_type(std::string_view brand) {
 }
 
 std::string_view zip_type(std::string_view head) {
-  // OpenDocument and EPUB have their type first, uncompressed.
+  // OpenDocument and EPUB files begin with their type, uncompressed.
   for (const auto type :
        {"application/vnd.oasis.opendocument.text"sv,
         "application/vnd.oasis.opendocument.spreadsheet"sv,
         "application/vnd.oasis.opendocument.presentation"sv,
         "application/vnd.oasis.opendocument.graphics"sv, "application/epub+zip"sv})
     if (has_at(head, 30, "mimetype") && has_at(head, 38, type)) return type;
-  // Office names its parts, in an unspecified order.
+  // Office files contain the names of their parts, in an unspecified order.
   if (head.find("[Content_Types].xml") == std::string_view::npos &&
       head.find("_rels/.rels") == std::string_view::npos)
     return "application/zip";
@@ -98,7 +98,7 @@ std::string_view binary_type(std::string_view head) {
   if (head.starts_with("BM") && head.size() >= 14 && has_at(head, 6, "\0\0\0\0"sv))
     return "image/bmp";
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(head[i]); };
-  // a frame without a tag
+  // An MPEG audio frame without a tag before it.
   if (head.size() >= 2 && byte(0) == 0xff && (byte(1) & 0xe6) == 0xe2) return "audio/mpeg";
   return {};
 }

@@ -25,7 +25,7 @@ struct DestroyTurbo {
   void operator()(void* handle) const { tjDestroy(handle); }
 };
 
-// A codec keeps tables: one for each thread.
+// Returns the codec of this thread. A codec has state, so threads must not share one.
 tjhandle decompressor() {
   thread_local std::unique_ptr<void, DestroyTurbo> handle(tjInitDecompress());
   if (!handle)
@@ -34,7 +34,7 @@ tjhandle decompressor() {
   return handle.get();
 }
 
-// Releases libpng's data between the two steps of reading.
+// Releases libpng's data if the second step of reading does not run.
 struct PngReader {
   png_image image{};
   PngReader() { image.version = PNG_IMAGE_VERSION; }
@@ -42,7 +42,7 @@ struct PngReader {
   ~PngReader() { png_image_free(&image); }
 };
 
-// For the C library: appends a stream's bytes to a vector.
+// A callback for the C library that appends the bytes of a stream to a vector.
 ssize_t append_bytes(void* vector, const char* bytes, std::size_t count) {
   auto& out = *static_cast<std::vector<std::uint8_t>*>(vector);
   try {
@@ -76,7 +76,7 @@ Result<PictureInfo> begin_png(PngReader& reader, std::span<const std::uint8_t> b
   return sized_picture(PictureFormat::png, reader.image.width, reader.image.height, largest_side);
 }
 
-// Converts inks to colors, in place.
+// Converts CMYK inks to RGBA in place.
 void show_inks(std::vector<std::uint8_t>& pixels, bool inverted) {
   for (std::size_t i = 0; i + 3 < pixels.size(); i += 4) {
     const unsigned paper = inverted ? pixels[i + 3] : 255u - pixels[i + 3];
@@ -94,7 +94,7 @@ bool says_premature_end(std::string why) {
   return why.find("premature end") != std::string::npos;
 }
 
-// `divisor` of the sides: 1, 2, 4 or 8.
+// `divisor` reduces the sides: 1, 2, 4 or 8.
 Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_side,
                             int divisor = 1) {
   int space = 0;
@@ -104,12 +104,12 @@ Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_sid
   picture.rgba.resize(std::size_t(picture.width) * std::size_t(picture.height) * 4);
   const tjhandle handle = decompressor();
   const bool is_cmyk = space == TJCS_CMYK || space == TJCS_YCCK;
-  // LIMITSCANS: a small file with many scans would take minutes.
+  // LIMITSCANS is set because a small file with many scans would take minutes.
   if (tjDecompress2(handle, bytes.data(), bytes.size(), picture.rgba.data(), picture.width, 0,
                     picture.height, is_cmyk ? TJPF_CMYK : TJPF_RGBA,
                     TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
-    // The library only warns of harmless deviations, but also of a truncated picture, which is
-    // refused.
+    // The library only warns of harmless deviations, but also of a truncated image. Truncated
+    // images are rejected.
     const std::string why = tjGetErrorStr2(handle);
     if (tjGetErrorCode(handle) == TJERR_FATAL || says_premature_end(why))
       return damaged_picture(PictureFormat::jpeg, why);
@@ -122,7 +122,7 @@ Result<Picture> decode_png(std::span<const std::uint8_t> bytes, int largest_side
   PngReader reader;
   const auto info = STRATA_TRY(begin_png(reader, bytes, largest_side));
   reader.image.format = PNG_FORMAT_RGBA;
-  reader.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // the usual meaning of 16-bit photographs
+  reader.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // the usual color space of 16-bit photographs
   Picture picture{info.width, info.height, {}};
   picture.rgba.resize(PNG_IMAGE_SIZE(reader.image));
   if (!png_image_finish_read(&reader.image, nullptr, picture.rgba.data(), 0, nullptr))
@@ -136,7 +136,7 @@ bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic, st
                     [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
 }
 
-// Common formats without a reader, so that the error names them.
+// Common formats that cannot be read. The Error contains their names.
 struct OtherFormat {
   std::size_t at;
   std::string_view magic, name;
@@ -266,7 +266,7 @@ std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int wid
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGBA;
-  image.flags = PNG_IMAGE_FLAG_FAST;  // half the time for 10 % more bytes
+  image.flags = PNG_IMAGE_FLAG_FAST;  // takes half the time and gives 10 % more bytes
   std::vector<std::uint8_t> png;
   const std::unique_ptr<FILE, decltype(&fclose)> file(
       fopencookie(&png, "wb", {nullptr, append_bytes, nullptr, nullptr}), fclose);

@@ -10,14 +10,20 @@
 
 namespace strata {
 
-// Pictures as files, identified by their bytes, never by a name. Thread-safe.
+// Reads and writes image files. The format follows from the bytes, never from the name.
+// Thread-safe.
 //
-// JPEG: also gray and CMYK (whose inks are converted without their profile). PNG: all. TIFF: the
-// first page; gray, color tables, RGB, CMYK and YCbCr of up to 16 bits, in strips or tiles, with
-// lossless, JPEG or fax compression. WebP: still pictures. BMP: without run lengths. TGA: all.
-// 16-bit values keep their upper 8 bits.
+// Supported files:
+// - JPEG: also gray and CMYK. Inks are converted without their color profile.
+// - PNG: all.
+// - TIFF: the first page; gray, color tables, RGB, CMYK and YCbCr with up to 16 bits, in strips or
+//   tiles, with lossless, JPEG or fax compression.
+// - WebP: still images.
+// - BMP: without run-length compression.
+// - TGA: all.
+// Only the upper 8 bits of 16-bit values are used.
 
-// RGBA8, row 0 at the top, sRGB; alpha is not premultiplied.
+// RGBA8 in sRGB, top row first. Alpha is not premultiplied.
 struct Picture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
@@ -26,11 +32,12 @@ struct Picture {
 enum class PictureFormat { jpeg, png, tiff, webp, bmp, tga };
 std::string_view media_type(PictureFormat format);  // "image/jpeg", "image/png", …
 
-// Returns the format by the first bytes; nothing: no known format. A TGA has no signature: it is
-// recognized if all fields of its header are plausible.
+// Returns the format, according to the first bytes, or nothing for an unknown format. TGA has no
+// signature. A TGA is detected if all fields of its header are plausible.
 std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes);
 
-// Surface images are JPEG or PNG, which every browser shows. Other formats are converted to PNG.
+// Surface images are stored as JPEG or PNG, because all browsers show these formats. Other formats
+// are converted to PNG.
 inline bool is_surface_image_format(PictureFormat format) {
   return format == PictureFormat::jpeg || format == PictureFormat::png;
 }
@@ -42,19 +49,20 @@ struct PictureInfo {
 
 constexpr int kMaxPictureSide = 16384;
 
-// Returns the size, from the header alone. unsupported: not one of the formats, with the name of a
-// known other format; invalid: damaged, or a side of more than `largest_side`.
+// Returns the format and the size, from the header alone. Errors: `unsupported` for another format,
+// with its name if it is known; `invalid` for a damaged header, or a side longer than
+// `largest_side`.
 Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes,
                                     int largest_side = kMaxPictureSide);
 
-// Decodes the whole picture as RGBA8. Refuses as above, and (invalid) truncated data and
-// unsupported variants, which the message names. Checks sizes before any allocation; takes at most
-// twice the pixels' memory.
+// Decodes the whole image as RGBA8. In addition to the Errors above, returns `invalid` for
+// truncated data and for unsupported variants, with the name of the variant. Checks the size before
+// any allocation. Needs at most twice the memory of the pixels.
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes,
                                int largest_side = kMaxPictureSide);
 
-// The same, but a JPEG may be reduced by halves as long as its longer side has at least `side`
-// pixels: it then takes little memory.
+// Like decode_picture, but may halve a JPEG repeatedly to save memory. Its longer side keeps at
+// least `side` pixels.
 Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side);
 
 struct JpegSettings {
@@ -63,8 +71,8 @@ struct JpegSettings {
   bool operator==(const JpegSettings&) const = default;
 };
 
-// Encodes RGBA8 rows, top first, as JPEG, without alpha. Throws if `rgba` is not width × height × 4
-// bytes.
+// Encode RGBA8 pixels, top row first. JPEG has no alpha. Throw if `rgba` does not have width ×
+// height × 4 bytes.
 std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height,
                                       JpegSettings settings);
 std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int width, int height);

@@ -6,7 +6,7 @@
 
 #include "media/picture_formats.h"
 
-// stb_image, for BMP and TGA only: without files, other formats, and sizes above a picture's limit.
+// stb_image is used for BMP and TGA in memory only. The limit of sizes is kMaxPictureSide.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_BMP
@@ -23,7 +23,7 @@ namespace {
 
 static_assert(STBI_MAX_DIMENSIONS == kMaxPictureSide);
 
-// Reads little-endian numbers of a header; 0 beyond its end.
+// Reads a little-endian number of a header. Bytes beyond its end count as 0.
 std::uint32_t number(std::span<const std::uint8_t> bytes, std::size_t at, int size) {
   std::uint32_t value = 0;
   for (int i = 0; i < size; ++i) {
@@ -50,7 +50,8 @@ BmpHeader bmp_header(std::span<const std::uint8_t> bytes) {
     header.bits = number(bytes, 24, 2);
   } else {
     header.width = number(bytes, 18, 4);
-    const std::uint32_t height = number(bytes, 22, 4);  // negative: the top row is first
+    // A negative height means that the top row is first.
+    const std::uint32_t height = number(bytes, 22, 4);
     header.height = height >> 31 ? 0u - height : height;
     header.bits = number(bytes, 28, 2);
     header.compression = number(bytes, 30, 4);
@@ -78,7 +79,7 @@ bool is_one_of(std::uint32_t value, std::initializer_list<std::uint32_t> known) 
   return std::find(known.begin(), known.end(), value) != known.end();
 }
 
-// stb_image reads zeros from a truncated file.
+// Detects truncated files, because stb_image reads zeros beyond the end.
 bool is_whole_bmp(std::span<const std::uint8_t> bytes) {
   const BmpHeader header = bmp_header(bytes);
   const std::uint64_t row = (header.width * header.bits + 31) / 32 * 4,

@@ -6,10 +6,11 @@
 
 namespace strata {
 
-// The readers behind media/picture.h, for its own files only: one unit per library.
+// The internal readers of media/picture.h, with one source file per library.
 
-tl::unexpected<Error> damaged_picture(PictureFormat format, const std::string& why);  // invalid
-// `invalid` if a side is 0 or more than `largest_side`.
+// Returns the Error `invalid` with the name of the format and the reason.
+tl::unexpected<Error> damaged_picture(PictureFormat format, const std::string& why);
+// Returns the Error `invalid` if a side is 0 or longer than `largest_side`.
 Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height,
                                   int largest_side);
 
@@ -19,7 +20,7 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, int lar
 Result<PictureInfo> inspect_webp(std::span<const std::uint8_t> bytes, int largest_side);
 Result<Picture> decode_webp(std::span<const std::uint8_t> bytes, int largest_side);
 
-// BMP and TGA.
+// Functions for BMP and TGA.
 bool is_bmp(std::span<const std::uint8_t> bytes);
 bool is_tga(std::span<const std::uint8_t> bytes);
 Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes,

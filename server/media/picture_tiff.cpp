@@ -14,15 +14,15 @@ tl::unexpected<Error> damaged(const TiffMemory& file) {
                          file.complaint.empty() ? "it is damaged" : file.complaint);
 }
 
-// The codecs of photographs and scans; the others are rare, and each would be another parser
-// exposed to attacks.
+// Returns whether a codec is common in photographs and scans. The others are rare, and each of them
+// would increase the attack surface.
 bool is_read_codec(int compression) {
   return is_lossless(compression) || compression == COMPRESSION_JPEG ||
          compression == COMPRESSION_CCITTRLE || compression == COMPRESSION_CCITTFAX3 ||
          compression == COMPRESSION_CCITTFAX4;
 }
 
-// Describes the first page, if libtiff can convert it to colors.
+// Describes the first page. Fails if libtiff cannot convert it to RGBA.
 Result<PictureInfo> describe(TIFF* tiff, int largest_side) {
   auto info = STRATA_TRY(
       sized_picture(PictureFormat::tiff, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
@@ -75,7 +75,8 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, int lar
              height = static_cast<std::uint32_t>(info.height);
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
   Picture picture{info.width, info.height, std::vector<std::uint8_t>(pixels * 4)};
-  // libtiff writes 32-bit words to the place of the pixels, which are then split in place.
+  // libtiff writes 32-bit words into the memory of the pixels. The words are then split into bytes
+  // in place.
   auto* words = reinterpret_cast<std::uint32_t*>(picture.rgba.data());
   if (!TIFFReadRGBAImageOriented(tiff.get(), width, height, words, ORIENTATION_TOPLEFT, 1))
     return damaged(file);
@@ -83,7 +84,7 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, int lar
     const std::uint32_t packed = words[i], alpha = TIFFGetA(packed);
     const std::uint32_t colors[] = {TIFFGetR(packed), TIFFGetG(packed), TIFFGetB(packed)};
     std::uint8_t* rgba = &picture.rgba[4 * i];
-    // libtiff multiplies the colors by alpha.
+    // libtiff multiplies the colors by alpha, which is reverted here.
     for (int c = 0; c < 3; ++c)
       rgba[c] = static_cast<std::uint8_t>(
           alpha == 0 ? 0 : std::min(255u, (colors[c] * 255 + alpha / 2) / alpha));

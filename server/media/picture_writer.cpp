@@ -1,7 +1,7 @@
 #include "media/picture_writer.h"
 
 #include <cstdio>
-// After <cstdio>, which it does not include.
+// jpeglib.h needs <cstdio> but does not include it.
 #include <jpeglib.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
 
-// Of the mean color of a block, an eighth of a level: a coarser step tints a gray background, as
-// pink blocks. It costs 1 to 2 % of the bytes.
+// The largest quantization step of a block's mean color, in eighths of a level. With a coarser
+// step, blocks of a gray background look pink. The limit costs 1 to 2 % more bytes.
 constexpr UINT16 kMaxColorStep = 4;
 
 [[noreturn]] void failed(const char* message) {
@@ -33,8 +33,8 @@ class PictureWriter::File {
   virtual std::vector<std::uint8_t> finish() = 0;
 };
 
-// libjpeg reports errors by a function that must not return: as with libpng, code below its setjmp
-// must not hold objects with destructors.
+// libjpeg reports errors by a function that must not return. As with libpng, code after setjmp must
+// not hold objects with destructors.
 class PictureWriter::Jpeg : public PictureWriter::File {
  public:
   Jpeg(int width, int height, JpegSettings settings) {
@@ -69,7 +69,7 @@ class PictureWriter::Jpeg : public PictureWriter::File {
       jpeg_set_quality(&encoder_, settings.quality, TRUE);
       UINT16& color_step = encoder_.quant_tbl_ptrs[1]->quantval[0];
       color_step = std::min(color_step, kMaxColorStep);
-      // The errors of the fast transform are visible only at high quality.
+      // The errors of the fast transform are visible at high quality only.
       encoder_.dct_method = settings.quality < 85 ? JDCT_IFAST : JDCT_ISLOW;
       const int sampling = settings.full_color ? 1 : 2;
       encoder_.comp_info[0].h_samp_factor = encoder_.comp_info[0].v_samp_factor = sampling;
@@ -136,7 +136,7 @@ class PictureWriter::Png : public PictureWriter::File {
                    static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
                    PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
       png_set_sRGB(writer_.png, writer_.info, PNG_sRGB_INTENT_PERCEPTUAL);
-      // Half the time for 10 % more bytes, as encode_png.
+      // Takes half the time and gives 10 % more bytes, like encode_png.
       png_set_filter(writer_.png, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
       png_set_compression_level(writer_.png, 3);
       png_write_info(writer_.png, writer_.info);

@@ -9,19 +9,19 @@
 
 namespace strata {
 
-// Writes a picture as a JPEG or PNG file row by row, top first, so that the whole picture is never
-// in memory. The result decodes as that of encode_jpeg and encode_png. Belongs to one thread.
+// Writes an image as a JPEG or PNG file, row by row, top row first. So the whole image is never in
+// memory. The file has the same pixels as that of encode_jpeg or encode_png. For one thread only.
 // Throws std::runtime_error if the library fails.
 class PictureWriter {
  public:
-  // `jpeg` is for JPEGs only.
+  // `jpeg` is used for JPEG only.
   PictureWriter(PictureFormat format, int width, int height, JpegSettings jpeg = {});
   ~PictureWriter();
   PictureWriter(PictureWriter&&) noexcept;
 
-  // Appends whole rows of RGBA8.
+  // Appends whole rows of RGBA8 pixels.
   void put(std::span<const std::uint8_t> rgba);
-  // Call once, after the last row.
+  // Returns the file. Call it once, after the last row.
   std::vector<std::uint8_t> finish();
 
  private:

@@ -6,7 +6,7 @@
 namespace strata {
 namespace {
 
-constexpr double kMinShare = 0.5;  // of a cell's area that belongs to the tool
+constexpr double kMinShare = 0.5;  // smallest share of a set cell's area in the tool
 
 bool has_transparency(const Picture& picture) {
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
@@ -14,7 +14,8 @@ bool has_transparency(const Picture& picture) {
   return false;
 }
 
-// Returns how much of a pixel is the tool: 0…255. Transparent pixels are neither light nor dark.
+// Returns the share of a pixel that belongs to the tool, 0…255. Transparent pixels are neither
+// light nor dark.
 std::uint32_t weight(const std::uint8_t* rgba, ShapePart part) {
   const std::uint32_t alpha = rgba[3];
   if (part == ShapePart::opaque) return alpha;
@@ -22,7 +23,7 @@ std::uint32_t weight(const std::uint8_t* rgba, ShapePart part) {
   return (part == ShapePart::light ? luma : 255u - luma) * alpha / 255u;
 }
 
-// Sums of weights over rectangles from the picture's corner; bilinear between pixels.
+// The sums of weights over rectangles from the corner of the image. Bilinear between pixels.
 class WeightSums {
  public:
   WeightSums(const Picture& picture, ShapePart part)
@@ -103,7 +104,7 @@ ShapeTexture::ShapeTexture(const ShapeBits& bits)
     if (other_x < 0 || other_x > kLast || other_y < 0 || other_y > kLast) return;
     at(x, y) = static_cast<std::uint8_t>(std::min<int>(at(x, y), at(other_x, other_y) + 1));
   };
-  // Two passes over eight neighbors are exact for chessboard distance.
+  // Two passes over eight neighbors give exact chessboard distances.
   for (int y = 0; y <= kLast; ++y) {
     for (int x = 0; x <= kLast; ++x) {
       if (is_set(x, y)) at(x, y) = 0;

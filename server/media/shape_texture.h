@@ -11,35 +11,37 @@
 
 namespace strata {
 
-// The shape of a tool as a raster of cells that belong to it or not: row 0 at the top, cell (x, y)
-// is bit y * kShapeSide + x. Around each point of a stroke's path, the raster covers the window's
-// square of side 2 · radius, top up.
+// The shape of a tool as a raster: a set cell belongs to the tool. The first row is the top row,
+// and cell (x, y) is bit y * kShapeSide + x. At each point of a stroke's path, the raster covers a
+// square of the window with side 2 · radius.
 constexpr int kShapeSide = 256;
 using ShapeBits = std::array<std::uint64_t, kShapeSide * kShapeSide / 64>;
 
-// The part of a picture that is the tool: opaque, light or dark pixels, each from one half on.
+// The part of an image that is the tool: pixels that are at least half opaque, light or dark.
 enum class ShapePart { opaque, light, dark };
 
-// Converts the smallest square around the centered picture to the raster (the area outside the
-// picture is empty); each cell is the mean of its pixels. Without a `part`: the opaque part if the
-// picture has transparency, otherwise the light one. `invalid`: no part of it is the tool.
+// Converts an image to the raster. The image is centered in the smallest square that contains it,
+// and the area outside it is empty. Each cell is the mean of its pixels. Without `part`, the tool
+// is the opaque part if the image has transparency, otherwise the light part. Returns the Error
+// `invalid` if no cell belongs to the tool.
 Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part);
 
-// Returns a picture that is white in the tool and transparent elsewhere.
+// Returns an image that is white in the tool and transparent elsewhere.
 Picture picture_of(const ShapeBits& bits);
 
-// A shape prepared for painting. Immutable.
+// A shape, prepared for painting. Immutable.
 class ShapeTexture {
  public:
   explicit ShapeTexture(const ShapeBits& bits);
 
   const ShapeBits& bits() const { return bits_; }
   bool is_set(int x, int y) const;
-  // Returns the chessboard distance of each cell, row by row, to the nearest cell of the tool; 255:
-  // so far or farther. Nearer cells do not belong to the tool, so a line can skip them.
+  // Returns the chessboard distance of each cell to the nearest cell of the tool, row by row. 255
+  // means a distance of 255 or more. A line can skip all nearer cells, because they do not belong
+  // to the tool.
   std::span<const std::uint8_t> distances() const { return distances_; }
-  // Returns the radius of the largest disc around the center inside the tool, as a share of the
-  // radius: 0…1.
+  // Returns the radius of the largest disc that is inside the tool and shares its center, as a
+  // share of the tool's radius: 0…1.
   double inner_radius() const { return inner_radius_; }
 
  private:

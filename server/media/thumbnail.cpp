@@ -44,8 +44,8 @@ Picture shrunk(const Picture& picture, int largest_side) {
   return small;
 }
 
-// Exif's numbers: 2 mirrored, 3 upside down, 6 to be turned to the right, 8 to the left; the others
-// are these mirrored.
+// Applies an Exif orientation: 1 is upright, 3 is upside down, 6 needs a turn to the right, 8 a
+// turn to the left. 2, 4, 5 and 7 are mirrored.
 Picture turned(Picture picture, int orientation) {
   if (orientation == 1) return picture;
   const bool swaps = orientation >= 5;

@@ -10,15 +10,16 @@
 
 namespace strata {
 
-// TIFF files in memory, for libtiff. Limits single allocations that a file can cause.
+// TIFF files in memory, for libtiff. The size of single allocations that a file can cause is
+// limited.
 
-// of a file's own tiles; larger ones are refused
+// The limit for tiles of a TIFF. Files with larger tiles are rejected.
 constexpr std::uint64_t kMaxTiffTileBytes = 256u << 20;
 
-// A file in memory, and the first error message of libtiff about it.
+// A file in memory, and the first error message of libtiff for it.
 struct TiffMemory {
-  std::span<const std::uint8_t> in;          // reading
-  std::vector<std::uint8_t>* out = nullptr;  // writing
+  std::span<const std::uint8_t> in;          // for reading
+  std::vector<std::uint8_t>* out = nullptr;  // for writing
   std::uint64_t at = 0;
   std::string complaint;
 
@@ -30,10 +31,12 @@ struct CloseTiff {
 };
 using Tiff = std::unique_ptr<TIFF, CloseTiff>;
 
-// Null: the file cannot be opened; see the message. `file` must outlive the result.
+// Returns null if the file cannot be opened. `file.complaint` is then the reason. `file` must
+// outlive the result.
 Tiff open_tiff(TiffMemory& file, const char* mode);
 
-// Returns a tag of the open directory; its default if the file has none, otherwise 0.
+// Returns the value of a tag in the current directory. If the file lacks the tag, returns its
+// default, or 0 without a default.
 template <class T>
 T tiff_tag(TIFF* tiff, std::uint32_t tag) {
   T value = 0;
@@ -41,7 +44,8 @@ T tiff_tag(TIFF* tiff, std::uint32_t tag) {
   return value;
 }
 
-// Whether a compression is lossless: others change values, and are a larger attack surface.
+// Returns whether a compression is lossless. Other compressions change values, and have a larger
+// attack surface.
 bool is_lossless(int compression);
 
 }  // namespace strata

@@ -30,16 +30,16 @@ struct Renderer::Impl {
   FrameQueue frames;
   Refinements refinements;
   GpuMemory memory;
-  std::unique_ptr<GpuScene> scene;                       // GPU thread
-  std::uint64_t generation = 0;                          // GPU thread
-  std::vector<std::weak_ptr<const FrameJob>> under_way;  // GPU thread
+  std::unique_ptr<GpuScene> scene;                       // used on the GPU thread only
+  std::uint64_t generation = 0;                          // used on the GPU thread only
+  std::vector<std::weak_ptr<const FrameJob>> under_way;  // used on the GPU thread only
   std::atomic<bool> lose_context{false};
 
-  // held during the call, so that the removal of the callback waits for it
+  // Held during the call of the callback, so the removal of the callback waits for that call.
   std::mutex lost_callback_mutex;
   std::function<void()> lost_callback;
 
-  mutable std::mutex mutex;  // guards what follows
+  mutable std::mutex mutex;  // guards the members below
   GpuInfo info;
   std::unordered_map<LayerHandle, std::shared_ptr<std::atomic<std::uint64_t>>> layer_bytes;
 
@@ -66,7 +66,7 @@ struct Renderer::Impl {
     return {};
   }
 
-  // A rectangle that precedes all frames in progress.
+  // Starts a frame whose turn precedes all frames in progress, usually a rectangle.
   std::optional<Job> next_part() {
     std::erase_if(under_way, [](const auto& frame) { return frame.expired(); });
     std::vector<FrameTask::Turn> turns;
@@ -105,7 +105,7 @@ struct Renderer::Impl {
          std::make_shared<Refinement>(Refinement{refinements, task, FrameJob(std::move(frame))}));
   }
 
-  // Posts a job object with `step(GpuScene&)` and `abort`; answers it if the queue is full.
+  // Posts a job object with `step(GpuScene&)` and `abort`. Aborts the job if the queue is full.
   template <class JobType>
   void post(Lane lane, std::shared_ptr<JobType> job) {
     Job posted{[this, job] { return job->step(*scene); },
@@ -119,7 +119,7 @@ struct Renderer::Impl {
     });
   }
 
-  // A one-step job that returns a T.
+  // Posts a job of one step that returns a T.
   template <class T>
   void post_simple(Done<T> done, std::function<Result<T>(GpuScene&)> work) {
     struct Simple {
@@ -148,8 +148,8 @@ struct Renderer::Impl {
         });
   }
 
-  // Removals are never refused: a full queue must not prevent freeing memory. After a lost context
-  // there is nothing to remove.
+  // A full queue accepts removals, because they free memory. After a lost context there is nothing
+  // to remove.
   void post_removal(std::function<void(GpuScene&)> work) {
     Job job{[this, work = std::move(work)] {
               work(*scene);

@@ -26,25 +26,25 @@
 
 namespace strata::render {
 
-// Handles are valid until removed or until the context is lost; 0 is no handle. A handle of another
-// generation is refused.
+// A handle is valid until its object is removed or the context is lost. 0 is not a valid handle.
+// The renderer rejects handles of an earlier context.
 using ModelHandle = std::uint64_t;
 using LayerHandle = std::uint64_t;
 using ViewHandle = std::uint64_t;
 using SurfaceImageHandle = std::uint64_t;
 
-// Where strokes are painted: by a compute pass, or by a kernel on the CPU, which is several times
-// faster if the GPU is a CPU.
+// The method of painting strokes: a compute pass, or a kernel on the CPU. With a software renderer
+// the kernel is several times faster.
 enum class EditPath { automatic, compute, kernel };
 
 struct RendererOptions {
-  std::string shader_dir;              // folder `shaders`
-  std::uint64_t gpu_memory_bytes = 0;  // budget; 0: 70 % of what the driver reports, or 4 GiB
-  bool debug = false;                  // KHR_debug context; errors are counted (see `debug_errors`)
+  std::string shader_dir;              // path of the folder `shaders`
+  std::uint64_t gpu_memory_bytes = 0;  // budget; 0: 70 % of the reported memory, else 4 GiB
+  bool debug = false;                  // KHR_debug context that counts errors (`debug_errors`)
   std::size_t queue_capacity = 4096;
   EditPath edit_path = EditPath::automatic;
-  // of each pixel of a frame with smooth edges (FrameRequest::smooth), 1 to kMaxSmoothSamples. 0:
-  // as many as the GPU has time for, 1 with a software renderer
+  // Samples of each pixel of a frame with smooth edges (FrameRequest::smooth), 1 to
+  // kMaxSmoothSamples. 0: five if the GPU is fast enough, otherwise one.
   int smooth_samples = 0;
 };
 
@@ -55,61 +55,63 @@ struct GpuInfo {
   int max_texture_size = 0, max_array_layers = 0, max_texture_units = 0, max_image_units = 0;
 };
 
-// The result of one stroke batch. Tiles whose written mask is empty are left out.
+// The result of one stroke batch. Contains only tiles with written texels.
 struct WrittenTile {
   TileAddress address;
-  TileMask written;  // surface and gutter texels the tool wrote, whether or not the value changed
+  // Surface and gutter texels under the tool, also those that already had the value.
+  TileMask written;
   TileData after;
 };
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
-  // model-space box of the written blocks; for changed screen rectangles
+  // The model-space box of the written blocks, from which changed screen rectangles follow.
   glm::vec3 written_min{0}, written_max{0};
-  // from the selection of the blocks until the texels are written; with EditPath::compute until the
-  // result is read back
+  // The time from the selection of the blocks until the texels are written. With EditPath::compute
+  // it includes the read-back of the written texels.
   double edit_ms = 0;
-  // share of this, EditPath::compute: both passes, by timer queries; kernel: reading, changing and
-  // uploading tiles
+  // The part of `edit_ms` on the GPU. EditPath::compute: both passes, by timer queries.
+  // EditPath::kernel: the time to read, change and upload tiles.
   double gpu_ms = 0;
-  std::size_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
+  std::size_t bytes_up = 0, bytes_down = 0;  // transferred bytes
 };
 
 struct TileUpload {
   TileAddress address;
-  // null or empty: the tile becomes empty and its page is freed
+  // Null or empty: empties the tile and frees its page.
   std::shared_ptr<const TileData> data;
 };
 
-struct LayerStyle {  // one layer in a view, bottom to top
+struct LayerStyle {  // the style of one layer in a view
   LayerHandle layer = 0;
-  std::shared_ptr<const Palette> palette;  // identified by its address: it must not change
+  std::shared_ptr<const Palette> palette;  // identified by its address, so it must not change
   float opacity = 1;
   LayerBlend blend = LayerBlend::normal;
-  // its hatch and dots have neither tint nor border: a mark over another layer, not a class
+  // Draws hatch and dots without tint and border: a mark over another layer, not a class.
   bool bare = false;
   bool operator==(const LayerStyle&) const = default;
 };
 
 struct SurfaceImageStyle {
-  // one picture of the surface in a view, bottom to top, over the colors of the vertices
+  // The style of one surface image in a view. Surface images cover the vertex colors.
   SurfaceImageHandle image = 0;
   float opacity = 1;
   bool operator==(const SurfaceImageStyle&) const = default;
 };
 constexpr std::size_t kMaxSurfaceImagesShown = 4;
 
-// Identified by its address: it must not change. Null: no features.
+// Identified by its address, so it must not change. Null: no features.
 using FeaturesShown = std::shared_ptr<const std::vector<DrawnFeature>>;
 
-// the content of a view of its model
+// The content of a view, except for its camera. Layers and images are listed from bottom to top.
 struct ViewStyle {
   std::vector<LayerStyle> layers;
-  std::vector<SurfaceImageStyle> images;  // kMaxSurfaceImagesShown at most
-  FeaturesShown features;                 // over the layers, the last ones on top
+  std::vector<SurfaceImageStyle> images;  // at most kMaxSurfaceImagesShown
+  FeaturesShown features;                 // over the layers, the last one on top
   Light light;
   Background background{};
-  double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
-  // On the background, except for a camera with a section. Identified by its address, null: none.
+  double unit_mm = 1000;  // millimeters in a model unit, for palette patterns
+  // The shadow on the background, except for a camera with a section. Identified by its address, so
+  // it must not change. Null: no shadow.
   std::shared_ptr<const mesh::ContactShadow> contact_shadow{};
   bool operator==(const ViewStyle&) const = default;
 };
@@ -123,78 +125,81 @@ constexpr int kMaxSamples = 64, kMaxSmoothSamples = 16;
 
 struct FrameRequest {
   ViewHandle view = 0;
-  // Model of the view. If set: views of this model that request the same picture share one, which
-  // any of them may draw.
+  // The model of the view, or 0. If it is set, views of this model that request the same frame
+  // share one, and any of these views may draw it.
   ModelHandle model = 0;
   Camera camera;
-  // a coarser copy of the model may be shown, so that the picture is fast enough
+  // The camera is moving: a coarser copy of the model may be drawn to save time.
   bool moving = false;
-  // a band of a large picture: smaller pictures of others precede it, even between its steps
+  // A band of a large image. Smaller frames are drawn before it, and also between its steps.
   bool large = false;
-  bool acting = false;        // the person is acting: viewers do not delay the frame
-  int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
-  // Of each pixel, 1 to kMaxSamples. More than one: the picture is the mean of that many, whose
-  // cameras differ by parts of a pixel. It is drawn into buffers of its own, so the view's picture
-  // stays as it is; `changed` is ignored.
+  // The user edits or moves the camera: onlookers do not delay the frame.
+  bool acting = false;
+  int width = 0, height = 0;  // pixels of the frame, to which the camera's window is scaled
+  // Samples of each pixel, 1 to kMaxSamples. With more than one, the frame is the mean of that many
+  // frames, whose cameras differ by fractions of a pixel. It is drawn into separate buffers, so the
+  // view keeps its last frame. `changed` is then ignored.
   int samples = 1;
-  // On a CPU, there are fewer samples, at least one, if all would take longer. 0: no limit.
+  // The time limit of all samples with a software renderer. If they would take longer, fewer are
+  // drawn, but at least one. 0: no limit.
   std::chrono::milliseconds samples_time{0};
-  // The picture on the screen, once more with several samples. It is drawn while the GPU thread has
-  // nothing else to do, evicts nothing, and ends as `superseded` when its view requests something
-  // else. It is refused as `too_large` if `samples_time` is too short for a few samples.
+  // Repeats the view's last frame with several samples. The GPU thread draws it while it is
+  // otherwise idle, and evicts nothing for it. A newer request of the view ends it with the Error
+  // `superseded`. If `samples_time` is too short for a few samples, it fails with `too_large`.
   bool refinement = false;
-  // If the whole frame is drawn, its edges may be smooth: the mean of the view's frame and of a few
-  // samples around it (RendererOptions::smooth_samples). The view keeps the frame with one sample,
-  // and later rectangles have one, too.
+  // A whole frame may have smooth edges. It is then the mean of the view's frame and of a few
+  // samples around it (RendererOptions::smooth_samples). The view keeps its frame with one sample,
+  // and later rectangles have one sample.
   bool smooth = false;
   ViewStyle style;
-  // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's
-  // last frame: only the rectangles that they cover are shaded and returned. A changed camera, size
-  // or style always shades everything.
+  // The model-space boxes that changed since this view's last frame. Only the rectangles that they
+  // cover are shaded and returned. Without a value, or after a change to the camera, the size or
+  // the style, the whole frame is shaded.
   struct Box {
     glm::vec3 min, max;
     bool operator==(const Box&) const = default;
   };
   std::optional<std::vector<Box>> changed;
-  // The part of the background's height that the picture covers, from the top: 0 … 1 except for a
-  // band.
+  // The part of the background's height that the frame covers, from the top: 0 … 1, except for a
+  // band of a larger image.
   glm::vec2 background_rows{0, 1};
-  bool align_to_16 = true;  // grow the rectangles to multiples of 16 for JPEG parts
+  bool align_to_16 = true;  // enlarge the rectangles to multiples of 16 pixels for JPEG
 };
 struct Frame {
-  // the area of `pixels`: the whole picture or the changed parts; empty: no change
+  // The area of `pixels`: the whole frame or its changed parts. Empty: nothing changed.
   std::vector<PixelRect> rects;
-  int width = 0, height = 0;         // of the whole picture
-  std::vector<std::uint8_t> pixels;  // RGBA8 of one rectangle after the other, top row first
+  int width = 0, height = 0;         // of the whole frame
+  std::vector<std::uint8_t> pixels;  // RGBA8, one rectangle after another, top row first
   double render_ms = 0;
-  int level = 0;  // of the drawn model: 0 is the full mesh, 1 the finest coarser copy
+  int level = 0;  // level of detail: 0 is the full mesh, 1 the finest coarser copy
 };
-using SharedFrame = std::shared_ptr<const Frame>;  // shared by all requests of the same picture
+using SharedFrame = std::shared_ptr<const Frame>;  // shared by all requests for the same frame
 
-// A mesh and its coarser copies, finest first (mesh::make_detail_levels).
+// A mesh and its coarser copies, the finest one first (mesh::make_detail_levels).
 struct ModelGeometry {
   std::shared_ptr<const mesh::Geometry> full;
   std::vector<std::shared_ptr<const mesh::Geometry>> coarser;
 };
 
 // Owns the GPU: one thread with the EGL context and a bounded queue
-// (docs/developer/architecture/overview.md, "The GPU thread"). All functions are thread-safe and
-// return at once; callbacks run on the GPU thread and must be short. Order: edits and layer changes
-// in the given order, then frames, then background work (uploads of models and surface maps, in
-// slices). If the queue is full or the renderer is stopped, the answer is an Error unavailable;
-// after a lost context pending work is answered with an Error unavailable titled "GPU lost". (Only
-// a stopped renderer calls back on the caller's thread, because no other thread is left.)
+// (docs/developer/architecture/overview.md, "The GPU thread"). All functions are thread-safe and,
+// unless stated otherwise, return without waiting. Callbacks run on the GPU thread and must be
+// short. Edits and layer changes run first, in the order of their calls. Then come frames, and then
+// background work: uploads of models and surface maps, in slices. A request fails with the Error
+// `busy` if the queue is full. Pending requests fail with `unavailable` when the renderer stops,
+// and with `gpu_lost` when the context is lost. After the renderer has stopped, callbacks run on
+// the caller's thread.
 class Renderer {
  public:
-  // Starts the thread and waits for the context. The error lists what was tried and how to fix it.
+  // Starts the thread and waits for the context. The Error lists the attempts and possible fixes.
   static Result<std::unique_ptr<Renderer>> start(RendererOptions options);
-  ~Renderer();  // asks to stop and joins
+  ~Renderer();  // stops and joins the thread
 
   GpuInfo info() const;
-  // false while a lost context cannot be replaced: requests in this time are refused
+  // Returns false while a lost context cannot be replaced. The renderer then rejects requests.
   bool ready() const;
   std::uint64_t gpu_bytes_used() const;
-  // bytes of the page table and of the pages on the GPU
+  // Returns the bytes of the layer's page table and of its pages on the GPU.
   std::uint64_t layer_bytes_used(LayerHandle layer) const;
   int debug_errors() const;
 
@@ -202,46 +207,47 @@ class Renderer {
   using Done = std::function<void(Result<T>)>;
 
   void add_model(ModelGeometry geometry, Done<ModelHandle> done);
-  void remove_model(ModelHandle model);  // and its layers, looks, surface maps and views
+  void remove_model(ModelHandle model);  // with its layers, images, surface maps and views
   void add_surface_image(ModelHandle model, std::shared_ptr<const MipmappedPicture> image,
                          Done<SurfaceImageHandle> done);
   void remove_surface_image(SurfaceImageHandle handle);
-  // Required before strokes at this resolution; baked by the caller, uploaded in slices.
+  // Uploads, in slices, a surface map that the caller has computed. Strokes at its resolution
+  // require it.
   void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,
                        Done<void> done);
 
-  // afterwards strokes at this resolution are refused (conflict)
+  // After this call, strokes at this resolution fail with the Error `conflict`.
   void remove_surface_map(ModelHandle model, int resolution);
 
-  // Adds a layer with the content of `mirror`, now and later. It is uploaded when it is first shown
-  // or painted, and may be evicted while `mirror` is not held (TileMirror::hold) and no frame shows
-  // it.
+  // Adds a layer whose content follows `mirror`. The first frame or stroke that needs the layer
+  // uploads it. It may be evicted while no frame shows it and no caller holds `mirror`
+  // (TileMirror::hold).
   void add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror,
                  Done<LayerHandle> done);
   // Adds an empty layer that exists on the GPU only.
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
-  // Sets whole tiles (fill, undo, import), in order with strokes; calls `done` after the GPU has
-  // them. Frames drawn before `done` may show some of the old tiles.
+  // Replaces whole tiles (fill, undo, import), in order with strokes. Calls `done` when all tiles
+  // are on the GPU. Frames drawn before that may show some of the old tiles.
   void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 
-  // Views keep a g-buffer and the last picture. While requests of one view wait, a new one replaces
-  // the old one ("latest wins"): the callback of the replaced request gets the Error `superseded`.
-  // Views take turns by the drawing time that they have used (render/thread/frame_queue).
+  // A view keeps a g-buffer and its last frame. A new request of a view replaces its waiting
+  // request, whose callback gets the Error `superseded`. Views take turns by their used drawing
+  // time (render/thread/frame_queue).
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);
   void draw(FrameRequest request, Done<SharedFrame> done);
 
-  // Blocks until all earlier requests, except frames, are answered.
+  // Blocks until all earlier requests, except frames, are complete.
   void finish();
 
-  // Sets the callback that the GPU thread calls after a lost context was replaced: all earlier
-  // handles are void. There is one callback: a new one replaces the last, an empty one removes it.
-  // When this returns, the old callback is not running.
+  // Sets the only callback for a lost context. The GPU thread calls it after it has replaced the
+  // context, when all earlier handles are invalid. An empty callback removes the current one. When
+  // this function returns, the old callback is not running.
   void on_context_lost(std::function<void()> callback);
-  void lose_context_for_test();  // destroys the context, as a driver reset would
-  // Runs `work` with the context current, in order with edits, and returns afterwards.
+  void lose_context_for_test();  // destroys the context, like a driver reset
+  // Runs `work` with the context current, in order with edits, and waits for it.
   void run_on_gpu_thread_for_test(std::function<void()> work);
 
  private:

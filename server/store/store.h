@@ -35,9 +35,9 @@ class Tools;
 
 struct StoreOptions {
   std::string dsn;      // libpq connection string
-  int connections = 8;  // pooled, for everything except the journal writer
+  int connections = 8;  // size of the pool, which all parts except the journal writer use
   PgLimits limits = kRequestLimits;
-  std::chrono::milliseconds slot_for{10'000};  // longest wait for a connection of the pool
+  std::chrono::milliseconds slot_for{10'000};  // longest wait for a connection from the pool
 };
 
 struct StoreInfo {
@@ -47,25 +47,25 @@ struct StoreInfo {
 };
 
 // All durable data. All calls block the calling thread, are thread-safe and take a connection from
-// the pool; when the database is unreachable they return an Error unavailable ("Database
-// unavailable") after trying to reconnect. Constraint failures are an Error conflict, unknown ids
-// not_found, a stale `version` `stale`. A change stores the caller's answer in the same transaction
-// (IdempotentResponse).
+// the pool. If the database is unreachable, they try to reconnect, and then return an `unavailable`
+// error ("Database unavailable"). A failed constraint is a `conflict` error, an unknown id
+// `not_found`, and an outdated `version` `stale`. A change stores the response for the caller in
+// the same transaction (IdempotentResponse).
 class Store {
  public:
-  // Connects and applies the missing migrations of `migrations_dir`; refuses a schema that is newer
-  // than the known one.
+  // Connects and applies the missing migrations in `migrations_dir`. Returns an error if the schema
+  // is newer than these migrations.
   static Result<std::unique_ptr<Store>> open(StoreOptions options,
                                              const std::filesystem::path& migrations_dir);
   ~Store();
 
   Result<StoreInfo> info();
-  // Makes one round trip, of at most 2 seconds (4 if it must connect first); while another thread
-  // makes it, returns the last answer.
+  // Returns true if one round trip to the database succeeds, within 2 seconds, or 4 seconds if it
+  // must connect first. Returns the last result while another thread makes the round trip.
   bool ready();
 
-  // The parts, each with a separate header: store/content/projects.h declares Projects. They live
-  // as long as the store.
+  // The parts of the store. Each has a separate header: store/content/projects.h declares Projects.
+  // They exist as long as the store.
   Projects& projects();
   Models& models();
   SurfaceImages& surface_images();
@@ -81,8 +81,8 @@ class Store {
   Tools& tools();
   Answers& answers();
   Comments& comments();
-  NamedParts& views();  // of models (store/content/named_parts.h)
-  NamedParts& tours();  // the same
+  NamedParts& views();  // saved views (store/content/named_parts.h)
+  NamedParts& tours();  // tours (the same header)
   NamedParts& snapshots();
   Jobs& jobs();
   Kiosks& kiosks();

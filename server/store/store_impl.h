@@ -33,26 +33,27 @@
 
 namespace strata::store {
 
-// Stores an answer in the current transaction; `conflict` if a call with this key was already
-// answered.
+// Stores a response in the current transaction. Returns a `conflict` error if there is already a
+// response with this key.
 Result<void> insert_answer(PgConnection& connection, const std::string& key,
                            const nlohmann::json& answer);
 
-// In the current transaction: marks the job as done, with this result.
+// Marks the job as done, with this result, in the current transaction.
 Result<void> finish_job(PgConnection& connection, JobId job, nlohmann::json result);
 
-// In the current transaction: the activity names this user as the author of changes
-// (db/migrations/000018_activity.sql). Empty: no author.
+// Sets the author of the changes in the current transaction, for the activity
+// (db/migrations/000018_activity.sql). An empty name means no author.
 Result<void> act_as(PgConnection& connection, const std::string& user);
 
-// Rename a deleted user in the current transaction: $1 and $2 of the SQL are the name and the name
-// that replaces it.
+// Rename a deleted user in the current transaction. $1 of the SQL is the name, and $2 the name that
+// replaces it.
 Result<void> rename_in_activity(PgConnection& connection, const std::string& name,
                                 const std::string& former);
 Result<void> rename_in_journal(PgConnection& connection, const std::string& name,
                                const std::string& former);
-// SQL that is true for texts that may mention the user with @. Case is ignored, as in names; a
-// mention is not part of a longer name or of an email address.
+// Return SQL for texts that may mention the user with @: a condition, and the text with the new
+// name. Case is ignored, as in names. A mention is not part of a longer name or of an email
+// address.
 consteval auto mentions_them(const auto& text) {
   return sql("position('@' || lower($1) IN lower(", text, ")) > 0");
 }
@@ -63,14 +64,14 @@ consteval auto mention_renamed(const auto& text, const auto& longest) {
              longest, ")");
 }
 
-// In the current transaction: locks the user, so that facts that were read stay true until the
-// commit.
+// Locks the user in the current transaction, so that facts that were read about the user stay true
+// until the commit.
 Result<Person> lock_person(PgConnection& connection, const std::string& name);
-Result<void> lock_project(PgConnection& connection, ProjectId id);  // against deletion
+Result<void> lock_project(PgConnection& connection, ProjectId id);  // prevents its deletion
 Result<void> join_groups(PgConnection& connection, PersonId person_id,
                          const std::vector<GroupId>& groups);
 
-Result<void> check_project_role(Role role);  // invalid: not a role that projects give
+Result<void> check_project_role(Role role);  // `invalid` if projects cannot give it
 
 template <class T>
 Result<void> keep(PgConnection& connection, const IdempotentResponse<T>& answer,
@@ -84,7 +85,7 @@ inline Result<void> keep(PgConnection& connection, const IdempotentResponse<>& a
   return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make());
 }
 
-// Runs a transaction that also stores the answer for the caller.
+// Runs a transaction that also stores the response for the caller.
 template <class Answer, class Work>
 auto change(Pool& pool, const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)
     -> std::invoke_result_t<Work, PgConnection&> {
@@ -141,8 +142,8 @@ struct Store::Impl {
   std::atomic<bool> was_ready = true;
 };
 
-// In the current transaction: erases an object with everything that depends on it, in the Trash or
-// not (store/content/trash.cpp).
+// Erase an object with everything that depends on it, in the current transaction. The object may be
+// in the Trash or not (store/content/trash.cpp).
 Result<void> erase_layer(PgConnection& connection, LayerId id);
 Result<void> erase_model(PgConnection& connection, ModelId id);
 
@@ -158,14 +159,14 @@ inline tl::unexpected<Error> stale(std::string_view kind) {
               "version");
 }
 
-// 1…255 bytes of storable text.
+// Checks that the name has 1 to 255 bytes of text that PostgreSQL can store.
 Result<void> check_name(const std::string& name);
 Result<void> check_texts(std::initializer_list<std::pair<const std::string*, const char*>> texts);
 // Refuses JSON whose strings PostgreSQL cannot store.
 Result<void> check_json(const nlohmann::json& json, const std::string& field);
 
-// Returns the id for a reference in digits; nothing for a slug, and 0 (no row has it) for more than
-// 18 digits.
+// Returns the id for a reference in digits, and nothing for a slug. Returns 0, which no row has,
+// for more than 18 digits.
 std::optional<std::int64_t> number_of(const std::string& ref);
 template <class Id>
 std::optional<Id> id_of(const std::string& ref) {
@@ -177,9 +178,10 @@ std::optional<Id> id_of(const std::string& ref) {
 // column).
 std::string free_slug(const std::string& requested, const PgResult& taken);
 
-// Inserts with a free slug. `taken_sql` lists the used slugs that start with the requested one ($1
-// = like pattern, $2 = parent if any); `insert` runs an INSERT … ON CONFLICT DO NOTHING RETURNING
-// …: no row means that another transaction took the slug first, and the next slug is tried.
+// Inserts a row with a free slug. `taken_sql` selects the used slugs that begin with the requested
+// slug ($1 is the LIKE pattern, $2 the parent, if any). `insert` runs an INSERT … ON CONFLICT DO
+// NOTHING RETURNING …. If it returns no row, another transaction took the slug first, and the next
+// slug is tried.
 Result<PgResult> insert_with_slug(
     PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
     const std::string& requested,

@@ -14,7 +14,7 @@ void FlowControl::on_news() {
   refused_ = false;
   rests_ = false;
   refined_ = false;
-  // It would show what was; what is new does not wait for it.
+  // A refinement in progress would show the old state, and new frames do not wait for it.
   if (out_ && out_->samples > 1) out_.reset();
 }
 
@@ -72,8 +72,7 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   if (last_frame_ - acked_ >= static_cast<std::uint64_t>(window_)) return std::nullopt;
   const bool refine = refine_waits_ && !moving_;
   const bool changes = everything_waits_ || refine || !boxes_.empty();
-  // A refinement waits until the client has all frames, so that the next camera does not wait for
-  // it.
+  // A refinement waits until the client has all frames. Otherwise it would delay the next camera.
   if (!changes && (!rests_ || refined_ || moving_ || acked_ < last_frame_)) return std::nullopt;
 
   Draw draw{++tickets_, camera_seq_,  past_.value_or(sequence_),
@@ -85,7 +84,7 @@ std::optional<FlowControl::Draw> FlowControl::next() {
     everything_waits_ = false;
   } else {
     draw.changed = boxes_;
-    // the camera still moves, and the whole picture is refined when it stops
+    // The camera still moves. The whole frame is drawn at full quality when it stops.
     if (refine_waits_) draw.quality = Quality::moving;
   }
   boxes_.clear();
@@ -98,7 +97,7 @@ std::optional<FlowControl::Draw> FlowControl::next() {
 std::optional<FlowControl::Numbered> FlowControl::on_drawn(std::uint64_t ticket, bool sent) {
   if (!out_ || out_->ticket != ticket) return std::nullopt;
   const bool everything = !out_->changed;
-  // An empty full picture leaves nothing to refine, either.
+  // After an empty whole frame there is nothing to draw at full quality.
   if (out_->samples > 1) refined_ = true;
   if (everything) refine_waits_ = sent && out_->quality == Quality::moving;
   out_.reset();

@@ -7,10 +7,10 @@
 
 namespace strata::stream {
 
-// An encoded message for the socket: frame header (protocol/frame_header.h) and payload in one
-// buffer.
+// An encoded message for the socket: the frame header (protocol/frame_header.h) and the payload in
+// one buffer.
 using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
-// of one frame, a message for each rectangle, in order
+// The messages of one frame, one for each rectangle, in order.
 using FrameMessages = std::vector<FrameBytes>;
 using SendFrames = std::function<void(FrameMessages)>;
 

@@ -17,8 +17,8 @@
 namespace strata::stream {
 namespace {
 
-// One picture with one setting, and its callbacks. Kept as long as the frame exists, because
-// another viewer may request the same.
+// The encoding of one frame with one setting, and its callbacks. Kept while the frame exists,
+// because another viewer may request the same encoding.
 struct Work {
   std::weak_ptr<const render::Frame> frame;
   JpegSettings settings;
@@ -115,7 +115,7 @@ void JpegPool::encode(render::SharedFrame frame, JpegSettings settings, Done don
                                                : impl_->known.emplace_back(std::make_shared<Work>(
                                                      Work{frame, settings, {}, false, {}, 0}));
   work->waiting.push_back(std::move(done));
-  // A request during the encoding is answered together with the others.
+  // A request during the encoding waits for the same result.
   if (work->waiting.size() > 1 || (same != impl_->known.end() && !work->encoded)) return;
   impl_->jobs.push_back({work, std::move(frame)});
   impl_->changed.notify_one();

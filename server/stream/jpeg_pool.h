@@ -10,20 +10,21 @@
 
 namespace strata::stream {
 
-// One for each rectangle of a frame, in order.
+// One JPEG for each rectangle of a frame, in order.
 using Jpegs = std::shared_ptr<const std::vector<std::vector<std::uint8_t>>>;
 
-// A few threads that encode pictures, each picture once for any number of viewers. The viewers'
-// credit limits the queue (one picture in work per viewer).
+// A few threads that encode frames, each frame once for any number of viewers. The queue contains
+// at most one frame per viewer.
 class JpegPool {
  public:
   using Done = std::function<void(const Jpegs&, double)>;
   explicit JpegPool(int threads);
   ~JpegPool();
-  // `done` runs on a pool thread with the bytes and the milliseconds of the encoding; null if
-  // encoding failed (logged). Not called for pictures that still wait when the pool is destroyed.
+  // Calls `done` on a pool thread with the JPEGs and the encoding time in milliseconds. The JPEGs
+  // are null if the encoding failed, which is logged. `done` is not called for frames that still
+  // wait when the pool is destroyed.
   void encode(render::SharedFrame frame, JpegSettings settings, Done done);
-  std::uint64_t encoded() const;  // pictures so far
+  std::uint64_t encoded() const;  // number of encoded frames so far
 
  private:
   struct Impl;

@@ -7,19 +7,19 @@
 namespace strata::stream {
 namespace {
 
-// Smaller ones are rectangles of edits.
+// Smaller frames of a camera at rest are usually rectangles of edits.
 constexpr double kLargeStill_bytes = 20'000;
 
 constexpr std::array<MovingPicture, LinkPace::kSteps> kReductions{
-    // each of about half the bytes
+    // Each step has about half the bytes of the previous one.
     {{{75, false}, 1}, {{65, false}, 0.7}, {{60, false}, 0.5}, {{50, false}, 0.35}}};
-// Colored hairlines stay sharp. About 1.6 times the bytes of step 0.
+// Keeps thin colored lines sharp. Has about 1.6 times the bytes of step 0.
 constexpr MovingPicture kFullColor{{80, true}, 1};
 constexpr double kFullColorBytes = 1.6;
-// weights in running means
+// The weights of new values in running means.
 constexpr double kNewPair = 0.3, kNewWait = 0.3;
 constexpr double kDrawnApart = 1.25;
-// acknowledgments with a smaller gap came together
+// With a smaller gap, two acknowledgments arrived together.
 constexpr std::chrono::milliseconds kMinGap{5};
 
 }  // namespace
@@ -45,11 +45,11 @@ void LinkPace::on_ack(std::uint64_t frame, Clock::time_point at) {
   const Passed passed{last->bytes, at - last->at};
   if (last->kind < 0 && last->bytes >= kLargeStill_bytes) {
     still_took_ = passed.took;
-    // Not again after it did not hold.
+    // Only at the first trial: later trials need a series of short waits.
     if (step_ == 0 && color_trial_ == kFirstTrial && passed.took <= kFastStill) change_color(true);
   }
   note_delay(passed, at);
-  // Frames of another kind or window, or after such frames, are no measure of the present ones.
+  // Does not judge frames that were sent with another kind or window, or after such frames.
   if (last->kind != kind() || !last->alike || last->wide != wide_) return;
   judge(passed.took - delay(), at);
   if (last->kind == kind()) judge_color(last->bytes);
@@ -59,11 +59,11 @@ void LinkPace::note_rate(const Sent& sent, Clock::time_point acked) {
   const auto gap = acked - last_ack_;
   if (sent.at >= last_ack_ || gap < kMinGap) return;
   const double s_per_byte = Seconds(gap).count() / sent.bytes;
-  // the link was busy with the first frame when the second was sent
+  // The link was still busy with the first frame when the second was sent.
   if (kDrawnApart * (sent.at - last_sent_) < gap)
     s_per_byte_ =
         s_per_byte_ == 0 ? s_per_byte : s_per_byte_ + kNewPair * (s_per_byte - s_per_byte_);
-  else  // the link is as fast as that, or faster
+  else  // the link has at least this rate
     s_per_byte_ = std::min(s_per_byte_, s_per_byte);
 }
 
@@ -105,7 +105,7 @@ void LinkPace::judge(Seconds wait, Clock::time_point at) {
   short_waits_ = wait > kShortWait ? 0 : short_waits_ + 1;
   if (!wide_ && delay() > kLongDelay && short_waits_ == kFirstTrial) wide_ = true;
   if (step_ == 0 || short_waits_ < trial_) return;
-  // A step that stayed for this long has succeeded.
+  // The current step was good for this long, so its trial has succeeded.
   if (trying_) trial_ = kFirstTrial;
   trying_ = true;
   change_step(step_ - 1);

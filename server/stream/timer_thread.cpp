@@ -38,7 +38,7 @@ void TimerThread::run() {
       auto call = std::move(calls_.extract(calls_.begin()).mapped());
       lock.unlock();
       call();
-      call = nullptr;  // release captured objects outside the lock
+      call = nullptr;  // destroys captured objects outside the lock
       lock.lock();
     }
   }

@@ -9,12 +9,13 @@
 
 namespace strata::stream {
 
-// One thread that calls functions later. They must be quick. All viewers of the process share it.
+// One thread that calls functions after a delay. The functions must return quickly. All viewers of
+// the process share this thread.
 class TimerThread {
  public:
   static TimerThread& shared();
   TimerThread();
-  ~TimerThread();  // drops waiting calls, joins
+  ~TimerThread();  // drops waiting calls and joins the thread
 
   void after(std::chrono::milliseconds delay, std::function<void()> call);
 
@@ -26,7 +27,7 @@ class TimerThread {
   std::condition_variable changed_;
   std::multimap<Clock::time_point, std::function<void()>> calls_;
   bool stopping_ = false;
-  std::thread thread_;  // last: it uses the other members
+  std::thread thread_;  // the last member, because it uses the others
 };
 
 }  // namespace strata::stream

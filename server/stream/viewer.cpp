@@ -21,21 +21,21 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// the full-quality picture follows within 250 ms of the last input
+// The full-quality frame follows within 250 ms of the last input.
 constexpr auto kQuietAfter = 200ms;
 constexpr auto kActsFor = 2s;
-// The refinement waits longer after an edit: people who paint make pauses between their strokes.
+// The refinement waits longer after an edit, because users pause between strokes.
 constexpr std::chrono::milliseconds kRestAfterCamera{700}, kRestAfterChange{2000};
-constexpr auto kRefinementTime = 2s;  // on a CPU
+constexpr auto kRefinementTime = 2s;  // with a software renderer
 constexpr auto kFirstRetry = 50ms;
 constexpr auto kLastRetry = 5000ms;
 
-// Full color at full quality: 4:2:0 smears thin colored lines of a layer, and redrawn parts would
-// be visible as patches.
+// Full quality includes full color. With 4:2:0, thin colored lines of a layer would be blurred, and
+// redrawn parts would be visible as patches.
 constexpr JpegSettings kStillPicture{90, true};
 
 bool is_superseded(const Error& problem) { return problem.code == ErrorCode::superseded; }
-// An error of the request, not of the state of the GPU: the same request fails again.
+// Returns whether the request itself is invalid. The same request would then fail again.
 bool is_refusal(const Error& problem) { return problem.code == ErrorCode::invalid; }
 
 }  // namespace
@@ -56,7 +56,7 @@ struct Viewer::Impl {
 
   void adapt_window() { flow.set_window(options.window > 0 ? options.window : link.window()); }
 
-  // A drawn picture on its way to the encoder.
+  // A drawn frame that waits for the encoder.
   struct Picture {
     FlowControl::Draw draw;
     FlowControl::Numbered number;
@@ -67,28 +67,29 @@ struct Viewer::Impl {
   const StreamContext context;
   const Options options;
 
-  // held while `send` or `refused` runs, so that `close` waits for it; taken before `mutex`
+  // Held while `send` or `refused` runs, so `close` waits for these calls. Locked before `mutex`.
   std::recursive_mutex send_mutex;
   Send send;
   Refused refused;
-  // the detail of the last call of `refused` since the last picture; under `send_mutex`
+  // The Error's detail in the last call of `refused` since the last frame. Guarded by `send_mutex`.
   std::string last_reported;
 
   mutable std::mutex mutex;
   FlowControl flow;
   LinkPace link;
-  MovingPicture moving;  // reduction of the last whole picture of a moving camera
+  MovingPicture moving;  // settings of the last whole frame of a moving camera
   render::ViewStyle style;
   render::ModelHandle model = 0;
   render::ViewHandle view = 0;
-  std::uint64_t generation = 0;  // of `view`: answers about older ones are void
-  // in frame order, at most `window`; the first is being encoded when `encoding`
+  std::uint64_t generation = 0;  // of `view`; replies for older generations are ignored
+  // Drawn frames in their order, at most `window`. If `encoding` is true, the first one is being
+  // encoded.
   std::deque<Picture> drawn;
   bool encoding = false;
   bool closed = false;
-  Clock::time_point last_camera{};  // time of the newest camera
-  Clock::time_point last_act{};     // time of the newest camera or edit
-  Clock::time_point rests_at{};     // if nothing changes until then
+  Clock::time_point last_camera{};  // when the newest camera arrived
+  Clock::time_point last_act{};     // when the newest camera or edit arrived
+  Clock::time_point rests_at{};     // time of the refinement if nothing changes before
   bool quiet_timer_runs = false, rest_timer_runs = false;
   std::chrono::milliseconds retry_in = kFirstRetry;
   Stats stats;
@@ -96,7 +97,8 @@ struct Viewer::Impl {
 
 namespace {
 
-// Returns the largest size of the window's shape within the limits, reduced.
+// Returns the largest size within the limits that has the window's aspect ratio, multiplied by
+// `reduced`.
 std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options,
                                  double reduced) {
   const double scale = reduced * std::min({1.0, double(options.max_width) / camera.width,
@@ -209,7 +211,7 @@ bool Viewer::on_view(std::uint64_t generation, const Result<render::ViewHandle>&
   return true;
 }
 
-// Calls `action` after a pause that doubles each time, until it succeeds.
+// Calls `action` after a pause. The pause doubles each time until a success resets it.
 void Viewer::retry_later(std::function<void(Viewer&)> action) {
   std::chrono::milliseconds pause;
   {
@@ -235,8 +237,8 @@ void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool mov
   wait_for_rest();
 }
 
-// Runs one timer for each viewer: if it fires too early, because cameras came after its start, it
-// is set again for the rest.
+// Runs one timer per viewer. If cameras arrived after its start, the timer fires too early and is
+// set again for the remaining time.
 void Viewer::wait_for_quiet() {
   {
     std::lock_guard lock(impl_->mutex);
@@ -254,13 +256,13 @@ void Viewer::wait_for_rest() {
     std::lock_guard lock(impl_->mutex);
     if (impl_->rest_timer_runs || impl_->closed || !impl_->flow.wants_rest_timer()) return;
     if (waits_until(impl_->rests_at, &Impl::rest_timer_runs, &Viewer::wait_for_rest)) return;
-    // Over a slow link the next camera would wait for the refined picture.
+    // Over a slow link, the next camera would wait for the refined frame.
     if (impl_->link.has_room()) impl_->flow.on_rest();
   }
   step();
 }
 
-// Sets a timer that calls `then`, unless `time` has passed. Under the lock.
+// Sets a timer that calls `then`, unless `time` has passed. Requires the lock.
 bool Viewer::waits_until(std::chrono::steady_clock::time_point time, bool Impl::*timer_runs,
                          void (Viewer::*then)()) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(time - Clock::now());
@@ -287,7 +289,7 @@ void Viewer::set_style(render::ViewStyle style, std::optional<std::int64_t> past
   {
     std::lock_guard lock(impl_->mutex);
     const bool moves = impl_->flow.on_past(past);
-    // Surface images or layers of other views changed.
+    // Nothing changed in this view, only in the styles of other views.
     if (style == impl_->style && !moves) return;
     impl_->style = std::move(style);
     impl_->rest_after(kRestAfterCamera);
@@ -332,8 +334,8 @@ void Viewer::reset_model(render::ModelHandle model, render::ViewStyle style,
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
-    // After a lost context, the old handle is invalid and removing it is refused; after another
-    // reload, it frees the view.
+    // After a lost context the old handle is invalid, and its removal fails. After another reload,
+    // the removal frees the view.
     if (impl_->view != 0) impl_->context.renderer->remove_view(impl_->view);
     impl_->model = model;
     impl_->view = 0;
@@ -352,8 +354,8 @@ Viewer::Stats Viewer::stats() const {
   return stats;
 }
 
-// Starts the next draw of the flow. The renderer may answer at once, so it is called without the
-// lock.
+// Starts the next draw of the flow. Calls the renderer without the lock, because it may call back
+// immediately.
 void Viewer::step() {
   FlowControl::Draw draw;
   MovingPicture reduced{kStillPicture, 1};
@@ -377,7 +379,7 @@ void Viewer::step() {
     request.smooth = true;
     request.refinement = draw.samples > 1;
     request.samples_time = kRefinementTime;
-    // A rectangle is added to the existing picture.
+    // A rectangle keeps the settings of the existing frame.
     if (request.moving && !draw.changed) impl_->moving = impl_->link.moving();
     if (request.moving) reduced = impl_->moving;
   }
@@ -433,7 +435,7 @@ void Viewer::on_failed(std::uint64_t ticket, const Error& problem) {
 void Viewer::on_not_refined(std::uint64_t ticket, const Error& problem) {
   {
     std::lock_guard lock(impl_->mutex);
-    // The same request would be refused again.
+    // After these errors, the same request would fail again.
     const bool again = !is_refusal(problem) && problem.code != ErrorCode::out_of_memory &&
                        problem.code != ErrorCode::too_large;
     if (impl_->closed || !impl_->flow.on_not_refined(ticket, again)) return;
@@ -453,8 +455,8 @@ void Viewer::tell(const Error& why) {
     impl_->refused(why);
 }
 
-// One picture of a viewer is encoded at a time: that keeps frames in order and prevents concurrent
-// calls of `send`.
+// Encodes one frame of a viewer at a time. This keeps frames in order and prevents concurrent calls
+// of `send`.
 void Viewer::encode_next() {
   render::SharedFrame frame;
   JpegSettings settings;
@@ -483,7 +485,7 @@ void Viewer::on_encoded(const Jpegs& jpegs, double encode_ms) {
       const Impl::Picture picture = std::move(impl_->drawn.front());
       impl_->drawn.pop_front();
       if (!jpegs) {
-        // it is never sent, so no client can return its credit
+        // The frame is never sent, so no client will acknowledge it.
         impl_->flow.on_ack(picture.number.frame);
       } else {
         messages = frame_messages(picture.draw, picture.number, *picture.frame,

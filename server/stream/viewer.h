@@ -19,30 +19,35 @@ namespace strata::stream {
 struct StreamContext {
   render::Renderer* renderer = nullptr;
   JpegPool* encoder = nullptr;
-  // of each pixel of a picture that nothing changes, 1 to render::kMaxSamples; 1: no refinement
+  // Samples per pixel of a refinement, 1 to render::kMaxSamples. 1: no refinement.
   int samples_at_rest = 1;
 };
 
-// One view of one client: converts camera and changes to encoded frames, by the flow rules of
-// docs/developer/architecture/streaming.md: the newest camera wins; frames contain the camera's
-// number; at most `window` frames are sent but not acknowledged; without credit nothing is drawn,
-// and changes are drawn when credit returns; without a change nothing is sent; a frame of a moving
-// camera is followed by a full-quality one within 250 ms of the last input; quality never decreases
-// during painting; viewers with the same picture share its drawing and its encoding; over a slow
-// link, pictures of a moving camera are reduced (stream/link_pace); onlookers do not delay a user
-// who just moved the camera or edited (render/thread/frame_queue). Thread-safe; `send` is called on
-// encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
+// One view of one client: converts cameras and changes to encoded frames. Follows the flow rules of
+// docs/developer/architecture/streaming.md:
+// - The newest camera replaces older ones. Frames contain the camera's number.
+// - At most `window` frames are sent but not acknowledged. Without credit nothing is drawn, and
+//   changes are drawn when credit returns.
+// - Without a change nothing is sent.
+// - After frames of a moving camera, a full-quality frame follows within 250 ms of the last input.
+// - Quality never decreases during painting.
+// - Viewers with the same frame share its drawing and its encoding.
+// - Over a slow link, frames of a moving camera are reduced (stream/link_pace).
+// - Onlookers do not delay a user who moved the camera or edited recently
+//   (render/thread/frame_queue).
+// Thread-safe. Calls `send` on encoder threads, in frame order, and `refused` on the GPU thread,
+// but never both at the same time.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {
     std::uint32_t view_id = 0;
-    int window = 0;  // frames on their way; 0: chosen for the link (stream/link_pace)
+    int window = 0;  // unacknowledged frames; 0: depends on the link (stream/link_pace)
     int max_width = 3840, max_height = 2160;
-    std::int64_t sequence = 0;  // of the scene at the start
+    std::int64_t sequence = 0;  // newest edit in the scene at the start
   };
   using Send = SendFrames;
-  // Reports why the requested picture cannot be drawn (invalid). Called once; the next camera,
-  // layers or edit are tried again.
+  // Reports the reason if a requested frame is invalid. Called once for each reason. The next
+  // camera, style or edit is drawn again.
   using Refused = std::function<void(const Error&)>;
 
   static std::shared_ptr<Viewer> create(StreamContext context, render::ModelHandle model,
@@ -50,18 +55,20 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   ~Viewer();
 
   void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);
-  void acts();  // its user edits: for a while, this view is drawn before those of onlookers, as
-                // after a camera
-  // `past`: the edit after which the picture shows the model; nothing: always the newest state.
+  // Reports an edit of this view's user. For some time, this view is drawn before those of
+  // onlookers, as after a camera.
+  void acts();
+  // With `past`, frames show the model after this edit. Without a value, they show the newest
+  // state.
   void set_style(render::ViewStyle style, std::optional<std::int64_t> past = {});
-  // Model-space box that an edit changed; frames drawn after this will show `sequence`.
+  // Reports the model-space box that an edit changed. Frames drawn after this call show `sequence`.
   void changed(const render::FrameRequest::Box& box, std::int64_t sequence);
   void changed_everywhere(std::int64_t sequence);
   void ack(std::uint64_t frame);
-  // After a lost context: the model has a new handle; everything is drawn again.
+  // Replaces the model's handle after a lost context. The whole frame is drawn again.
   void reset_model(render::ModelHandle model, render::ViewStyle style,
                    std::optional<std::int64_t> past = {});
-  void close();  // neither `send` nor `refused` is called after it returns
+  void close();  // after its return, neither `send` nor `refused` is called
 
   struct Stats {
     std::uint64_t frames = 0, bytes = 0, dropped = 0;
@@ -74,7 +81,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   Viewer();
   void add_view();
   bool on_view(std::uint64_t generation,
-               const Result<render::ViewHandle>& view);  // false: the view is no longer needed
+               const Result<render::ViewHandle>& view);  // false: the view is not needed
   void step();
   void on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::SharedFrame frame);
   void on_failed(std::uint64_t ticket, const Error& problem);

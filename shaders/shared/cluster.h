@@ -1,7 +1,7 @@
 #pragma once
 #include "shared/types.h"
 STRATA_SHARED_BEGIN
-// In the layout of glMultiDrawElementsIndirect.
+// The layout that glMultiDrawElementsIndirect requires.
 struct DrawCommand {
   uint count;
   uint instance_count;  // 0: hidden
@@ -10,6 +10,6 @@ struct DrawCommand {
   uint base_instance;
 };
 const uint kIndicesPerCluster = 3072u;
-const float kClusterMarginPx = 1.0;       // rounding of the window's coordinates
-const float kClusterMarginDepth = 4e-6;   // rounding of interpolated depth
+const float kClusterMarginPx = 1.0;       // for the rounding of window coordinates
+const float kClusterMarginDepth = 4e-6;   // for the rounding of interpolated depth
 STRATA_SHARED_END

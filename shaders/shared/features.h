@@ -1,31 +1,31 @@
 #pragma once
 #include "shared/types.h"
 STRATA_SHARED_BEGIN
-// Places of a segment whose visibility is tested, one bit each.
+// The largest number of a segment's tested points, each with one bit.
 const uint kFeatureMaxPlaces = 32u;
-const float kFeatureStep_px = 2.0;      // between two places of a line, pixels of the camera's window
-const uint kFeatureClosedPlaces = 3u;   // hidden places between visible ones that are drawn anyway
-const float kFeatureSteepest = 12.0;    // largest slope to the picture plane that the reach follows
-const uint kFeatureJoinsLast = 1u;      // the segment continues that before it in the buffer
-const uint kFeatureJoinsNext = 2u;      // the segment after it continues the line
-const uint kFeatureCutOpen = 1u;        // depths contain marks of insides (shared/section.h)
+const float kFeatureStep_px = 2.0;      // between points of a line, pixels of the camera's window
+const uint kFeatureClosedPlaces = 3u;   // longest gap of hidden points that is drawn
+const float kFeatureSteepest = 12.0;    // largest slope to the image plane that extends the reach
+const uint kFeatureJoinsLast = 1u;      // the segment continues the previous one in the buffer
+const uint kFeatureJoinsNext = 2u;      // the next segment in the buffer continues the line
+const uint kFeatureCutOpen = 1u;        // depths mark the inside of solids (shared/section.h)
 
-// A piece of a line, or a point if both ends are equal, on the plane of a picture: pixels from its
-// lower left corner, depth 0…1.
+// A piece of a line on the image plane, or a point if both ends are equal. Coordinates are pixels
+// from the lower left corner and a depth 0…1.
 struct FeatureSegment {
-  vec4 from;   // x, y, depth, half of its width
-  vec4 to;     // x, y, depth, width of its casing
+  vec4 from;   // x, y, depth, half of the line's width
+  vec4 to;     // x, y, depth, width of the casing
   vec4 color;
-  // At both ends: the change of depth over the length of one pixel, and how far below the visible
-  // surface a place may be and still be visible, in pixels.
+  // At both ends: the change of depth over the length of one pixel, and the largest distance of a
+  // visible point below the visible surface, in pixels.
   vec4 reach;  // depth at from, depth at to, pixels at from, pixels at to
-  uint place_count;  // 1…kFeatureMaxPlaces, spread evenly over it
+  uint place_count;  // number of tested points, 1…kFeatureMaxPlaces, at equal distances
   uint joins;
-  uint seen;   // a bit for each place that the surface does not hide
-  uint shown;  // the same with short gaps closed: the drawn places
+  uint seen;   // one bit for each point that the surface does not hide
+  uint shown;  // the drawn points: `seen` with short gaps closed
 };
 struct FeatureUniforms {
-  // of the picture: width, height; z is 0 when casings are drawn, 1 when the inner parts are
+  // x, y: width and height of the frame; z: 0 for the draw of casings, 1 for the inner parts
   vec4 size;
 };
 STRATA_SHARED_END

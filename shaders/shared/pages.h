@@ -1,10 +1,10 @@
 #pragma once
 #include "shared/types.h"
-// The position of a tile in the texel pools. A page id is chunk << 19 | slice << 8 | cell, where a
-// cell is one of the 16 x 16 tiles of a 2048 x 2048 slice.
+// A page id is the position of a tile in the texel pools: chunk << 19 | slice << 8 | cell. A cell
+// is one of the 16 x 16 tiles in a slice of 2048 x 2048 texels.
 STRATA_SHARED_BEGIN
 const uint kNoPage = 0xffffffffu;
-const uint kTileTexels = 128u;       // a side
+const uint kTileTexels = 128u;       // along a side
 const uint kCellsPerSide = 16u;
 const uint kPageCellBits = 8u;
 const uint kPageSliceBits = 11u;
@@ -12,7 +12,7 @@ const uint kPageChunkShift = 19u;
 const uint kPageSliceMask = 0x7ffu;
 const uint kPageCellMask = 0xffu;
 
-// Surface positions: texel i of a slot is element slot * 64 + i of 2048 x 2048 slices.
+// Surface positions: texel i of a slot is element slot * 64 + i in slices of 2048 x 2048 texels.
 const uint kPositionRow = 2048u;
 const uint kPositionRowBits = 11u;
 const uint kPositionSliceBits = 22u;

@@ -1,6 +1,6 @@
 #pragma once
-// Shared by C++ and GLSL: common type names for the structs of this folder. Structs are laid out so
-// that std140, std430 and C++ agree: members of 16 bytes first, then groups of four scalars.
+// Common type names for the structs in this folder, which C++ and GLSL share. The structs have the
+// same layout in std140, std430 and C++: members of 16 bytes first, then groups of four scalars.
 #ifdef __cplusplus
 #include <cstdint>
 #include <glm/glm.hpp>

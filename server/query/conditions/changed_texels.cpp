@@ -13,7 +13,7 @@
 namespace strata::query {
 namespace {
 
-// The differing texels of each tile of a layer; null: none.
+// The texels that differ in each tile of a layer; null if no texel of the tile differs.
 class ChangedTiles {
  public:
   ChangedTiles(const Layer& layer, const TileMap& from, const TileMap& to)

@@ -7,13 +7,13 @@
 
 namespace strata::query {
 
-// Returns the bytes of tiles that only one of two contents has.
+// Returns the total size, in bytes, of the tiles that only one of the two tile maps contains.
 std::uint64_t bytes_apart(const TileMap& from, const TileMap& to);
 
-// Adds to `selection` (of `map`) the surface texels at whose place the value or the validity of the
-// layer differs between two contents of it. The layer may have another resolution than the map:
-// then the texel that contains the center of the map's texel counts, as in conditions. Tiles that
-// both contents share cost nothing. Stops when the question has ended.
+// Adds to `selection` the surface texels of `map` where the value or the validity of the layer
+// differs between the tiles `from` and `to`. If the resolutions of layer and map differ, the layer
+// texel that contains the center of the map texel counts, as in conditions. Tiles that `from` and
+// `to` share are not compared. Stops when the current question ends.
 void add_changed_texels(const Layer& layer, const TileMap& from, const TileMap& to,
                         const mesh::SurfaceMap& map, int threads, TexelSelection& selection);
 

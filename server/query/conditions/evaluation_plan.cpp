@@ -9,10 +9,10 @@ namespace {
 
 using Op = Expression::Op;
 
-// With fewer members the comparisons are as fast as the set.
+// With fewer numbers, comparisons are as fast as a lookup in a set.
 constexpr std::size_t kMin = 3;
 
-// Collects the parts of a chain of one operation, with any nesting.
+// Collects the operands of a chain of one operator, at any depth of nesting.
 void flatten(const Expression& e, Op op, std::vector<const Expression*>& parts) {
   for (const Expression& part : e.parts) {
     if (part.op == op)
@@ -22,7 +22,7 @@ void flatten(const Expression& e, Op op, std::vector<const Expression*>& parts) 
   }
 }
 
-// `value op number`, with the number on either side.
+// A comparison of a value with a number, which may be on either side of the operator.
 struct Compared {
   const Expression* value = nullptr;
   double number = 0;
@@ -104,7 +104,8 @@ class Planner {
 
 constexpr int kNoSource = -1, kNoOneSource = -2;
 
-// kNoSource: it reads no source; kNoOneSource: several sources, or the position.
+// Returns the only source that the node reads, kNoSource if it reads no source, or kNoOneSource if
+// it reads several sources or the position.
 int source_read(const PlanNode& node) {
   switch (node.op) {
     case Op::x:

@@ -20,26 +20,27 @@ struct PlanSource {
   int resolution;
 };
 
-// The truth of a condition for each bit pattern of a layer of one or two bytes: bit 0: it holds,
-// bit 1: it is known.
+// The truth of a condition for each bit pattern of a layer with one or two bytes per texel. Bit 0
+// is set where the condition is true, bit 1 where its truth is known.
 struct TruthTable {
   std::vector<std::uint8_t> of_bits;
-  std::uint8_t of_nothing = 0;  // where the layer has no value
+  std::uint8_t of_nothing = 0;  // truth for texels where the layer has no value
 };
 
-// A formula in the form in which it is evaluated: the meaning of its Expression, in fewer steps.
+// A formula in its evaluated form. It is equivalent to its Expression but has fewer steps.
 //
-// 1. Alternatives of one value, `a = 1 or a = 2 …` and so `a in (1, 2, …)`, become one look-up in a
-//    set; `a <> 1 and a <> 2 …` becomes its negation. Chains of `or` and of `and` are flattened.
-// 2. A condition that reads only one layer of one or two bytes may be evaluated once for each bit
-//    pattern (`table`).
+// 1. Several comparisons of one value, `a = 1 or a = 2 …` or `a in (1, 2, …)`, become one lookup in
+//    a set. `a <> 1 and a <> 2 …` becomes the negation of a lookup. Chains of `or` and of `and` are
+//    flattened.
+// 2. A condition that reads only one layer, with one or two bytes per texel, may be evaluated once
+//    for each bit pattern (`table`).
 struct PlanNode {
   Expression::Op op = Expression::Op::number;
   double number = 0;
-  std::size_t index = 0;                      // of records
-  int source = -1;                            // of the layer that it reads
-  std::shared_ptr<const NumberSet> set{};     // a condition: the only part is in this set
-  std::shared_ptr<const TruthTable> table{};  // a condition: by the bits of the source
+  std::size_t index = 0;                      // index of the numbers of records
+  int source = -1;                            // index of the layer in `sources`
+  std::shared_ptr<const NumberSet> set{};     // for a condition: true if its part is in this set
+  std::shared_ptr<const TruthTable> table{};  // for a condition: truth by the bits of the source
   std::vector<PlanNode> parts{};
 
   bool is_condition() const { return op >= Expression::Op::truth; }
@@ -50,16 +51,16 @@ struct EvaluationPlan {
   std::vector<PlanSource> sources;
 };
 
-// Refused (invalid at `field`): a layer that is not in `layers`.
+// Returns an `invalid` error at `field` for a layer that is not in `layers`.
 Result<EvaluationPlan> plan_evaluation(const Expression& expression,
                                        const std::vector<LayerView>& layers,
                                        const std::string& field);
 
-// Returns the only source that the node reads; -1 if it reads several, none, or the texel's
-// position.
+// Returns the index of the only source that the node reads. Returns -1 if the node reads several
+// sources, no source, or the position of the texel.
 int only_source(const PlanNode& node);
 
-// The number of steps for one texel.
+// Returns the number of steps for one texel.
 std::uint64_t steps_of(const PlanNode& node);
 
 }  // namespace strata::query

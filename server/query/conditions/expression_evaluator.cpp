@@ -20,7 +20,7 @@ namespace strata::query {
 namespace {
 
 using Op = Expression::Op;
-using Bits = std::uint64_t;  // one a texel of a block
+using Bits = std::uint64_t;  // one bit per texel of a block
 
 constexpr int kTexels = kBlockSize * kBlockSize;
 constexpr Bits kAll = ~Bits{0};
@@ -38,7 +38,7 @@ struct Numbers {
   Bits known = 0;
 };
 struct Truths {
-  Bits holds = 0;  // a part of `known`
+  Bits holds = 0;  // a subset of `known`
   Bits known = 0;
 };
 
@@ -50,7 +50,7 @@ struct Inputs {
   const Frame& frame;
 };
 
-// Decoded values of layers, so that a block decodes each layer once.
+// The decoded values of layers, kept so that a block decodes each layer only once.
 class Decoded {
  public:
   explicit Decoded(std::size_t sources) : of_source_(sources) {}
@@ -83,7 +83,8 @@ class Block {
         by_(static_cast<int>(inputs.map.block_of_slot[slot]) / inputs.map.blocks_per_side) {
     decoded_.clear();
   }
-  // Not a block of the map: the only source has 64 bit patterns from `first` on, or no value.
+  // Makes a block that is not part of the map. Its only source has the 64 bit patterns that begin
+  // with `first`, or no value if `first` is empty.
   Block(const Inputs& inputs, std::optional<std::uint32_t> first, Decoded& decoded)
       : inputs_(inputs),
         decoded_(decoded),
@@ -135,7 +136,8 @@ class Block {
     }
   }
 
-  // A condition is 1 where it holds, and unknown elsewhere.
+  // Returns the numbers of an expression. A condition gives 1 where it is true, and is unknown
+  // elsewhere.
   Numbers any(const PlanNode& e) const {
     if (!e.is_condition()) return numbers(e);
     Numbers result;
@@ -185,7 +187,7 @@ class Block {
     for (Bits rest = a.known; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const double value = a.value[static_cast<std::size_t>(i)];
-      if (value != last) {  // neighbors mostly have the same value
+      if (value != last) {  // neighboring texels mostly have the same value
         last = value;
         found = e.set->contains(value);
       }
@@ -265,7 +267,7 @@ class Block {
     return only_finite(std::move(result));
   }
 
-  // An unknown number is 0, so that computations with it are neither slow nor trap.
+  // Replaces unknown numbers by 0, so that computations with them are not slow and do not trap.
   static Numbers only_finite(Numbers result) {
     const Bits finite = bits_where([&](int i) { return std::isfinite(result.value[i]); });
     if (finite != kAll)
@@ -295,11 +297,11 @@ class Block {
     return result;
   }
 
-  // Looks up the records whose keys the layer holds.
+  // Looks up the numbers of the records whose keys the layer stores.
   Numbers of_records(const PlanNode& e) const {
     const RecordNumbers& records = inputs_.records[e.index];
     Numbers result = layer(e.source);
-    // neighbors mostly have the same key
+    // neighboring texels mostly have the same key
     double last = -1, found = std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < kTexels; ++i) {
       if (((result.known >> i) & 1u) == 0) continue;
@@ -318,7 +320,7 @@ class Block {
     return decoded_.get(
         number, [&] { return decode(inputs_.sources[static_cast<std::size_t>(number)], true); });
   }
-  // Does not decode the layer.
+  // Returns the texels where the layer has a value, without decoding the layer.
   Bits validity(int number) const {
     return decode(inputs_.sources[static_cast<std::size_t>(number)], false).known;
   }
@@ -331,14 +333,14 @@ class Block {
       if (tile == nullptr || !tile->valid.test(texel)) return;
       const auto place = static_cast<std::size_t>(i);
       if (decoded) result.value[place] = decode_value(source.type, tile->bits(texel));
-      // An imported raster may contain infinity in a float layer.
+      // A float layer from an imported raster may contain infinity.
       if (!decoded || std::isfinite(result.value[place])) result.known |= Bits{1} << i;
     });
     return decoded ? only_finite(std::move(result)) : result;
   }
 
-  // Calls visit(texel of the block, tile or null, texel in the tile) with the texels of a layer of
-  // another resolution at the same places.
+  // Calls visit(texel of the block, tile or null, texel in the tile) for each texel of the block.
+  // The tile and its texel belong to a layer with another resolution.
   template <class Visit>
   void for_each_under(const PlanSource& source, Visit visit) const {
     for (int i = 0; i < kTexels; ++i) {
@@ -360,7 +362,7 @@ class Block {
     return only_finite(std::move(result));
   }
 
-  // For a layer with the map's resolution.
+  // Reads the block of a layer with the resolution of the map.
   Numbers same_block(const PlanSource& source, bool decoded) const {
     Numbers result;
     const TileData* tile = source.tiles.of_block(bx_, by_);
@@ -407,14 +409,14 @@ class Block {
   const std::optional<std::uint32_t> first_pattern_{};
 };
 
-// A block takes microseconds, with a long condition some hundred.
+// A block takes a few microseconds, or some hundred microseconds for a long condition.
 constexpr std::size_t kBlocksBetweenChecks = 64;
 
 void spend(std::uint64_t steps) {
   if (Question* question = Question::current()) question->spend(steps);
 }
 
-// With fewer steps a condition is as fast as its table.
+// A condition with fewer steps is as fast as its table.
 constexpr std::uint64_t kMinSteps = 3;
 
 TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
@@ -435,7 +437,7 @@ TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
   return table;
 }
 
-// Makes tables of the largest suitable conditions, if there are enough texels to look them up.
+// Replaces the largest suitable conditions by tables, if the map has enough texels.
 void make_tables(PlanNode& node, const Inputs& inputs) {
   if (node.is_condition() && steps_of(node) >= kMinSteps) {
     const int source = only_source(node);
@@ -455,7 +457,7 @@ void make_tables(PlanNode& node, const Inputs& inputs) {
   for (PlanNode& part : node.parts) make_tables(part, inputs);
 }
 
-// Writes the numbers of one block to its tile. Returns the bits of the texels whose number does not
+// Writes the numbers of one block to its tile. Returns the bits of the texels whose numbers do not
 // fit the type.
 Bits write_block(const Numbers& numbers, Bits mask, ValueType type, int block_x, int block_y,
                  TileData& tile) {

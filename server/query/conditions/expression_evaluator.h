@@ -13,33 +13,35 @@ namespace strata::query {
 
 // The coordinate frame of a map's texels.
 struct Frame {
-  glm::dvec3 origin{0};  // of model space in the world
-  double metres = 1;     // of a model unit
+  glm::dvec3 origin{0};  // origin of model space, in world coordinates
+  double metres = 1;     // meters in one model unit
 };
 
-// A formula over layers from split_records, and the numbers of its parts over records, by their
-// index.
+// A formula over layers, from split_records. `records` holds the numbers of its parts over records,
+// by index.
 struct BoundExpression {
   Expression expression;
   std::vector<RecordNumbers> records{};
 };
 
-// Returns the surface texels of the map where the condition holds (never gutter texels, nor texels
-// where it is unknown). For a layer of another resolution, the texel that contains the center of
-// the map's texel counts. Refused (invalid at `field`): a layer that is not in `layers`. `within`:
-// restricts the evaluation to these texels; null: all. Runs on up to `threads` threads. If the cost
-// exceeds the limit of the current question (domain/people/question.h), it throws QuestionEnded
-// before it begins.
+// Returns the surface texels of the map where the condition is true. Gutter texels, and texels
+// where the condition is unknown, are never included. For a layer with another resolution, the
+// layer texel that contains the center of the map texel counts. Returns an `invalid` error at
+// `field` for a layer that is not in `layers`. `within` restricts the evaluation to these texels;
+// null means all texels. Runs on up to `threads` threads. Throws QuestionEnded before the
+// evaluation begins if the cost exceeds the limit of the current question
+// (domain/people/question.h).
 Result<TexelSelection> select_where(const BoundExpression& condition,
                                     const std::vector<LayerView>& layers,
                                     const mesh::SurfaceMap& map, const std::string& field,
                                     int threads = 2, const Frame& frame = {},
                                     const TexelSelection* within = nullptr);
 
-// Computes the content of a layer of `type` at the map's resolution: the value of the formula at
-// each surface texel, nothing where it is unknown. A condition is 1 where it holds, and nothing
-// elsewhere. Integer types get the nearest integer. Gutter texels follow their owners. Refused as
-// above, and for a number that the type cannot hold (invalid, `type`).
+// Computes the content of a layer of `type` with the resolution of the map. Each surface texel gets
+// the value of the formula, or no value where the formula is unknown. A condition gives 1 where it
+// is true, and no value elsewhere. Values of integer types are rounded to the nearest integer.
+// Gutter texels get the values of their owners. Returns the errors of select_where, and an
+// `invalid` error at `type` for a number that the type cannot hold.
 Result<TileMap> compute_tiles(const BoundExpression& expression,
                               const std::vector<LayerView>& layers, const mesh::SurfaceMap& map,
                               const Frame& frame, ValueType type, const std::string& field,

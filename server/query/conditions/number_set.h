@@ -8,10 +8,11 @@
 
 namespace strata::query {
 
-// A set of numbers with look-up in constant time: hashed, open addressing, at most half full.
+// A set of numbers with lookup in constant time: a hash table with open addressing, at most half
+// full.
 class NumberSet {
  public:
-  // Finite numbers, in any order, possibly repeated.
+  // `numbers` are finite, in any order, and possibly repeated.
   explicit NumberSet(std::span<const double> numbers) {
     while (places_.size() < 2 * numbers.size()) places_.resize(places_.size() * 2);
     shift_ = 64 - std::countr_zero(places_.size());
@@ -28,7 +29,7 @@ class NumberSet {
   bool contains(double number) const { return used_[place_of(number)] != 0; }
 
  private:
-  // The place of a number, or the free place for it. 0 and -0 are equal.
+  // Returns the slot of a number, or the free slot for it. 0 and -0 are equal.
   std::size_t place_of(double number) const {
     const auto bits = std::bit_cast<std::uint64_t>(number == 0 ? 0.0 : number);
     std::size_t place = bits * 0x9e3779b97f4a7c15u >> shift_;

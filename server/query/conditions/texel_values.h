@@ -14,11 +14,11 @@ namespace strata::query {
 
 constexpr int kBlocksPerTile = kTileSize / kBlockSize;
 
-// Sorts tiles by address: sums of floats depend on the order, and the sums of a layer must be
+// Sorts tiles by address. Sums of floats depend on their order, and the sums of a layer must be
 // reproducible.
 std::vector<std::pair<TileAddress, const TileData*>> sorted_tiles(const TileMap& tiles);
 
-// The 64 flags of a block of a mask, bit y * 8 + x.
+// Returns the 64 flags of a block of a mask; bit y * 8 + x is the texel (x, y).
 inline std::uint64_t block_bits(const TileMask& mask, int block_x, int block_y) {
   std::uint64_t bits = 0;
   const int first = block_y * kBlockSize * kTileSize + block_x * kBlockSize;
@@ -30,8 +30,8 @@ inline std::uint64_t block_bits(const TileMask& mask, int block_x, int block_y) 
 }
 
 // Calls visit(slot, texel in the block, bits of the value) for each valid surface texel of a tile,
-// restricted to `within` (null: all), block by block. `Bits` is the unsigned type of the layer's
-// texels.
+// block by block. `within` restricts the texels; null means all texels. `Bits` is the unsigned type
+// that stores a texel of the layer.
 template <class Bits, class Visit>
 void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::SurfaceMap& map,
                        const TexelSelection* within, Visit&& visit) {
@@ -59,12 +59,12 @@ void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::Su
   }
 }
 
-// The decoded values of all bit patterns of a type of one or two bytes, because half floats are
-// slow to decode. Null for longer types.
+// Returns the decoded values of all bit patterns of a type of one or two bytes, because half floats
+// are slow to decode. Returns null for longer types.
 const double* values_of_bits(ValueType type);
 
-// Calls visit(slot, texel in the block, bits, value) for each texel of for_each_texel_of whose
-// value is finite: an imported raster may contain other values.
+// Calls visit(slot, texel in the block, bits, value) for each texel of for_each_texel_of with a
+// finite value. An imported raster may contain other values.
 template <class Visit>
 void for_each_value(const TileData& tile, TileAddress address, ValueType type,
                     const mesh::SurfaceMap& map, const TexelSelection* within, Visit&& visit) {

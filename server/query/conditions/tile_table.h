@@ -6,7 +6,8 @@
 
 namespace strata::query {
 
-// A layer's tiles as a dense table: one lookup a block or texel. Does not own the tiles.
+// The tiles of a layer as a dense table, with one lookup per block or texel. Does not own the
+// tiles.
 class TileTable {
  public:
   TileTable(const TileMap& tiles, int resolution) : tiles_per_side_(resolution / kTileSize) {
@@ -16,12 +17,12 @@ class TileTable {
         tiles_[std::size_t(address.y) * tiles_per_side_ + address.x] = tile.get();
   }
 
-  // Null if the tile has no valid texel.
+  // Returns null if the tile has no valid texel.
   const TileData* of_texel(int x, int y) const {
     return tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];
   }
-  // Along one axis: the layer's texel that contains the center of a texel of a map with another
-  // resolution.
+  // Returns, along one axis, the texel of the layer that contains the center of a texel of a map
+  // with another resolution.
   int texel_under(int texel, int map_resolution) const {
     return static_cast<int>((2 * std::int64_t{texel} + 1) *
                             (std::int64_t{tiles_per_side_} * kTileSize) /

@@ -9,7 +9,7 @@ namespace strata::query {
 namespace {
 
 constexpr double kMinShare = 0.005;
-constexpr int kBinBits = 5;  // of a channel in the first histogram
+constexpr int kBinBits = 5;  // bits per channel in the first histogram
 
 struct Lab {
   float l = 0, a = 0, b = 0;
@@ -37,7 +37,7 @@ Lab lab_of(const std::uint8_t* rgb) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// Pixels of similar color.
+// Pixels with similar colors.
 struct Bin {
   std::array<std::uint64_t, 3> sum{};
   std::uint64_t count = 0, at_border = 0;
@@ -55,7 +55,7 @@ struct Bin {
   }
 };
 
-// The bins with the most pixels first.
+// Returns the bins, those with the most pixels first.
 std::vector<Bin> bins_of(const Picture& picture) {
   std::vector<Bin> bins(std::size_t{1} << (3 * kBinBits));
   const std::uint8_t* rgba = picture.rgba.data();
@@ -76,8 +76,8 @@ std::vector<Bin> bins_of(const Picture& picture) {
   return bins;
 }
 
-// Adds each bin to the nearest center within the tolerance; without one it becomes a center if
-// `may_grow`.
+// Adds each bin to the nearest center within the tolerance. A bin without such a center becomes a
+// center if `may_grow` is true.
 std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres, float tolerance,
                           bool may_grow) {
   std::vector<Bin> groups(centres.size());
@@ -112,7 +112,7 @@ Result<std::vector<ColorKey>> parse_color_keys(std::string_view text, const std:
   for (const auto& [color, value] : json.items()) {
     if (!value.is_number())
       return refuse("The color " + color.substr(0, 20) + " has a value that is not a number.");
-    // Parsed as a legend of one point: both use the same color syntax.
+    // Parses the color as a legend of one point, because legends have the same color syntax.
     const auto legend = palette_from_json(
         {{"mode", "categorical"}, {"points", {{{"at", value}, {"color", color}}}}}, field);
     if (!legend)
@@ -158,8 +158,8 @@ std::vector<FoundColor> find_colors(const Picture& picture, double tolerance) {
     return groups;
   };
   auto groups = large(gathered(bins, {}, static_cast<float>(tolerance), true));
-  // A second pass around the means of the groups: the first center of a group is only its fullest
-  // bin.
+  // The second pass uses the means of the groups as centers. The first center of a group is only
+  // its largest bin.
   std::vector<Lab> centres;
   for (const Bin& group : groups) centres.push_back(lab_of(group.mean().data()));
   groups = large(gathered(bins, centres, static_cast<float>(tolerance), false));

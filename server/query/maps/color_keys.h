@@ -9,8 +9,8 @@
 
 namespace strata::query {
 
-// Scanned maps whose colors have a meaning. Colors are compared as CIELAB distances (ΔE of 1976,
-// D65): 2 is hardly visible, 100 is black to white.
+// Values from the colors of scanned maps. Colors are compared by their CIELAB distance (ΔE of 1976,
+// D65). A distance of 2 is hardly visible; the distance from black to white is 100.
 
 constexpr double kUsualTolerance = 12;
 constexpr std::size_t kMaxColorKeys = 256;
@@ -20,14 +20,14 @@ struct ColorKey {
   double value = 0;
 };
 
-// {"#c02020": 1, "#2040c0": 2}. Refused (invalid at `field`): no such object, no colors, more than
-// kMaxColorKeys.
+// Parses an object such as {"#c02020": 1, "#2040c0": 2}. Returns an `invalid` error at `field` for
+// other JSON, for an object without colors, and for more than kMaxColorKeys colors.
 Result<std::vector<ColorKey>> parse_color_keys(std::string_view json, const std::string& field);
 
 class ColorKeys {
  public:
   ColorKeys(const std::vector<ColorKey>& keys, double tolerance);
-  // The value of the nearest color within the tolerance of this pixel.
+  // Returns the value of the nearest color within the tolerance of this pixel.
   std::optional<double> value_of(const std::uint8_t* rgb) const;
 
  private:
@@ -39,12 +39,12 @@ class ColorKeys {
   float squared_tolerance_;
 };
 
-// The colors of a picture, by the share of pixels within the tolerance. Colors of less than half a
-// percent, such as edges and noise, are left out.
+// A color of an image, with the share of pixels within the tolerance. Colors with less than half a
+// percent of the pixels, such as edges and noise, are left out.
 struct FoundColor {
   Rgba color{};
-  double share = 0;            // of the pixels that are at least half opaque
-  bool is_background = false;  // it covers most of the picture's border
+  double share = 0;            // share of the pixels that are at least half opaque
+  bool is_background = false;  // it covers most of the border of the image
 };
 constexpr std::size_t kMaxFoundColors = 24;
 std::vector<FoundColor> find_colors(const Picture& picture, double tolerance);

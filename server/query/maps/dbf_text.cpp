@@ -8,7 +8,7 @@
 namespace strata::query {
 namespace {
 
-// Closes the result of iconv_open, which is not a real pointer.
+// Owns the result of iconv_open, which is not a real pointer.
 class Converter {
  public:
   explicit Converter(const std::string& encoding)
@@ -19,7 +19,7 @@ class Converter {
     if (is_open()) iconv_close(handle_);
   }
   bool is_open() const { return handle_ != reinterpret_cast<iconv_t>(-1); }
-  // Empty if the text is not valid in that encoding.
+  // Returns an empty text if `text` is not valid in that encoding.
   std::string convert(std::string_view text) const {
     std::string out(text.size() * 4, '\0');
     char* from = const_cast<char*>(text.data());  // iconv's interface is not const-correct

@@ -13,15 +13,15 @@
 namespace strata::query {
 namespace {
 
-constexpr int kMaxGrids = 6;  // each twice as coarse as the one before
+constexpr int kMaxGrids = 6;  // each is twice as coarse as the previous one
 
-// The GEOS context of this thread. GEOS objects do not depend on a context: any thread may use
+// The GEOS context of this thread. GEOS objects do not depend on a context, so any thread may use
 // them.
 class Context {
  public:
   Context() : handle_(GEOS_init_r()) {
     static std::once_flag once;
-    // Called within long operations: an exception ends them.
+    // GEOS calls this function within long operations, and an exception ends them.
     std::call_once(once, [] { GEOS_interruptRegisterCallback(&check_question); });
     GEOSContext_setErrorMessageHandler_r(
         handle_,
@@ -72,7 +72,7 @@ Owned closed_ring(const FlatRing& ring) {
   return owned(GEOSGeom_createLinearRing_r(geos(), corners));
 }
 
-// Removes lines and points, which result where areas only touch.
+// Removes the lines and points that result where areas only touch.
 Owned areas_alone(Owned geometry) {
   const int type = GEOSGeomTypeId_r(geos(), geometry.get());
   if (type == GEOS_POLYGON || type == GEOS_MULTIPOLYGON) return geometry;
@@ -95,7 +95,7 @@ Owned made_valid(Owned polygon) {
     GEOSMakeValidParams* params = GEOSMakeValidParams_create_r(geos());
     ~Params() { GEOSMakeValidParams_destroy_r(geos(), params); }
   } const made;
-  // Regions that rings enclose twice are kept: a surface that folds over itself covers them.
+  // Keeps regions that rings enclose twice, because a surface that folds over itself covers them.
   GEOSMakeValidParams_setMethod_r(geos(), made.params, GEOS_MAKE_VALID_STRUCTURE);
   return areas_alone(owned(GEOSMakeValidWithParams_r(geos(), polygon.get(), made.params)));
 }
@@ -120,7 +120,8 @@ FlatRing ring_of(const GEOSGeometry* line, bool counter_clockwise) {
 double ring_area(const FlatRing& ring) {
   double twice = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    // Relative to the first corner, so that large coordinates do not cost precision.
+    // Coordinates are relative to the first corner, so that large coordinates do not reduce
+    // precision.
     const glm::dvec3 a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
     twice += a.x * b.y - b.x * a.y;
   }

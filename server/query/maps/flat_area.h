@@ -5,15 +5,17 @@
 #include <memory>
 #include <vector>
 
-// Areas in a plane and operations on them, by GEOS. Its headers are not exposed.
+// Areas in a plane and operations on them, implemented with GEOS. The headers of GEOS are not
+// exposed.
 namespace strata::query {
 
-// A ring's corners, without a repeated last one. `z` is kept, and interpolated where lines cross.
+// The corners of a ring. The first corner is not repeated at the end. `z` is kept, and interpolated
+// where lines cross.
 using FlatRing = std::vector<glm::dvec3>;
-double ring_area(const FlatRing& ring);  // negative: clockwise
+double ring_area(const FlatRing& ring);  // negative if clockwise
 
 struct FlatPolygon {
-  std::vector<FlatRing> rings;  // the outer one first
+  std::vector<FlatRing> rings;  // the outer ring first
 };
 
 // Polygons that may have holes and do not overlap, always valid as OGC simple features. Move-only.
@@ -22,8 +24,8 @@ struct FlatPolygon {
 class FlatArea {
  public:
   FlatArea();  // empty
-  // The first ring is the outer one, in any direction. Where rings cross or touch, the area is the
-  // one enclosed by the outer ring without the holes.
+  // The first ring is the outer ring. Rings may have any direction. Where rings cross or touch, the
+  // area is the inside of the outer ring minus the holes.
   explicit FlatArea(const FlatPolygon& polygon);
   FlatArea(FlatArea&&) noexcept;
   FlatArea& operator=(FlatArea&&) noexcept;
@@ -32,13 +34,13 @@ class FlatArea {
   bool is_empty() const;
   double area() const;
   FlatArea cut_with(const FlatArea& other) const;
-  // Closed polygons: outer rings counterclockwise, holes clockwise.
+  // Returns closed polygons: outer rings are counterclockwise, holes are clockwise.
   std::vector<FlatPolygon> polygons() const;
 
-  // The union of the areas, with corners on a grid, which is made coarser if GEOS fails.
+  // Returns the union of the areas, with corners on a grid. The grid is made coarser if GEOS fails.
   static FlatArea joined(std::vector<FlatArea> areas, double grid);
-  // Removes corners; no removed corner is farther than `distance` from the line. Keeps all polygons
-  // and holes.
+  // Removes corners that are at most `distance` from the simplified line. Keeps all polygons and
+  // holes.
   FlatArea simplified(double distance) const;
 
  private:
@@ -48,7 +50,7 @@ class FlatArea {
   std::unique_ptr<Held> held_;
 };
 
-// Finds areas by their boxes. `areas` must outlive the tree and stay at their addresses.
+// Finds areas by their bounding boxes. `areas` must outlive the tree and stay at their addresses.
 class FlatAreaTree {
  public:
   explicit FlatAreaTree(const std::vector<FlatArea>& areas);
@@ -56,7 +58,7 @@ class FlatAreaTree {
   FlatAreaTree(const FlatAreaTree&) = delete;
   FlatAreaTree& operator=(const FlatAreaTree&) = delete;
 
-  // Visits the areas whose boxes intersect the box of `area`.
+  // Visits the areas whose bounding boxes intersect that of `area`.
   void find(const FlatArea& area, const std::function<void(const FlatArea&)>& visit) const;
 
  private:

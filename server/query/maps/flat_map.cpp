@@ -7,8 +7,8 @@
 namespace strata::query {
 namespace {
 
-constexpr int kMaxCells = 512;  // a side
-// limit of the grid's entries: areas that cover everything are in every cell
+constexpr int kMaxCells = 512;  // cells per side
+// limit for the entries of the grid, because an area that covers everything is in every cell
 constexpr std::size_t kMaxEntries = std::size_t{1} << 22;
 
 }  // namespace

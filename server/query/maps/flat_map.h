@@ -13,13 +13,13 @@ struct MapArea {
   double value = 0;
 };
 
-// Areas in a plane with a value each, looked up by position. A grid narrows thousands of areas to a
-// few.
+// Areas in a plane, each with a value, for lookup by position. A grid reduces thousands of areas to
+// a few candidates.
 class FlatMap {
  public:
   explicit FlatMap(std::vector<MapArea> areas);
 
-  // The value of the last area that contains the point: later ones are on top.
+  // Returns the value of the last area that contains the point, because later areas are on top.
   std::optional<double> value_at(const glm::dvec2& point) const;
   const std::vector<MapArea>& areas() const { return areas_; }
 
@@ -29,13 +29,13 @@ class FlatMap {
   };
   Cells cells_of(const PolygonArea& area) const;
   int cell(double at, double low, double size) const;
-  std::size_t entries() const;  // of the grid, with side_
+  std::size_t entries() const;  // number of entries of the grid for `side_`
 
   std::vector<MapArea> areas_;
   glm::dvec2 low_, size_;
   int side_ = 1;
-  std::vector<std::size_t> begins_;     // of each cell in `in_cell_`, and the end
-  std::vector<std::uint32_t> in_cell_;  // areas, ascending
+  std::vector<std::size_t> begins_;     // the begin of each cell in `in_cell_`, and the end
+  std::vector<std::uint32_t> in_cell_;  // indices of areas, ascending
 };
 
 }  // namespace strata::query

@@ -49,7 +49,7 @@ GeoKeys read_keys(TIFF* tiff) {
   return keys;
 }
 
-// The position of the first pixel's center relative to the raster's origin.
+// Moves the position of the first pixel by `half` a pixel: from its corner to its center.
 WorldFile shifted(WorldFile world, double half) {
   world.x += half * (world.x_per_column + world.x_per_row);
   world.y += half * (world.y_per_column + world.y_per_row);
@@ -70,7 +70,7 @@ std::optional<double> nodata_of(TIFF* tiff) {
 }
 
 void set_nodata(TIFF* tiff, const char* number) {
-  static char name[] = "GDALNoDataValue";  // libtiff does not copy it
+  static char name[] = "GDALNoDataValue";  // libtiff does not copy the name
   static const TIFFFieldInfo field{kNodata, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
   TIFFMergeFieldInfo(tiff, &field, 1);
   TIFFSetField(tiff, kNodata, number);

@@ -6,13 +6,15 @@
 
 namespace strata::query {
 
-// Reads position, coordinate system and nodata of an open TIFF into `info`: GeoTIFF 1.1 (OGC
-// 19-008, ModelPixelScale with one ModelTiepoint or ModelTransformation, GeoKeyDirectory with
-// inline keys) and GDAL_NODATA. Tags of another type are skipped. Uses libtiff only: libgeotiff
-// would require PROJ and its 23 MB of data for two numbers. Refused (invalid): pixels without area.
+// Reads the position, coordinate system and nodata of an open TIFF into `info`. Supports GeoTIFF
+// 1.1 (OGC 19-008: ModelPixelScale with one ModelTiepoint, or ModelTransformation, and
+// GeoKeyDirectory with inline keys) and GDAL_NODATA. Skips tags of another type. Uses only libtiff,
+// because libgeotiff would require PROJ with 23 MB of data to read two numbers. Returns an
+// `invalid` error for pixels without area.
 Result<void> read_geo_tags(TIFF* tiff, MapTiff& info);
 
-// GDAL's nodata of an open TIFF; nothing if it is missing or NaN, which is never a value.
+// Returns GDAL's nodata of an open TIFF. Returns nothing if it is missing, or NaN, because NaN is
+// never a value.
 std::optional<double> nodata_of(TIFF* tiff);
 void set_nodata(TIFF* tiff, const char* number);
 

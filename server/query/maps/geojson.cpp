@@ -58,7 +58,7 @@ class Reader {
     return {};
   }
 
-  // The current feature, or a feature for the whole text if that is a bare geometry.
+  // Returns the current feature, or a feature for the whole text if the text is only a geometry.
   MapFeature& current() {
     if (map_.features.empty()) map_.features.push_back({{}, {}, "body"});
     return map_.features.back();

@@ -7,11 +7,11 @@
 namespace strata::query {
 
 // Parses the polygons of a GeoJSON text (RFC 7946: a FeatureCollection, a Feature or a geometry of
-// Polygons and MultiPolygons), in their order, with the properties that are numbers, texts, or true
-// and false (as 1 and 0). Features without a geometry, and further coordinates of a position, are
-// skipped. Refused (malformed, `invalid` with the place in the text): text that is no GeoJSON,
-// points and lines, rings of fewer than three points, more than kMaxMapPoints, kMaxMapFeatures or
-// kMaxMapColumns.
+// Polygons and MultiPolygons), in their order. Reads the properties that are numbers, texts, or
+// true and false (as 1 and 0). Skips features without a geometry, and coordinates after x and y.
+// Returns a `malformed` error, or an `invalid` error with the path in the text, for text that is
+// not GeoJSON, for points and lines, and for rings of fewer than three points. The same holds for
+// more than kMaxMapPoints, kMaxMapFeatures or kMaxMapColumns.
 Result<FeatureMap> parse_geojson(std::string_view text);
 
 }  // namespace strata::query

@@ -9,8 +9,8 @@ KeyNames::KeyNames(const Palette& palette, const std::set<double>& taken)
   for (const Palette::Point& point : palette.points) {
     points_[point.at] = point;
     if (!point.label.empty()) keys_.emplace(point.label, point.at);
-    // Nobody chose the colors of the default legend: a key that is not in use gets the color of the
-    // map.
+    // No user chose the colors of the default legend, so a key that is not in use gets the color of
+    // the map.
     if (!point.label.empty() || taken_.contains(point.at)) fixed_colors_.insert(point.at);
   }
 }

@@ -9,24 +9,24 @@
 
 namespace strata::query {
 
-// Keys by their names, from a layer's legend and from an imported map.
+// The keys of names, from the legend of a layer and from an imported map.
 class KeyNames {
  public:
-  // The names are the labels of a categorical palette. Keys in `taken` are in use, even those
-  // without a name.
+  // The names are the labels of a categorical palette. Keys in `taken` are in use, even if they
+  // have no name.
   KeyNames(const Palette& palette, const std::set<double>& taken);
 
-  // Returns the key with that name; a new name gets the lowest number from 1 that has no name and
-  // is not in use.
+  // Returns the key with that name. A new name gets the lowest key, starting at 1, that has no name
+  // and is not in use.
   double key_of(const std::string& name);
-  // Sets the name or the color of a key, unless the legend has one for it.
+  // Set the name or the color of a key, unless the legend already has one.
   void name(double key, const std::string& name);
   void color(double key, const Rgba& color);
 
-  // The names that the legend lacks, and whether anything is new.
+  // Return the names that the legend did not have, and whether the legend has changed.
   const std::vector<std::string>& added_names() const { return added_names_; }
   bool has_changed() const { return changed_; }
-  // The legend with the additions, points ascending.
+  // Returns the legend with the additions. Its points are ascending.
   Palette extended() const;
 
  private:

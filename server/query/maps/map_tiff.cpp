@@ -36,14 +36,14 @@ std::optional<ValueType> sample_type(int bits, int format) {
   }
 }
 
-// Compressions of scanned maps and photographs.
+// Returns true for the compressions of scanned maps and photographs.
 bool is_picture_codec(int compression) {
   return is_lossless(compression) || compression == COMPRESSION_JPEG ||
          compression == COMPRESSION_CCITTRLE || compression == COMPRESSION_CCITTFAX3 ||
          compression == COMPRESSION_CCITTFAX4;
 }
 
-// Samples that libtiff can convert to RGBA as a whole picture.
+// Returns true if libtiff can convert the whole image to RGBA.
 bool can_be_rgba(TIFF* tiff, int bits, int format) {
   char why[1024];
   return bits <= 16 && format != SAMPLEFORMAT_IEEEFP && format != SAMPLEFORMAT_INT &&
@@ -80,7 +80,7 @@ class BandReader {
     return is_separate_ ? width_ : width_ * static_cast<std::size_t>(info_.bands);
   }
 
-  // `samples` are `count` pixels from (x, row) on.
+  // Reads `count` pixels from `samples`; the first pixel is (x, row).
   void put(const std::uint8_t* samples, std::uint32_t x, std::uint32_t row, std::uint32_t count) {
     const std::uint8_t* from =
         samples + (is_separate_ ? 0 : width_ * static_cast<std::size_t>(band_));
@@ -97,7 +97,7 @@ class BandReader {
       }
       const double value = decode_value(info_.type, bits);
       if (!std::isfinite(value) || is_nodata(info_, value)) continue;
-      raster_.bits[to] = *encode_value(info_.type, value);  // as in layers
+      raster_.bits[to] = *encode_value(info_.type, value);  // encoded as in layers
       raster_.valid[to] = 1;
     }
   }
@@ -108,7 +108,7 @@ class BandReader {
   const MapTiff& info_;
   const std::size_t width_;  // bytes of a sample
   const bool is_separate_;
-  const int band_;  // from 0
+  const int band_;  // counted from 0
   BandRaster raster_;
 };
 

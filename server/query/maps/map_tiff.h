@@ -13,24 +13,25 @@ namespace strata::query {
 
 // Reads TIFF and GeoTIFF files as maps: orthophotos and rasters of numbers. Thread-safe.
 
-bool is_tiff(std::span<const std::uint8_t> bytes);  // also BigTIFF; by the first bytes
+bool is_tiff(std::span<const std::uint8_t> bytes);  // checks the first bytes; true for BigTIFF, too
 
 struct MapTiff {
   int width = 0, height = 0, bands = 0;
-  ValueType type = ValueType::u8;  // of the samples; 64-bit floating-point numbers are read as f32
-  // decode_tiff_band can read it: samples of 8, 16 or 32 bits (or f64) without loss
+  ValueType type = ValueType::u8;  // type of the samples; f64 is read as f32
+  // decode_tiff_band can read it: samples of 8, 16 or 32 bits (or f64), with lossless compression
   bool has_numbers = false;
   // decode_tiff_picture can read it: gray, a color table or RGB of up to 16 bits
   bool has_colors = false;
   bool is_rgb = false;             // its bands are colors
-  std::optional<WorldFile> world;  // from its GeoTIFF tags
+  std::optional<WorldFile> world;  // position from the GeoTIFF tags
   std::optional<double> nodata;    // GDAL's tag
-  std::string crs;                 // "EPSG:25830"; empty: not given
+  std::string crs;                 // such as "EPSG:25830"; empty if not given
   bool in_degrees = false;
 };
 
-// Reads the header only. Refused (invalid): no TIFF, damaged, a side of more than `largest_side`,
-// tags that contradict each other, neither numbers nor colors that can be read.
+// Reads the header only. Returns an `invalid` error for a file that is not a TIFF or is damaged,
+// and for a side of more than `largest_side` pixels. Contradictory tags, and a file with neither
+// readable numbers nor readable colors, are `invalid`, too.
 Result<MapTiff> inspect_tiff(std::span<const std::uint8_t> bytes, int largest_side);
 
 // Row 0 is at the top. Pixels with the nodata number in every band are transparent.
@@ -40,10 +41,11 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, const M
 struct BandRaster {
   int width = 0, height = 0;
   ValueType type = ValueType::u8;
-  std::vector<std::uint32_t> bits;  // of `type`
-  std::vector<std::uint8_t> valid;  // 0: nodata, or not a finite number
+  std::vector<std::uint32_t> bits;  // bits of the values, which have type `type`
+  std::vector<std::uint8_t> valid;  // 0 for nodata and for numbers that are not finite
 };
-// `band` counts from 1. Refused (invalid): no such band; the file ends too early.
+// Decodes one band; the first band is 1. Returns an `invalid` error if the band does not exist or
+// the file ends too early.
 Result<BandRaster> decode_tiff_band(std::span<const std::uint8_t> bytes, const MapTiff& info,
                                     int band);
 

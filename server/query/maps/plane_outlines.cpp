@@ -18,15 +18,15 @@
 namespace strata::query {
 namespace {
 
-constexpr double kGridOfTexel = 1.0 / 256;  // of the corners at seams
+constexpr double kGridOfTexel = 1.0 / 256;  // spacing of the grid for corners at seams
 constexpr double kSimplifiedTexels = 0.5;
 constexpr double kSliverTexels = 1.0 / 64;
-constexpr std::size_t kBytesOfCorner = 400;    // limit for GEOS and the rings
-constexpr std::size_t kBytesOfTriangle = 110;  // of the rims and the lookup, while built
+constexpr std::size_t kBytesOfCorner = 400;    // memory of GEOS and the rings, at most
+constexpr std::size_t kBytesOfTriangle = 110;  // memory to build the rims and the lookup
 
-// A label stands for the texels of one class whose surface faces the same side of the plane: a
-// surface that folds over itself in the plane would otherwise have rings that cancel the area they
-// enclose.
+// Assigns labels to texels. Texels with the same label have one class, and their surface faces the
+// same side of the plane. Without this, the rings of a surface that folds over itself in the plane
+// would cancel the area that they enclose.
 class Labels {
  public:
   Labels(const LayerView& view, const mesh::SurfaceMap& map, const ValueClasses& classes,
@@ -45,7 +45,7 @@ class Labels {
                            2 * known->second + (turned ? 1 : 0) + 1;
                      });
     }
-    // Charts extend into the texels around those whose centers they contain.
+    // Charts extend beyond the texels whose centers they contain, into the texels around these.
     mesh::for_each_gutter_texel(map, [&](mesh::SlotTexel gutter, mesh::SlotTexel owner) {
       of_texel_[std::size_t{gutter.slot} * 64 + static_cast<std::size_t>(gutter.texel)] =
           of_texel_[std::size_t{owner.slot} * 64 + static_cast<std::size_t>(owner.texel)];
@@ -69,7 +69,7 @@ class Labels {
   glm::dvec2 difference(int x, int y, int dx, int dy, const glm::dvec2& here) const {
     return place(x + dx, y + dy).value_or(here) - place(x - dx, y - dy).value_or(here);
   }
-  // Whether the atlas is mirrored in the plane.
+  // Returns true if the atlas is mirrored in the plane.
   bool is_turned(std::uint32_t slot, int texel) const {
     const auto block = static_cast<int>(map_.block_of_slot[slot]);
     const int x = block % map_.blocks_per_side * kBlockSize + texel % kBlockSize;
@@ -86,8 +86,8 @@ class Labels {
   std::vector<std::uint32_t> of_texel_;
 };
 
-// Lobes of a chart that meet in one vertex have separate outer rings. Outer rings have the
-// direction of the widest ring, holes the opposite one.
+// Adds the areas of a chart. Parts of a chart that meet in one vertex have separate outer rings.
+// Outer rings have the direction of the widest ring, and holes have the opposite direction.
 void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& chart,
                      double resolution, std::vector<FlatArea>& areas) {
   std::vector<FlatRing> rings;
@@ -104,7 +104,7 @@ void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& char
     const std::vector<std::vector<glm::dvec2>> flat{{outer.begin(), outer.end()}};
     const PolygonArea inside(flat);
     FlatPolygon polygon{{std::move(outer)}};
-    // Rings may share corners, but not edges.
+    // Tests the middle of an edge, because rings may share corners but not edges.
     for (const FlatRing& hole : holes)
       if (inside.contains(glm::dvec2(hole[0] + hole[1]) / 2.0)) polygon.rings.push_back(hole);
     areas.emplace_back(polygon);
@@ -120,7 +120,7 @@ FlatArea region_area(const TexelRegion& region) {
   return FlatArea(polygon);
 }
 
-// Projects pieces of the atlas onto the plane; model space.
+// Projects pieces of the atlas onto the plane, in model space.
 class Laying {
  public:
   Laying(const mesh::Geometry& geometry, double resolution, const OutlinePlane& plane)

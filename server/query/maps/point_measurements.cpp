@@ -36,7 +36,7 @@ tl::unexpected<Error> refuse(int line, const std::string& what) {
               "Line " + std::to_string(line) + ": " + what, "body");
 }
 
-// The first separator found in the line of names.
+// Returns the separator in the line with the column names.
 char separator_of(std::string_view names) {
   for (const char separator : {'\t', ';', ','})
     if (names.find(separator) != std::string_view::npos) return separator;
@@ -58,7 +58,7 @@ Result<std::vector<PointMeasurement>> parse_point_measurements(std::string_view 
   if (csv.starts_with("\xef\xbb\xbf")) csv.remove_prefix(3);
   std::vector<PointMeasurement> measurements;
   std::array<std::size_t, kColumns.size()> column{};
-  std::size_t columns = 0;  // 0: the names are not read yet
+  std::size_t columns = 0;  // 0 until the column names are read
   char separator = ',';
   int line_number = 0;
   for (std::size_t begin = 0; begin < csv.size();) {

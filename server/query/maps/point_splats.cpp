@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kTexels = kBlockSize * kBlockSize;
 
-// The nearest dab of each texel of a block.
+// The nearest splat of each texel of a block.
 struct Nearest {
   std::array<float, kTexels> distance;
   std::array<std::uint32_t, kTexels> bits{};
@@ -36,7 +36,7 @@ void write(std::map<TileAddress, TileData>& tiles, ValueType type, int x, int y,
       .first->second.write(y % kTileSize * kTileSize + x % kTileSize, bits);
 }
 
-// Gutter texels of the slot follow their owners.
+// Writes the values of their owners to the gutter texels of the slot.
 void write_gutter(const mesh::SurfaceMap& map, const NearestOfSlot& nearest, std::uint32_t slot,
                   ValueType type, std::map<TileAddress, TileData>& tiles) {
   const glm::ivec2 corner = corner_of(map, slot);
@@ -70,8 +70,8 @@ Result<std::map<TileAddress, TileData>> paint_point_splats(const mesh::SurfaceMa
   std::vector<std::uint32_t> open;
   for (const PointSplat& splat : point_splats) {
     seen.clear();
-    // The texel at the position itself is always reached, so that a dab smaller than a texel is not
-    // lost.
+    // The texel at the position itself is always reached, so that a splat smaller than a texel is
+    // not lost.
     const auto reach = [&](std::uint32_t texel, bool always) {
       const std::uint32_t slot = texel / kTexels, i = texel % kTexels;
       const float distance = glm::distance(map.position(slot, static_cast<int>(i)), splat.position);

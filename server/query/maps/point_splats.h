@@ -9,20 +9,20 @@
 
 namespace strata::query {
 
-// A value for the surroundings of a point of the surface.
+// A value for the texels around a point on the surface.
 struct PointSplat {
   std::uint32_t texel = 0;  // the surface texel at the point (numbered as in TexelGraph)
-  glm::vec3 position{0};    // of the point, model space
-  std::uint32_t bits = 0;   // of the layer's type
+  glm::vec3 position{0};    // position of the point in model space
+  std::uint32_t bits = 0;   // the value, in the type of the layer
 };
 
-constexpr std::uint64_t kMaxDabTexels = 50'000'000;  // limit for all dabs of one edit together
+constexpr std::uint64_t kMaxDabTexels = 50'000'000;  // limit for all splats of one edit
 
-// Each dab covers the texels within `radius` (model units, Euclidean) of its position that are
-// connected with it across the surface within that distance: this excludes the other side of a thin
-// wall. Where dabs overlap the nearest one counts, among equals the first. The result is the
-// content to write: each tile's valid texels, gutter included. Refused (invalid): dabs so large and
-// numerous that they reach more than kMaxDabTexels.
+// Each splat covers the texels within `radius` (model units, Euclidean distance) of its position.
+// They must be connected to the splat across the surface within that distance, which excludes the
+// other side of a thin wall. Where splats overlap, the nearest splat counts, or the first of
+// several at the same distance. The result is the content to write: the valid texels of each tile,
+// gutter included. Returns an `invalid` error if the splats reach more than kMaxDabTexels.
 Result<std::map<TileAddress, TileData>> paint_point_splats(const mesh::SurfaceMap& map,
                                                            const mesh::TexelGraph& graph,
                                                            std::span<const PointSplat> point_splats,

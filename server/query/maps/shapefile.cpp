@@ -53,7 +53,8 @@ std::string shape_name(std::uint32_t type) {
   }
 }
 
-// Makes the index with the position of each shape for shapelib, of the shapes within the file only.
+// Makes the index for shapelib, with the position of each shape. All shapes must be within the
+// file.
 Result<std::vector<std::uint8_t>> index_of(std::span<const std::uint8_t> shp) {
   if (shp.size() < kShpHeader || !is_shapefile(shp))
     return refuse("The .shp file is not a shapefile.");
@@ -88,7 +89,7 @@ Result<std::vector<std::uint8_t>> index_of(std::span<const std::uint8_t> shp) {
   return shx;
 }
 
-// Checks that the records and their bytes are in the file.
+// Checks that the file contains all bytes of the records.
 Result<void> check_dbf(std::span<const std::uint8_t> dbf, std::size_t shapes) {
   if (dbf.size() < kDbfHeader) return refuse("The .dbf is incomplete.");
   const std::uint64_t records = little_endian(dbf, 4);
@@ -242,7 +243,7 @@ std::string epsg_of(std::string_view wkt) {
   const auto digits = rest.find_first_not_of("0123456789");
   if (digits == 0 || digits == std::string_view::npos || digits > 6 || rest[digits] != '"')
     return {};
-  // The last authority is that of the whole system only if nothing else follows it.
+  // The last authority belongs to the whole coordinate system only if nothing else follows it.
   if (rest.substr(digits + 1).find_first_not_of("] \r\n\t") != std::string_view::npos) return {};
   return "EPSG:" + std::string(rest.substr(0, digits));
 }

@@ -8,7 +8,7 @@
 namespace strata::query {
 namespace {
 
-// shapelib's hooks have no user pointer
+// the object of this thread, because the hooks of shapelib have no user pointer
 thread_local ShapelibMemory* current = nullptr;
 
 ShapelibMemory::OpenFile& file_of(SAFile handle) {

@@ -9,8 +9,8 @@
 
 namespace strata::query {
 
-// Files in memory for shapelib, and its first error message about them. During its lifetime,
-// shapelib calls of the same thread through `hooks` see only these files; nothing is written.
+// Files in memory for shapelib, and its first error message about them. While this object exists,
+// calls of shapelib through `hooks` on the same thread read only these files. Nothing is written.
 class ShapelibMemory {
  public:
   using Files = std::map<std::string, std::span<const std::uint8_t>>;
@@ -20,7 +20,7 @@ class ShapelibMemory {
   ShapelibMemory& operator=(const ShapelibMemory&) = delete;
 
   SAHooks* hooks() { return &hooks_; }
-  // "WHAT: the message of the library." for an error message.
+  // Returns "WHAT: the message of the library." for an error message.
   std::string complaint(const std::string& what) const;
 
   struct OpenFile {

@@ -9,10 +9,10 @@ namespace strata::query {
 namespace {
 
 constexpr std::uint32_t kNoRegion = 0xffffffffu;
-constexpr std::size_t kMinCorners = 4;  // of a region
+constexpr std::size_t kMinCorners = 4;  // corners of the smallest region
 constexpr glm::ivec2 kSteps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-// At a corner: the texels to the left and to the right of the edge that continues in each
-// direction, as their lower left corners.
+// The texels to the left and to the right of the edge that continues from a corner in each
+// direction. The offsets are from that corner to the lower left corners of the texels.
 constexpr glm::ivec2 kLeftOf[] = {{0, 0}, {-1, 0}, {-1, -1}, {0, -1}};
 constexpr glm::ivec2 kRightOf[] = {{0, -1}, {0, 0}, {-1, 0}, {-1, -1}};
 
@@ -57,7 +57,7 @@ class Regions {
     return {block % map_.blocks_per_side * kBlockSize + texel % kBlockSize,
             block / map_.blocks_per_side * kBlockSize + texel / kBlockSize};
   }
-  // kNoSlot: no texel is there.
+  // Returns kNoSlot if there is no texel.
   mesh::SlotTexel texel_at(glm::ivec2 at) const {
     if (at.x < 0 || at.y < 0) return {mesh::kNoSlot, 0};
     return {mesh::slot_at(map_, at.x / kBlockSize, at.y / kBlockSize),
@@ -88,8 +88,8 @@ class Regions {
     }
   }
 
-  // Walks from the lower left corner of a texel along its lower edge, with the region always on the
-  // left; stops after more than `most` corners.
+  // Returns the ring that begins at the lower left corner of a texel, along its lower edge. The
+  // region is always on the left. Stops after more than `most` corners.
   std::vector<glm::ivec2> walk(glm::ivec2 start, std::uint32_t region, std::size_t most) {
     std::vector<glm::ivec2> ring;
     glm::ivec2 at = start;
@@ -121,7 +121,7 @@ class Regions {
   const mesh::SurfaceMap& map_;
   const std::vector<std::uint32_t>& labels_;
   std::vector<std::uint32_t> region_of_;
-  // a slot: bits of the texels whose lower edge is on a ring found before
+  // for each slot, the bits of the texels whose lower edge is on a ring that was already found
   std::vector<std::uint64_t> walked_;
 };
 

@@ -8,12 +8,12 @@
 
 namespace strata::query {
 
-// Finds the pixel of a picture of this size at a position; nothing outside of the picture.
+// Finds the pixel of an image at a position in the plane; nothing outside the image.
 class PixelFinder {
  public:
   PixelFinder(int width, int height, const WorldFile& world);
   std::optional<std::size_t> pixel_at(const glm::dvec2& point) const;  // row · width + column
-  // In pixels, centers at integers; also outside of the picture.
+  // Returns a position in pixels, with centers at integers. The position may be outside the image.
   glm::dvec2 place_of(const glm::dvec2& point) const {
     return pixel_from_plane_ * (point - first_centre_);
   }
@@ -24,14 +24,15 @@ class PixelFinder {
   glm::dvec2 first_centre_;
 };
 
-// A picture's colors by positions in the plane.
+// The colors of an image by position in the plane.
 class PlacedPicture {
  public:
   PlacedPicture(Picture picture, const WorldFile& world);
 
-  // The RGBA pixel at a position; null outside of the picture or where it is less than half opaque.
+  // Returns the RGBA pixel at a position. Returns null outside the image, and for a pixel that is
+  // less than half opaque.
   const std::uint8_t* pixel_at(const glm::dvec2& point) const;
-  // The luminance 0…255 (Rec. 709 weights of the sRGB numbers, rounded).
+  // Returns the luminance from 0 to 255 (sRGB numbers with the weights of Rec. 709, rounded).
   std::optional<int> luminance_at(const glm::dvec2& point) const;
   const Picture& picture() const { return picture_; }
 

@@ -13,7 +13,8 @@ namespace strata::query {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr std::size_t kMaxHeader = 4096;  // Strata writes about 120 bytes; NumPy pads to 64
+// Strata writes about 120 bytes; NumPy pads to a multiple of 64
+constexpr std::size_t kMaxHeader = 4096;
 
 std::string dtype_of(ValueType type) {
   static constexpr const char* kNames[] = {"|u1", "<u2", "<u4", "|i1", "<i2", "<i4", "<f2", "<f4"};
@@ -27,8 +28,8 @@ struct Header {
   std::size_t data_at = 0;
 };
 
-// The text of a key's value in a Python dictionary without blanks, up to the comma or brace that
-// ends it.
+// Returns the value of a key in a Python dictionary without blanks. The value is the text up to the
+// comma or brace that ends it.
 std::optional<std::string> value_of(const std::string& dictionary, const std::string& key) {
   const auto at = dictionary.find("'" + key + "':");
   if (at == std::string::npos) return std::nullopt;
@@ -76,7 +77,7 @@ Result<void> check_shape(const Layer& layer, const Header& header) {
                        ", but the layer needs " + raster_needs(layer) + ".");
 }
 
-// "'>f4'"
+// Parses a type such as "'>f4'".
 std::optional<SampleForm> form_of(std::string_view dtype) {
   if (dtype.size() != 5 || dtype.front() != '\'' || dtype.back() != '\'') return std::nullopt;
   const char order = dtype[1], kind = dtype[2];
@@ -100,7 +101,7 @@ std::optional<SampleForm> form_of(std::string_view dtype) {
                                                                 : std::nullopt;
 }
 
-// The form of an element: a value, followed in a structured array by a valid flag.
+// The storage format of an element: a value, followed in a structured array by a valid flag.
 struct Element {
   SampleForm value;
   std::optional<SampleForm> valid;
@@ -174,7 +175,7 @@ Result<TileMap> decode_npy(const Layer& layer, std::span<const std::uint8_t> byt
                          std::to_string(side * side * stride) + ". It is incomplete or damaged.");
   TileMapBuilder builder(layer);
   const SampleReader reader(layer, element.value);
-  // In the order of the file, so that memory is read sequentially.
+  // Follows the order of the file, so that memory is read sequentially.
   const std::uint8_t* texel = data.data();
   for (std::size_t slow = 0; slow < side; ++slow)
     for (std::size_t fast = 0; fast < side; ++fast, texel += stride) {

@@ -128,7 +128,8 @@ Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> byt
     if (!guarded(png, [&] { png_read_row(png, line.data(), nullptr); })) return damaged();
     const std::uint8_t* at = line.data();
     for (int x = 0; x < layer.resolution; ++x, at += 2 * width) {
-      if (at[width] < 0x80) continue;  // the high byte of alpha: at least half opaque is valid
+      // the high byte of alpha: a texel is valid if it is at least half opaque
+      if (at[width] < 0x80) continue;
       const std::uint8_t value[2] = {at[width - 1], at[0]};
       STRATA_TRY(builder.put(x, row, value));
     }

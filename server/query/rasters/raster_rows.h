@@ -11,8 +11,8 @@
 
 namespace strata::query {
 
-// Reads a layer's texels by the rows of a file: row 0 is v = 1 (top), while tiles count from the
-// bottom.
+// Reads the texels of a layer by the rows of a file. Row 0 is v = 1 (top), while tiles are numbered
+// from the bottom.
 class TileRows {
  public:
   TileRows(const Layer& layer, const TileMap& tiles);  // keeps a reference to `tiles`
@@ -25,11 +25,11 @@ class TileRows {
   std::vector<const TileData*> tiles_;
 };
 
-// The reverse: builds tiles from texels in any order. Tiles without a valid texel are left out.
+// Builds tiles from texels in any order. Tiles without a valid texel are left out.
 class TileMapBuilder {
  public:
   explicit TileMapBuilder(const Layer& layer);
-  // Sets a valid texel from its little-endian storage. A float that is not finite is an Error with
+  // Sets a valid texel from its little-endian bytes. A float that is not finite is an error with
   // its position.
   Result<void> put(int x, int file_row, const std::uint8_t* value);
   TileMap finish();
@@ -42,9 +42,9 @@ class TileMapBuilder {
   std::vector<std::shared_ptr<TileData>> tiles_;
 };
 
-// Common to all raster errors: `invalid` "Raster not accepted".
+// Returns the common error for rasters: `invalid`, "Raster not accepted".
 tl::unexpected<Error> refuse_raster(std::string detail);
-// "2048 × 2048 texels of u16", as the layer needs it.
+// Describes the raster that the layer needs, such as "2048 × 2048 texels of u16".
 std::string raster_needs(const Layer& layer);
 // Refuses a width or height that differs from the layer's.
 Result<void> check_raster_size(const Layer& layer, std::uint64_t width, std::uint64_t height);

@@ -24,7 +24,7 @@ double half_of(std::uint64_t bits) {
   return decode_value(ValueType::f16, static_cast<std::uint32_t>(bits));
 }
 
-// Rounds as the file stores it.
+// Rounds the number to the precision of the samples in the file.
 long double rounded(double nodata, const SampleForm& form) {
   if (form.kind == Kind::real && form.bytes == 4) return static_cast<float>(nodata);
   if (form.kind == Kind::real && form.bytes == 2)

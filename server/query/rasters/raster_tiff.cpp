@@ -32,7 +32,8 @@ void set_tiles(TIFF* tiff, const Layer& layer) {
   TIFFSetField(tiff, TIFFTAG_ZIPQUALITY, 3);
 }
 
-// Integers have no value for "not painted", as any may be painted; in floats NaN is never painted.
+// Integers have no value for "not painted", because any integer may be painted. Floats use NaN,
+// which is never painted.
 void describe_values(TIFF* tiff, const Layer& layer) {
   const std::uint16_t not_alpha = EXTRASAMPLE_UNSPECIFIED;
   set_tiles(tiff, layer);
@@ -47,7 +48,7 @@ void describe_values(TIFF* tiff, const Layer& layer) {
   if (is_float(layer.type)) set_nodata(tiff, "nan");
 }
 
-// In GDAL's form of an internal mask.
+// Sets the tags of an internal mask as in GDAL.
 void describe_mask(TIFF* tiff, const Layer& layer) {
   set_tiles(tiff, layer);
   TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_MASK);
@@ -56,7 +57,7 @@ void describe_mask(TIFF* tiff, const Layer& layer) {
   TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MASK);
 }
 
-// A layer's texels by the tiles of a TIFF.
+// Writes the texels of a layer as the tiles of a TIFF.
 class TiffTiles {
  public:
   TiffTiles(const Layer& layer, const TileMap& tiles)
@@ -71,7 +72,7 @@ class TiffTiles {
         bits_(static_cast<std::size_t>(side_) * kTiffTile),
         valid_(bits_.size()) {}
 
-  // Value and valid of each texel, interleaved.
+  // Writes the value and the valid flag of each texel, interleaved.
   bool write_values(TIFF* tiff) {
     return write(tiff, kTiffTile * 2 * static_cast<std::size_t>(width_),
                  [&](std::uint8_t* row, int x, std::size_t from) {
@@ -83,7 +84,7 @@ class TiffTiles {
                      std::memcpy(to + width_, &one_, static_cast<std::size_t>(width_));
                  });
   }
-  // A bit for each texel.
+  // Writes one bit for each texel.
   bool write_mask(TIFF* tiff) {
     return write(tiff, kTiffTile / 8, [&](std::uint8_t* row, int x, std::size_t from) {
       if (valid_[from]) row[x / 8] |= static_cast<std::uint8_t>(0x80u >> x % 8);
@@ -117,7 +118,7 @@ class TiffTiles {
   }
 
   const int side_, width_;
-  const std::uint32_t one_, nothing_;  // bits of valid, and of a missing value
+  const std::uint32_t one_, nothing_;  // bits of a set valid flag, and of a missing value
   const TileRows rows_;
   std::vector<std::uint32_t> bits_;
   std::vector<std::uint8_t> valid_;

@@ -10,7 +10,7 @@
 namespace strata::query {
 namespace {
 
-constexpr int kMaxDirectories = 64;  // limit of the search for a mask
+constexpr int kMaxDirectories = 64;  // limit for the search for a mask
 
 tl::unexpected<Error> damaged(const TiffMemory& file) {
   return refuse_raster("The TIFF cannot be read: " +
@@ -27,7 +27,8 @@ std::optional<SampleForm> sample_form(int bits, int format) {
   return std::nullopt;
 }
 
-// A value, and in the second sample, if any, whether it is painted.
+// The format of a texel: a value, and optionally a second sample, which is 0 if the texel is not
+// painted.
 struct TiffForm {
   SampleForm sample;
   int samples = 1;
@@ -110,7 +111,7 @@ Result<void> visit_plane(TIFF* tiff, const TiffMemory& file, std::uint32_t side,
   return {};
 }
 
-// Which texels are painted: read first if the file stores this separately from the values.
+// The set of painted texels. It is read first if the file stores it separately from the values.
 class Painted {
  public:
   explicit Painted(int side) : side_(static_cast<std::size_t>(side)) {}
@@ -139,7 +140,7 @@ Result<void> read_valid_plane(TIFF* tiff, const TiffMemory& file, const Layer& l
                      });
 }
 
-// Looks for a mask. If there is one, it becomes the current directory.
+// Searches for a mask. If the file has one, the mask becomes the current directory.
 Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
   for (int i = 1; i < kMaxDirectories && !TIFFLastDirectory(tiff); ++i) {
     if (!TIFFSetDirectory(tiff, static_cast<std::uint16_t>(i))) return damaged(file);
@@ -149,8 +150,8 @@ Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
   return false;
 }
 
-// Reads the internal mask of GDAL, of 1 or 8 bits. Afterwards the first directory is the current
-// one again.
+// Reads the internal mask of GDAL, with 1 or 8 bits per texel. Makes the first directory the
+// current one again.
 Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted& painted) {
   const auto has_mask = STRATA_TRY(find_mask(tiff, file));
   if (has_mask) {

@@ -9,7 +9,7 @@
 namespace strata::query {
 namespace {
 
-// Points on a line in steps of at most `step`, including its corners.
+// Returns points on a line in steps of at most `step`, including the corners of the line.
 template <class Point>
 Result<std::vector<Point>> steps_of(std::span<const Point> corners, double step,
                                     const char* field) {

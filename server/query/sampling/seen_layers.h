@@ -15,13 +15,13 @@ class SearchTree;
 
 namespace strata::query {
 
-// Which of several overlying layers a picture shows.
+// The layers that are visible where several layers overlap.
 
-enum class Cover { nothing, some, all };  // how much a value hides of the layers below it
+enum class Cover { nothing, some, all };  // how much of the layers below a value hides
 
 struct LayerCover {
-  std::function<Cover(double value)> of;  // called by several threads
-  bool tells_values = false;              // also collect which of its values are seen
+  std::function<Cover(double value)> of;  // called on several threads
+  bool tells_values = false;              // also collect its visible values
 };
 
 struct SeenLayer {
@@ -29,9 +29,9 @@ struct SeenLayer {
   std::set<double> values;
 };
 
-// For each layer (bottom to top), finds whether it is visible at the center of a cell of a grid
-// over the camera's window: where it is drawn and no layer above covers it completely. `covers`:
-// one for each layer.
+// Finds, for each layer from bottom to top, whether it is visible in the window of the camera. The
+// window is divided by a grid, and the centers of its cells are tested. A layer is visible where it
+// is drawn and no layer above covers it completely. `covers` has one element for each layer.
 std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec3& origin,
                                    const Camera& camera, int columns, int rows,
                                    const std::vector<LayerView>& layers,

@@ -27,12 +27,13 @@ struct CellHash {
 
 struct CellSum {
   CompensatedSum area_m2, weight, weighted_value;
-  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;  // value
+  // range of the values
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   glm::dvec3 weighted_position{0};
-  std::vector<std::pair<std::uint32_t, double>> keys;  // few in one cell
+  std::vector<std::pair<std::uint32_t, double>> keys;  // one cell has only a few
 };
 
-// Texels without an area count only if the cell has no others.
+// Texels without an area count only if the cell has no other texels.
 double weight_of(const TexelSample& sample) { return std::max(sample.area_m2, 1e-200); }
 
 void add_key(CellSum& sum, std::uint32_t bits, double weight) {
@@ -61,7 +62,7 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
   bool countable = true;
   for_each_sample(texels, [&](const TexelSample& sample) {
     const glm::dvec3 index = glm::floor(sample.position / edge);
-    // excludes NaN and infinity
+    // false for NaN and infinity, too
     for (int axis = 0; axis < 3; ++axis) countable &= std::abs(index[axis]) < 1e15;
     if (!countable) return false;
     CellSum& sum = cells[{static_cast<std::int64_t>(index.z), static_cast<std::int64_t>(index.y),

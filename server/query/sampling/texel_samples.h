@@ -15,9 +15,9 @@ namespace strata::query {
 // One layer with the positions of its texels, now or at an earlier time.
 struct SurfaceTexels {
   LayerView view;
-  std::shared_ptr<const mesh::SurfaceMap> map;  // of the layer's resolution
-  std::optional<TexelSelection> within;         // nothing: the whole surface
-  glm::dvec3 origin{0};                         // of model space, in the world
+  std::shared_ptr<const mesh::SurfaceMap> map;  // surface map with the resolution of the layer
+  std::optional<TexelSelection> within;         // nothing means the whole surface
+  glm::dvec3 origin{0};                         // origin of model space, in world coordinates
   double metres_per_unit = 1;
 };
 
@@ -28,8 +28,8 @@ struct TexelSample {
   double value = 0;
 };
 
-// Calls visit(sample) for each valid surface texel that is selected, tile by tile ascending, until
-// it returns false.
+// Calls visit(sample) for each valid surface texel that is selected, in ascending order of tiles.
+// Stops when `visit` returns false.
 template <class Visit>
 void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
   const double m2_per_unit2 = texels.metres_per_unit * texels.metres_per_unit;
@@ -51,11 +51,12 @@ void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
 
 inline constexpr std::size_t kMaxCells = 2'000'000;
 
-// Groups the same texels by the cubes of a grid through the world's origin, with edges of `edge`
-// model units: the centroid, weighted by area, the sum of areas and the mean of values, weighted by
-// area. For keys (`classes_of` makes each value a class) the value is the key with the largest
-// area, among equals the lowest. Ascending by z, y and x. Refused (invalid at `cell`): more than
-// kMaxCells cells, or an edge too small for the cell indices.
+// Groups the same texels by the cubic cells of a grid through the origin of the world. Each cell
+// has edges of `edge` model units. A sample has the centroid and the mean of the values, both
+// weighted by area, and the sum of the areas. For keys (`classes_of` makes each value a class), the
+// value is the key with the largest area, or the lowest of several such keys. Samples are ascending
+// by z, y and x. Returns an `invalid` error at `cell` for more than kMaxCells cells, or for an edge
+// too small for the cell indices.
 Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, double edge);
 
 }  // namespace strata::query

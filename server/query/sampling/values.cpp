@@ -52,8 +52,8 @@ SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origi
 
 namespace {
 
-// Index along a curve through the box of the points (Morton 1966): neighbors on it are mostly
-// neighbors in space.
+// Returns the index along a curve through the bounding box of the points (Morton 1966). Neighbors
+// on the curve are mostly neighbors in space.
 std::uint64_t curve_index(const glm::dvec3& place) {
   std::uint64_t index = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -89,7 +89,7 @@ std::vector<SurfacePoint> nearest_points(const mesh::SearchTree& tree, const glm
   mesh::parallel_for(
       threads, static_cast<int>((order.size() + kPointsAtOnce - 1) / kPointsAtOnce), [&](int part) {
         const std::size_t first = static_cast<std::size_t>(part) * kPointsAtOnce;
-        // a point on the surface: the nearest one cannot be farther
+        // a point on the surface; the nearest point cannot be farther away
         std::optional<glm::vec3> last;
         for (std::size_t i = first; i < std::min(order.size(), first + kPointsAtOnce); ++i) {
           const std::uint32_t number = order[i].second;
@@ -98,7 +98,7 @@ std::vector<SurfacePoint> nearest_points(const mesh::SearchTree& tree, const glm
             points[number] = off_the_model(layers);
             continue;
           }
-          // A little more than the distance, because that is rounded.
+          // Slightly more than the distance, because the distance is rounded.
           const float limit =
               last ? std::min(kFar, glm::distance(in_model, *last) * 1.0001f + 1e-30f) : kFar;
           auto hit = tree.nearest(in_model, limit);
@@ -121,7 +121,7 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
   auto hit = tree.first_hit(start, direction);
   if (!hit || span.begin + hit->distance > span.end) return off_the_model(layers);
   if (eye_is_cut_away(camera) && glm::dot(hit->normal, direction) > 0)
-    return off_the_model(layers);  // inside of a solid
+    return off_the_model(layers);  // inside a solid
   hit->distance += static_cast<float>(span.begin);
   return surface_point(*hit, origin, layers);
 }
@@ -159,7 +159,7 @@ std::vector<std::uint8_t> seen_selection(const mesh::SearchTree& tree, const glm
       if (!point.hit) continue;
       const auto texel = mesh::surface_texel_at(map, point.uv);
       if (!texel) continue;
-      // 64 texels of a slot, as TexelSelection
+      // a word of TexelSelection has the 64 texels of a slot
       if (selection == nullptr || ((*selection)[*texel / 64] >> (*texel % 64) & 1u) != 0)
         seen[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] = 1;
     }

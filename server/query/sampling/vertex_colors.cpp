@@ -10,7 +10,7 @@
 namespace strata::query {
 namespace {
 
-// between two checks of the question
+// number of vertices between two checks of the current question
 constexpr std::size_t kVerticesAtOnce = 1u << 16;
 
 using Rgb = std::array<std::uint8_t, 3>;
@@ -29,14 +29,14 @@ Rgb rounded(const glm::dvec3& color) {
   return out;
 }
 
-// The share of the surface that a value's color covers, 0…1.
+// Returns the share of the surface that the color of a value covers, from 0 to 1.
 double cover_of(const DrawnLayer& layer, double value, const Rgba& color) {
   const Palette::Point* point = point_of(*layer.palette, value);
   if (point && point->pattern == Pattern::outline) return 0;
   return color[3] / 255.0 * std::clamp(layer.opacity, 0.0, 1.0);
 }
 
-// Colors from 0 to 255, as in shade_pass.frag.
+// Blends colors from 0 to 255, as in shade_pass.frag.
 glm::dvec3 blended(LayerBlend blend, const glm::dvec3& below, const glm::dvec3& ink, double cover) {
   switch (blend) {
     case LayerBlend::normal: break;

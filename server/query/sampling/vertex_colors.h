@@ -19,33 +19,34 @@ struct DrawnLayer {
   TileMap tiles;
   int resolution = 0;
   ValueType type = ValueType::u8;
-  // by the texel's value: never a palette that colors by a column
+  // colors by the value of the texel, never by a column
   std::shared_ptr<const Palette> palette;
   double opacity = 1;
   LayerBlend blend = LayerBlend::normal;
 };
 
-// The colors of a model's vertices, composed as in pictures but without light
-// (shaders/gbuffer_pass.frag, shade_pass.frag): the colors of the scan, then its photos, then the
-// layers, each with its opacity and the alpha of its palette. Effects that depend on a screen are
-// left out: hatch and dots are the full color of their class, an outline has no color, and values
-// that wait for review have no mark.
+// The colors of the vertices of a model, composed as in frames but without light
+// (shaders/gbuffer_pass.frag, shade_pass.frag). The colors of the scan are at the bottom. Its
+// photos follow, and then the layers, each with its opacity and the alpha of its palette. Effects
+// that depend on a screen are left out. Hatches and dots have the full color of their class, an
+// outline has no color, and values that wait for review have no mark.
 class VertexColors {
  public:
   explicit VertexColors(std::shared_ptr<const mesh::Geometry> geometry)
       : geometry_(std::move(geometry)) {}
 
-  // Adds a photo over the current colors; all photos before the first layer. The photo is not kept.
+  // Adds a photo over the current colors. Add all photos before the first layer. The photo is not
+  // kept.
   void add_photo(const Picture& photo, double opacity);
   void add_layer(DrawnLayer layer) { layers_.push_back(std::move(layer)); }
 
-  // Red, green and blue of the position that these vertices of the geometry share; without vertices
-  // it is black. A layer contributes the value of the first vertex whose texel is valid.
+  // Returns the red, green and blue of the position that these vertices of the geometry share, or
+  // black without vertices. A layer contributes the value of the first vertex with a valid texel.
   std::array<std::uint8_t, 3> at(std::span<const std::uint32_t> vertices) const;
 
  private:
   std::shared_ptr<const mesh::Geometry> geometry_;
-  // by vertex; empty: no photo, so that the base is the scan's colors
+  // by vertex; empty without a photo: the base then has the colors of the scan
   std::vector<std::array<std::uint8_t, 3>> base_;
   std::vector<DrawnLayer> layers_;  // bottom to top
 };

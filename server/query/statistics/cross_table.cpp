@@ -12,7 +12,7 @@
 namespace strata::query {
 namespace {
 
-constexpr std::uint64_t kNone = std::uint64_t{1} << 32;  // above the bits of any value
+constexpr std::uint64_t kNone = std::uint64_t{1} << 32;  // greater than the bits of any value
 
 struct Sum {
   std::uint64_t texels = 0;
@@ -37,7 +37,7 @@ class Values {
   const int map_resolution_;
 };
 
-// The values of one side in order, and their indices.
+// The sorted values of one side of the table, and their indices.
 class Side {
  public:
   Side(ValueType type, std::vector<std::uint64_t> all) : type_(type), bits_(std::move(all)) {
@@ -92,7 +92,7 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
   std::unordered_map<std::pair<std::uint64_t, std::uint64_t>, Sum, PairHash> sums;
   std::unordered_map<std::uint64_t, int> row_bits, column_bits;
   std::pair<std::uint64_t, std::uint64_t> last{kNone, kNone};
-  Sum* last_sum = nullptr;  // neighbors mostly share both; references stay valid
+  Sum* last_sum = nullptr;  // neighbors mostly share both values; references stay valid
   const QuestionTurn turn;
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     if (slot % 256 == 0) turn.check(256 * kBlockSize * kBlockSize);

@@ -15,19 +15,20 @@ struct SurfaceMap;
 
 namespace strata::query {
 
-constexpr std::size_t kMaxCrossTableSide = 1024;  // distinct values of one layer
+constexpr std::size_t kMaxCrossTableSide = 1024;  // limit for the distinct values of one layer
 
-// The area of each pair of values of two layers, weighted by true surface area.
+// The true surface area of each pair of values of two layers.
 struct CrossTable {
-  using Key = std::optional<double>;         // nothing: the layer has no value there
-  std::vector<Key> rows, columns;            // values that occur, ascending, nothing last
-  std::vector<std::vector<double>> area_m2;  // a row's columns
+  using Key = std::optional<double>;         // nothing if the layer has no value
+  std::vector<Key> rows, columns;            // the values that occur, ascending; nothing is last
+  std::vector<std::vector<double>> area_m2;  // indexed by row, then by column
   std::vector<std::vector<std::uint64_t>> texels;
 };
 
-// Counts surface texels of `map`, within `within` (null: all), where at least one of the layers has
-// a value. For a layer of another resolution, the texel that contains the center of the map's texel
-// counts. Refused (invalid): a layer of fractions, or of more than kMaxCrossTableSide values.
+// Counts the surface texels of `map` where at least one of the layers has a value. `within`
+// restricts the texels; null means all texels. For a layer with another resolution, the layer texel
+// that contains the center of the map texel counts. Returns an `invalid` error for a floating-point
+// layer, or for one with more than kMaxCrossTableSide values.
 Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns,
                                   const mesh::SurfaceMap& map, const TexelSelection* within,
                                   double metres_per_unit);

@@ -18,9 +18,9 @@ struct KeyArea {
   glm::dvec3 bounds_min{0}, bounds_max{0};  // world
 };
 
-// The surface area of each key of a layer of records, as in `statistics`, without a limit to the
-// number of keys. Valid surface texels, gutter excluded. Tiles in `cache` (of this layer) are not
-// counted again.
+// Returns the surface area of each key of a layer of records, as in `statistics` but without a
+// limit on the number of keys. Counts valid surface texels without the gutter. Tiles in `cache`,
+// which is a cache of this layer, are not counted again.
 std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::SurfaceMap& map,
                                           const glm::dvec3& origin, double metres_per_unit,
                                           TileSumsCache* cache = nullptr);

@@ -20,7 +20,7 @@ namespace {
 using mesh::kNoNeighbour;
 using mesh::Way;
 
-// The class at each surface texel of the map.
+// The class of each surface texel of the map.
 class Classes {
  public:
   Classes(const LayerView& view, const mesh::SurfaceMap& map, const TexelSelection* within,
@@ -48,14 +48,15 @@ class Classes {
  private:
   bool is_one_;
   std::vector<std::uint64_t> valid_;
-  std::vector<std::uint32_t> class_of_;  // of valid texels; empty: there is one class
+  // classes of valid texels; empty if there is only one class
+  std::vector<std::uint32_t> class_of_;
 };
 
-constexpr std::size_t kDirections = 8;  // and the opposite ones
+constexpr std::size_t kDirections = 8;  // plus the opposite directions
 constexpr std::array<std::array<int, 2>, kDirections> kDirection{
     {{1, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 1}, {-1, 2}, {-1, 1}, {-2, 1}}};
 
-// The paths along the axes to the texel at an offset, those near the straight line first.
+// The paths along the axes to the texel at an offset. Paths near the straight line come first.
 struct Walk {
   int steps = 0;
   std::array<std::array<Way, 3>, 3> orders{};
@@ -94,7 +95,7 @@ class Measuring {
   }
 
  private:
-  // Lines extend over two texels.
+  // Checks the neighboring blocks too, because lines extend over two texels.
   bool has_no_border(std::uint32_t slot) const {
     bool empty = graph_.has_links[slot] == 0, full = empty && classes_.is_valid(slot * 64);
     const std::uint32_t a_class = full ? classes_.of(slot * 64) : 0;
@@ -112,7 +113,8 @@ class Measuring {
     return empty || full;
   }
 
-  // Each texel of a pair adds half of the pair's length when it is visited.
+  // Adds half of the length of each pair of texels; the other texel of the pair adds the other
+  // half.
   void measure_texel(std::uint32_t texel, Sums& sums) const {
     Surroundings around(*this, texel);
     const bool valid = classes_.is_valid(texel);
@@ -140,7 +142,7 @@ class Measuring {
     if (b_valid) sums.of_class[classes_.of(b)] += length;
   }
 
-  // kNoNeighbour: the island ends before.
+  // Returns kNoNeighbour if the island ends before the end of the walk.
   std::uint32_t walk(std::uint32_t texel, const Walk& walk) const {
     for (int order = 0; order < walk.order_count; ++order) {
       std::uint32_t at = texel;
@@ -155,7 +157,7 @@ class Measuring {
     return mesh::neighbour(map_, graph_, texel, way);
   }
 
-  // kNoSlot: the block is empty.
+  // Returns kNoSlot if the block is empty.
   std::uint32_t slot_beside(std::uint32_t slot, int dx, int dy) const {
     const auto block = static_cast<int>(map_.block_of_slot[slot]);
     const int x = block % map_.blocks_per_side + dx, y = block / map_.blocks_per_side + dy;
@@ -168,13 +170,13 @@ class Measuring {
     return glm::dvec3(map_.position(texel / 64, static_cast<int>(texel % 64)));
   }
 
-  // Properties of a texel that are computed only near a border.
+  // The properties of a texel that are computed only near a border.
   class Surroundings {
    public:
     Surroundings(const Measuring& measuring, std::uint32_t texel)
         : measuring_(measuring), texel_(texel) {}
 
-    // The border length that a pair of texels in this direction represents.
+    // Returns the border length that a pair of texels in this direction represents.
     double weight(std::size_t direction) {
       if (!weights_) weights_ = weigh();
       return (*weights_)[direction % kDirections];
@@ -182,7 +184,8 @@ class Measuring {
 
     bool is_at_open_edge() { return reach().at_open_edge; }
 
-    // The texel across a seam in this direction; kNoNeighbour if there is no other side.
+    // Returns the texel across a seam in this direction, or kNoNeighbour if the seam has no other
+    // side.
     std::uint32_t beyond_seam(std::size_t direction) {
       if (reach().over_seam.empty()) return kNoNeighbour;
       const auto& [x, y] = sides();
@@ -194,7 +197,8 @@ class Measuring {
       std::uint32_t found = kNoNeighbour;
       for (const std::uint32_t other : reach().over_seam) {
         const glm::dvec3 there = measuring_.place(other) - here;
-        // Where a seam ends at an open edge, either may be ahead.
+        // Where a seam ends at an open edge, this direction may lead to the seam or to the open
+        // edge.
         if (is_at_open_edge() && glm::dot(there, way) < 0.5 * glm::length(there) * glm::length(way))
           continue;
         const double apart = glm::length(there - way);
@@ -210,7 +214,7 @@ class Measuring {
       std::vector<std::uint32_t> over_seam;
       bool at_open_edge = false;
     };
-    // The texels reached by a path of at most three steps.
+    // Returns the texels that a path of at most three steps reaches.
     const Reach& reach() {
       if (reach_) return *reach_;
       reach_.emplace();
@@ -266,7 +270,7 @@ class Measuring {
       return weights;
     }
 
-    // A texel's sides as vectors on the surface.
+    // Returns the sides of a texel as vectors on the surface.
     const std::pair<glm::dvec3, glm::dvec3>& sides() {
       if (sides_) return *sides_;
       const glm::dvec3 here = measuring_.place(texel_);
@@ -279,7 +283,7 @@ class Measuring {
       };
       sides_.emplace(side(Way::right, Way::left), side(Way::upper, Way::lower));
       if (glm::length(glm::cross(sides_->first, sides_->second)) > 0) return *sides_;
-      // In an island that is one texel thin: the texel is taken as a square.
+      // In an island that is one texel wide, the texel is treated as a square.
       const double edge = std::sqrt(measuring_.map_.area[texel_]);
       sides_ = {glm::dvec3(edge, 0, 0), glm::dvec3(0, edge, 0)};
       return *sides_;

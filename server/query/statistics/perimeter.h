@@ -14,22 +14,22 @@ struct TexelGraph;
 
 namespace strata::query {
 
-// In model units, along the surface.
+// Lengths of borders in model units, along the surface.
 struct Perimeters {
   double all = 0;  // around all valid texels
-  std::map<std::uint32_t, double>
-      of_class;  // by ValueClasses::of, around each class; a border of two classes counts for both
+  // around each class, by ValueClasses::of; a border between two classes counts for both
+  std::map<std::uint32_t, double> of_class;
 };
 
-// Measures the borders of valid texels, restricted to texels in `within` (null: all). An open edge
-// of the mesh is a border, a seam of the atlas is not.
+// Measures the borders of valid texels. `within` restricts the texels; null means all texels. An
+// open edge of the mesh is a border. A seam of the atlas is not a border.
 //
-// Edges of texels would be up to 41 % too long. By the Cauchy-Crofton formula the length of a curve
-// is proportional to the number of lines that cross it: lines through texels in 8 directions are
-// counted, each weighted by its spacing and share of directions on the surface itself, so that
-// stretched texels count with their true size (Boykov and Kolmogorov, "Computing geodesics and
-// minimal surfaces via graph cuts", ICCV 2003). Straight borders are within 2 %; for areas a few
-// texels wide, and along seams, the error may be about a texel.
+// The edges of texels would be up to 41 % too long. By the Cauchy-Crofton formula, the length of a
+// curve is proportional to the number of lines that cross it. Lines through texels in 8 directions
+// are counted. Each line is weighted by its spacing and its share of the directions, both on the
+// surface itself, so stretched texels count with their true size (Boykov and Kolmogorov, "Computing
+// geodesics and minimal surfaces via graph cuts", ICCV 2003). The error of straight borders is at
+// most 2 %. For areas a few texels wide, and along seams, the error may be about one texel.
 Perimeters measure_perimeters(const LayerView& view, const mesh::SurfaceMap& map,
                               const mesh::TexelGraph& graph, const TexelSelection* within,
                               const ValueClasses& classes, int threads = 1);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-// Sets of connected texels, as trees kept flat (union-find of Tarjan 1975, with path halving).
+// Sets of connected texels, as flat trees: union-find (Tarjan 1975) with path halving.
 class Trees {
  public:
   explicit Trees(std::size_t texels) : parent_(texels, kNone) {}

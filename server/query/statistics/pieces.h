@@ -19,8 +19,8 @@ struct PieceCounts {
   std::map<std::uint32_t, std::uint64_t> of_class;  // by ValueClasses::of
 };
 
-// Counts connected areas of the surface with values of one class, within `within` (null: all).
-// Seams of the atlas do not separate areas.
+// Counts the connected areas of the surface with values of one class. `within` restricts the
+// texels; null means all texels. Seams of the atlas do not separate areas.
 PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map,
                          const mesh::TexelGraph& graph, const TexelSelection* within,
                          const ValueClasses& classes);

@@ -9,7 +9,7 @@
 namespace strata::query {
 namespace {
 
-// A 32-bit code for each value of a type, in the order of the values.
+// Returns a 32-bit code for a value of a type. Codes have the same order as values.
 std::uint32_t code_of(ValueType type, double value) {
   if (!is_float(type)) return static_cast<std::uint32_t>(value - lowest_value(type));
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value) + 0.0f);  // -0 becomes 0
@@ -21,8 +21,8 @@ double value_of(ValueType type, std::uint32_t code) {
   return double{std::bit_cast<float>((code >> 31) != 0 ? code & 0x7fffffffu : ~code)};
 }
 
-// Finds the first of ascending (value, area) pairs that reaches each share of the total. `next()`
-// returns them.
+// Finds the value at which each share of the total area is reached. `add` receives pairs of value
+// and area, in ascending order of values.
 class Reached {
  public:
   explicit Reached(double area) : area_(area) {}
@@ -33,7 +33,7 @@ class Reached {
     last_ = value;
   }
   Quantiles finish() {
-    // rounding of the sum may leave some
+    // rounding of the sum may leave some quantiles without a value
     while (found_ < kQuantiles.size()) values_[found_++] = last_;
     return values_;
   }
@@ -61,8 +61,8 @@ std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap
     return reached.finish();
   }
 
-  // Two 16-bit digits: sums the area of each upper digit, then of the lower digits where a share is
-  // reached.
+  // Splits each code into two 16-bit digits. The first pass sums the area of each upper digit. The
+  // second pass sums the area of each lower digit where a share is reached.
   constexpr std::size_t kDigits = std::size_t{1} << 16;
   const QuestionTurn turn;
   const auto for_each = [&](auto visit) {

@@ -16,7 +16,7 @@ namespace strata::query {
 constexpr std::array<double, 5> kQuantiles = {0.05, 0.25, 0.5, 0.75, 0.95};
 using Quantiles = std::array<double, kQuantiles.size()>;
 
-// Exact, for the texels counted in `sums`. Nothing if they have no area.
+// Returns the exact quantiles of the texels counted in `sums`, or nothing if they have no area.
 std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap& map,
                                    const TexelSelection* within, const TileSums& sums);
 

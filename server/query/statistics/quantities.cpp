@@ -36,7 +36,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   std::unordered_map<std::uint32_t, Sum> sums;
   std::uint32_t last_class = 0;
   const QuestionTurn turn;
-  Sum* last = nullptr;  // neighbors are mostly of one class; references stay valid
+  Sum* last = nullptr;  // neighbors mostly have the same class; references stay valid
   for (const auto& [address, tile] : sorted_tiles(view.snapshot.tiles)) {
     turn.check(kTexelsPerTile);
     for_each_value(*tile, address, type, map, nullptr,
@@ -59,7 +59,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   Quantities out;
   CompensatedSum area;
   out.surface_m2 = map.area_total * m2_per_unit2;
-  // ranges ascend with their number, values by themselves
+  // ranges are sorted by number, values by value
   std::vector<std::pair<double, std::uint32_t>> order;
   for (const auto& [number, sum] : sums)
     order.emplace_back(classes.each ? sum.value : double(number), number);

@@ -17,22 +17,22 @@ namespace strata::query {
 inline constexpr std::size_t kMaxClasses = 1'000'000;
 
 struct Quantity {
-  std::optional<double> value;     // if each value is a class
-  std::optional<double> from, to;  // of a range; empty on an open side
-  std::uint64_t pieces = 0;        // connected areas, across the seams of the atlas
+  std::optional<double> value;     // the class, if each value is a class
+  std::optional<double> from, to;  // the range, if the class is a range; empty on an open side
+  std::uint64_t pieces = 0;        // connected areas; seams of the atlas do not separate them
   std::uint64_t texels = 0;
   double area_m2 = 0;
 };
 
 struct Quantities {
-  std::vector<Quantity> classes;  // classes that occur, ascending
-  Quantity sum;                   // of all of them
-  double surface_m2 = 0;          // of the whole model
+  std::vector<Quantity> classes;  // the classes that occur, ascending
+  Quantity sum;                   // sum over all classes
+  double surface_m2 = 0;          // area of the whole model
 };
 
-// The amount of each class, over valid surface texels (gutter excluded). The map and its graph must
-// be of the layer's resolution. The same result on every call. Refused (invalid): more than
-// kMaxClasses classes.
+// Returns the amount of each class, over valid surface texels without the gutter. The map and its
+// graph must have the resolution of the layer. Every call returns the same result. Returns an
+// `invalid` error for more than kMaxClasses classes.
 Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map,
                               const mesh::TexelGraph& graph, const ValueClasses& classes,
                               double metres_per_unit);

@@ -19,7 +19,8 @@ class Counting {
       : type_(view.layer.type), map_(map), request_(request) {
     for (const auto& [address, tile] : view.snapshot.tiles)
       if (tile) tiles_.emplace_back(address, &tile);
-    // Sums of floats depend on their order: sorting makes the statistics of a layer reproducible.
+    // Sums of floats depend on their order, so sorting makes the statistics of a layer
+    // reproducible.
     std::ranges::sort(tiles_, {}, [](const auto& tile) { return tile.first; });
   }
 

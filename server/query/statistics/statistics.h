@@ -21,12 +21,12 @@ struct KeyStatistics {
   double area_m2 = 0;
   glm::dvec3 centroid{0};                   // world, weighted by area
   glm::dvec3 bounds_min{0}, bounds_max{0};  // world
-  std::optional<std::uint64_t> pieces{};    // if requested: connected areas of this key
-  // if requested: around these areas, along the surface
+  std::optional<std::uint64_t> pieces{};    // if requested: number of connected areas of this key
+  // if requested: the perimeter of these areas, along the surface
   std::optional<double> perimeter_m{};
 };
 
-// Over valid surface texels (gutter excluded), weighted by true surface area.
+// Statistics over valid surface texels without the gutter, weighted by true surface area.
 struct Statistics {
   std::uint64_t texels = 0;
   double area_m2 = 0;
@@ -36,26 +36,28 @@ struct Statistics {
     std::uint64_t texels = 0;
     double area_m2 = 0;
   };
-  // 64 equal bins from min to max; one if all values are equal; empty if no texel is valid
+  // 64 bins of equal width from min to max; one bin if all values are equal; empty if no texel is
+  // valid
   std::vector<Bin> histogram;
-  // integer layers with ≤ 4096 distinct values; otherwise empty
+  // for integer layers with at most 4096 distinct values; otherwise empty
   std::map<double, KeyStatistics> keys;
-  std::optional<Quantiles> quantiles;  // if requested and an area exists
-  // if requested: connected areas, of one value each in integer layers
+  std::optional<Quantiles> quantiles;  // if requested, and if there is an area
+  // if requested: number of connected areas; in integer layers, each area has one value
   std::optional<std::uint64_t> pieces;
-  std::optional<double> perimeter_m;  // if requested: around all valid texels, along the surface
+  // if requested: the perimeter of all valid texels, along the surface
+  std::optional<double> perimeter_m;
 };
 
 struct StatisticsRequest {
-  const TexelSelection* within = nullptr;  // null: the whole surface
+  const TexelSelection* within = nullptr;  // null means the whole surface
   bool quantiles = false;
   bool pieces = false, perimeter = false;   // both need `graph`
-  const mesh::TexelGraph* graph = nullptr;  // of the map
-  TileSumsCache* cache = nullptr;           // of this layer; not used with `within`
+  const mesh::TexelGraph* graph = nullptr;  // the graph of the map
+  TileSumsCache* cache = nullptr;           // the cache of this layer; not used with `within`
   int threads = 1;
 };
 
-// The map must be of the layer's resolution.
+// Computes the statistics of a layer. The map must have the resolution of the layer.
 Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const glm::dvec3& origin,
                       double metres_per_unit, const StatisticsRequest& request = {});
 

@@ -17,7 +17,7 @@ std::vector<TileSums::Key> surface_keys(const TileData& tile, TileAddress addres
   const bool apart = tells_keys_apart(layer);
   std::vector<TileSums::Key> keys;
   std::unordered_map<std::uint32_t, std::size_t> index;
-  std::size_t last = 0;  // neighbors mostly share a key
+  std::size_t last = 0;  // neighboring texels mostly share a key
   for_each_value(tile, address, layer.type, map, nullptr,
                  [&](std::uint32_t slot, int texel, std::uint32_t all_bits, double) {
                    const std::uint32_t bits = apart ? all_bits : 0;

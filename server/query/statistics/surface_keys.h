@@ -10,13 +10,13 @@ struct SurfaceMap;
 
 namespace strata::query {
 
-// Whether areas of a layer are counted by value: for keys of records, and for classes of 8 bits.
-// The values of other layers are measurements, of which there may be as many as texels.
+// Returns true if the areas of the layer are counted by value: for keys of records, and for classes
+// of 8 bits. The values of other layers are measurements, and each texel may have a different one.
 bool tells_keys_apart(const Layer& layer);
 
-// The keys of a tile's valid surface texels, ascending, without a limit. For a layer whose values
-// are not counted separately there is one element, whose bits have no meaning. Empty if no texel is
-// valid.
+// Returns the keys of the valid surface texels of a tile, ascending, in any number. A layer whose
+// values are not counted separately has one element, and its bits have no meaning. The result is
+// empty if no texel is valid.
 std::vector<TileSums::Key> surface_keys(const TileData& tile, TileAddress address,
                                         const Layer& layer, const mesh::SurfaceMap& map);
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Keys of one tile. Neighbors mostly share a value, so a run of texels is summed before its key is
-// looked up.
+// The sums of the keys of one tile. Neighboring texels mostly share a value, so a run of texels is
+// summed before its key is looked up.
 class KeySums {
  public:
   explicit KeySums(const mesh::SurfaceMap& map) : map_(map) {}
@@ -71,7 +71,7 @@ void TileSums::Key::add(const Key& other) {
 
 double TileSums::mean() const {
   if (!(area.value() > 0)) return (min + max) / 2;
-  // the mean of a constant must be its value, in spite of rounding
+  // the mean of equal values must be that value, in spite of rounding
   return std::clamp(weighted.value() / area.value(), min, max);
 }
 
@@ -82,7 +82,7 @@ TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type,
   sums.max = -kInfinity;
   KeySums keys(map);
   const bool has_keys = !is_float(type);
-  // Sums of differences to a value of the tile lose no precision if all values are similar.
+  // Sums of differences from one value of the tile lose no precision if all values are similar.
   double near = 0, differences = 0, squares = 0;
   for_each_value(tile, address, type, map, within,
                  [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {

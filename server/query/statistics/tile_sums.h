@@ -21,9 +21,9 @@ namespace strata::query {
 constexpr std::size_t kMaxStatisticsKeys = 4096;
 constexpr int kHistogramBins = 64;
 
-// The contribution of one tile's valid surface texels to a layer's statistics, in units of the
-// model. Sums of two tiles are combined without loss (Chan, Golub, LeVeque 1983), so that after a
-// stroke only its tiles are counted again.
+// The contribution of the valid surface texels of one tile to the statistics of a layer, in model
+// units. Sums of two tiles are combined without loss (Chan, Golub, LeVeque 1983), so only the tiles
+// of a stroke are counted again after it.
 struct TileSums {
   std::uint64_t texels = 0;
   CompensatedSum area;
@@ -38,17 +38,17 @@ struct TileSums {
     glm::dvec3 lowest{0}, highest{0};
     void add(const Key& other);
   };
-  // of integer types, ascending bits; empty if there are more than kMaxStatisticsKeys
+  // for integer types, ascending by bits; empty if there are more than kMaxStatisticsKeys
   std::vector<Key> keys;
   bool too_many_keys = false;
 
-  // Weighted by area; without any area, the middle of the range.
+  // Returns the mean weighted by area, or the middle of the range if there is no area.
   double mean() const;
 };
 TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type,
                   const mesh::SurfaceMap& map, const TexelSelection* within);
 
-// Equal bins over [min, max] of the whole layer.
+// A histogram with bins of equal width over [min, max] of the whole layer.
 struct TileHistogram {
   double min = 0, max = 0;
   std::array<std::uint64_t, kHistogramBins> texels{};
@@ -63,10 +63,10 @@ TileHistogram count_tile(const TileData& tile, TileAddress address, ValueType ty
                          const mesh::SurfaceMap& map, const TexelSelection* within, double min,
                          double max);
 
-// Sums of the tiles of one layer, kept while a tile is unchanged. Thread-safe.
+// Keeps the sums of the tiles of one layer until the tiles change. Thread-safe.
 class TileSumsCache {
  public:
-  // Calls `make` if the tile has changed.
+  // Returns the sums of the tile. Calls `make` if the tile has changed.
   template <class Make>
   std::shared_ptr<const TileSums> sums(TileAddress address,
                                        const std::shared_ptr<const TileData>& tile, Make make) {
@@ -80,7 +80,7 @@ class TileSumsCache {
     if (made->keys.size() <= kMaxKeptKeys) entries_[address] = {tile, made, nullptr};
     return made;
   }
-  // The same, also if the limits have changed.
+  // Returns the histogram of the tile. Calls `make` if the tile or the limits have changed.
   template <class Make>
   std::shared_ptr<const TileHistogram> histogram(TileAddress address,
                                                  const std::shared_ptr<const TileData>& tile,
@@ -99,9 +99,9 @@ class TileSumsCache {
   }
 
  private:
-  static constexpr std::size_t kMaxKeptKeys = 256;  // 25 KB a tile
+  static constexpr std::size_t kMaxKeptKeys = 256;  // 25 KB per tile
   struct Entry {
-    std::weak_ptr<const TileData> tile;  // tiles never change; new ones replace them
+    std::weak_ptr<const TileData> tile;  // a tile never changes; a new one replaces it
     std::shared_ptr<const TileSums> sums;
     std::shared_ptr<const TileHistogram> histogram;
   };

@@ -9,16 +9,17 @@
 
 namespace strata::query {
 
-// The classes of a layer's values: each value is one, or each range. Class i of n limits is from
-// limit i - 1 (included) to limit i; the first and the last one are open on their outer side.
+// The classes of the values of a layer: each value is a class, or each range is a class. Range i
+// extends from limit i - 1 (included) to limit i. The first and the last range are open on their
+// outer sides.
 struct ValueClasses {
   bool each = false;
-  std::vector<double> limits{};  // of ranges, ascending; empty: all values are one class
-  // a value at the last limit belongs to the range before it, as at the end of a scale
+  std::vector<double> limits{};  // limits of ranges, ascending; if empty, all values are one class
+  // true if a value at the last limit belongs to the range before it, as at the end of a scale
   bool last_limit_below = false;
 
-  // Returns the bits of the value if each value is a class (zero has one sign), otherwise the
-  // number of its range.
+  // Returns the bits of the value if each value is a class (-0 counts as 0), otherwise the number
+  // of its range.
   std::uint32_t of(std::uint32_t bits, double value) const {
     if (each) return value == 0 ? 0 : bits;
     auto limit = std::upper_bound(limits.begin(), limits.end(), value);
@@ -33,8 +34,8 @@ struct ValueClasses {
   }
 };
 
-// The classes as the layer's legend shows them: keys, and values of a categorical palette, are
-// classes; other palettes have ranges between their points.
+// Returns the classes that the legend of the layer shows. Keys, and values of a categorical
+// palette, are classes. Other palettes have ranges between their points.
 ValueClasses classes_of(const Layer& layer);
 
 }  // namespace strata::query

@@ -14,13 +14,14 @@
 namespace strata::render {
 namespace {
 
-// The float arithmetic of the shader and the rounding of packed positions move a texel by far less
-// than this.
+// The margins are much larger than the errors of float arithmetic in the shader and of packed
+// positions.
 constexpr double kMargin_px = 0.05;
 constexpr double kMarginDepth = 1e-6;
-constexpr double kMarginRadius = 1e-5;  // of a sphere, relative
+constexpr double kMarginRadius = 1e-5;  // relative to a sphere's radius
 
-// Bounds of (row_i · p) / (row_w · p) over a sphere: the planes row_i - k row_w that touch it.
+// Returns the bounds of (row_i · p) / (row_w · p) over a sphere: the values k for which the plane
+// row_i - k row_w touches the sphere.
 std::pair<double, double> ratio_bounds(double a, double b, double radius, double aa, double ab,
                                        double bb) {
   const double r2 = radius * radius;
@@ -40,20 +41,20 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
   return glm::length(point - (a + along * t));
 }
 
-// If at least kSubtreesForThreads subtrees of this level pass, threads share them.
+// If at least kSubtreesForThreads subtrees of level kSharedLevel pass, threads share them.
 constexpr std::size_t kSharedLevel = 3;
 constexpr std::size_t kSubtreesForThreads = 32;
 
-// Under a large tool most blocks are accepted in groups of eight: testing each costs as much as
-// painting it.
+// Most blocks under a large tool are accepted in groups of eight, because a test of each block
+// takes as long as painting it.
 constexpr std::size_t kWholeLevel = 1;
 
-// The sides of the tool's box in the window as planes through the eye. Rejecting a sphere beyond
-// one of them costs a tenth of the computation of its exact box.
+// Returns the sides of the tool's box in the window, as planes through the eye. Rejecting a sphere
+// by one of them takes a tenth of the time of computing its exact box.
 std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip, int width,
                                    int height) {
   const glm::dmat4 rows = glm::transpose(clip);
-  // Window x · w is linear in the position, and w is above 0 where anything can be painted.
+  // Window x · w is linear in the position, and w is above 0 at all paintable points.
   const glm::dvec4 x = 0.5 * width * (rows[0] + rows[3]), y = 0.5 * height * (rows[1] + rows[3]),
                    w = rows[3];
   std::array planes = {x - (std::max(tool.x0, 0.0) - kMargin_px) * w,
@@ -107,8 +108,8 @@ BlockCuller::BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_fro
       grid_(grid),
       tool_planes_(sides_of(path.box, clip_from_model, width, height)) {}
 
-// Calls take(level, index, under) for the subtrees below one that passed, for each as soon as it is
-// of `stop_level` or completely inside the tool.
+// Descends from a subtree that passed the tests. Calls take(level, index, under) for each subtree
+// that passes and is at `stop_level` or completely inside the tool.
 template <class Take>
 void BlockCuller::descend(std::size_t level, std::size_t index, const Under& under,
                           std::size_t stop_level, Scratch& scratch, Take&& take) const {
@@ -193,7 +194,7 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
                              Candidates& candidates) const {
   constexpr std::uint32_t kBlocksPerTile = kTileSize / kBlockSize, kNone = 0xffffffffu;
   const auto parts = std::span(touched.parts).subspan(tile.first, tile.count);
-  // The parts of each block as a linked list.
+  // The parts of each block form a linked list.
   std::array<std::uint32_t, std::size_t{kBlocksPerTile} * kBlocksPerTile> first;
   first.fill(kNone);
   std::vector<std::uint32_t> next(parts.size());
@@ -211,7 +212,7 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
     const mesh::BlockTree::Part& in_tree = map_.tree.parts[part.part];
     CandidateBlock block{in_tree.slot,       tile.address, place,       0,
                          part.segment_count, part.part,    part.in_tool};
-    if (in_tree.shares_block) block.in_tool = false;  // other parts may be elsewhere
+    if (in_tree.shares_block) block.in_tool = false;  // other parts of the block may be outside
     if (next[first[place]] == kNone) {
       block.segments = candidates.segment_lists.add(list_of(part));
     } else {
@@ -267,21 +268,21 @@ std::optional<WindowBox> BlockCuller::project(const mesh::BoundingSphere& bounds
   return found;
 }
 
-// Tests the circle around the box against the segment's axis: the boxes of long slanted segments
-// are much larger than the segments.
+// Tests the circle around the box against the segment's axis, because the box of a long slanted
+// segment is much larger than the segment.
 bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) const {
   const PixelBox& box = window.box;
   if (!path_.boxes[segment].overlaps(box)) return false;
   const auto& s = path_.segments[segment];
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
   const double around = half_diagonal(box);
-  // √2: the corners of squares
+  // √2: the distance to the corners of a square tool
   const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;
   return distance_to_axis(s, center) <= reach;
 }
 
-// If one segment covers the whole box, the others have no effect: keeps only that one and returns
-// true.
+// If one segment covers the whole box, the others have no effect: removes them from the list and
+// returns true.
 bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
   const PixelBox& box = window.box;
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};

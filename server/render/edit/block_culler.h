@@ -13,20 +13,20 @@
 
 namespace strata::render {
 
-// Coarse grid of largest depths, by which blocks are hidden; see DepthBuffer.
+// The coarse grid of largest depths, which shows whether a block is hidden. See DepthBuffer.
 struct DepthGrid {
   const float* cells = nullptr;  // null: nothing is hidden
-  int width = 0, height = 0;     // cells
+  int width = 0, height = 0;     // in cells
 };
 
 struct CandidateBlock {
   std::uint32_t slot;
   TileAddress tile;
   std::uint32_t block_in_tile;  // x | y << 4
-  std::uint32_t segments;       // first in `segment_lists`
+  std::uint32_t segments;       // index of the list's first entry in `segment_lists`
   std::uint32_t segment_count;
-  std::uint32_t part;  // of the tree that may be touched; kManyParts: several of this block
-  bool in_tool;        // all of it is under the only segment of its list
+  std::uint32_t part;  // of the block tree; kManyParts: several parts of this block may be touched
+  bool in_tool;        // the only segment of its list covers the whole block
 
   static constexpr std::uint32_t kManyParts = 0xffffffffu;
   const mesh::BoundingSphere& bounds(const mesh::SurfaceMap& map) const {
@@ -38,25 +38,26 @@ struct Candidates {
   SegmentLists segment_lists;
 };
 
-// Parts of the tree that a stroke may touch, by tile.
+// The parts of the block tree that a stroke may touch, grouped by tile.
 struct TouchedParts {
   struct Part {
     std::uint32_t part;
-    std::uint32_t segments;  // first in `segment_lists`
+    std::uint32_t segments;  // index of the list's first entry in `segment_lists`
     std::uint32_t segment_count;
     bool in_tool;
   };
   struct Tile {
     TileAddress address;
-    std::size_t first, count;  // in `parts`
+    std::size_t first, count;  // range in `parts`
   };
   std::vector<Part> parts;
   std::vector<Tile> tiles;  // row-major
   SegmentLists segment_lists;
 };
 
-// Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty if it is
-// behind the eye; the whole window if the eye's plane intersects it.
+// The exact box of a sphere in the window, with its nearest window depth `z0` and its smallest w,
+// `w0`. `project_sphere` returns nothing for a sphere behind the eye, and the whole window for a
+// sphere that the eye's plane intersects.
 struct WindowBox {
   PixelBox box;
   double z0 = 0, w0 = 0;
@@ -64,36 +65,36 @@ struct WindowBox {
 std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
                                         const glm::dvec3& center, double radius);
 
-// Finds the blocks of the surface map that a stroke may touch: projects bounding spheres, level by
-// level, to the window and tests them against the window, the tool's segments and the depth grid.
-// Conservative: never rejects a texel that the edit would write. Each block gets the list of
-// segments that may cover it. The constructor's arguments must outlive the object; several threads
-// may call const functions.
+// Finds the blocks of the surface map that a stroke may touch. Projects bounding spheres to the
+// window, level by level, and tests them against the window, the tool's segments and the depth
+// grid. The test is conservative: it never rejects a texel that the edit would write. Each block
+// gets the list of segments that may cover it. The constructor's arguments must outlive the object.
+// Several threads may call const functions.
 class BlockCuller {
  public:
   BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
               const ToolPath& path, const DepthBias& bias, const DepthGrid& grid);
 
-  // Uses up to `threads` threads if there is enough work.
+  // Uses up to `threads` threads for large strokes.
   TouchedParts find(int threads) const;
-  // The blocks of a tile, row-major.
+  // Adds the blocks of a tile to `candidates`, row by row.
   void add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile,
                   Candidates& candidates) const;
 
  private:
   struct Under {
     std::vector<std::uint32_t> segments;
-    bool all_of_it = false;  // under the only segment left
+    bool all_of_it = false;  // the only segment in the list covers the whole subtree
   };
-  struct Subtree {  // that passed
+  struct Subtree {  // a subtree that passed the tests
     std::size_t level, index;
     Under under;
   };
-  struct Found {  // in a subtree
+  struct Found {  // the parts found in a subtree
     std::vector<TouchedParts::Part> parts;
     SegmentLists segment_lists;
   };
-  using Scratch = std::array<Under, 16>;  // one a level of the tree
+  using Scratch = std::array<Under, 16>;  // one for each level of the tree
   template <class Take>
   void descend(std::size_t level, std::size_t index, const Under& under, std::size_t stop_level,
                Scratch& scratch, Take&& take) const;

@@ -9,8 +9,8 @@
 #include "media/shape_texture.h"
 #include "shared/section.h"
 
-// Compiled with -O3 and without floating-point traps and errno (CMakeLists.txt): otherwise the
-// loops below are not vectorized.
+// CMakeLists.txt sets -O3 and disables floating-point traps and errno. Otherwise the compiler would
+// not vectorize the loops below.
 #define STRATA_LANES inline __attribute__((always_inline))
 
 namespace strata::render {
@@ -19,11 +19,11 @@ namespace {
 constexpr int kLanes = kBlockSize * kBlockSize;
 static_assert(std::endian::native == std::endian::little, "positions are read as pairs of 32 bits");
 
-// For each texel: its position in the window, and whether it may still be written.
+// The position of each texel in the window, and whether it has passed all tests so far.
 struct alignas(64) Lanes {
   float x[kLanes], y[kLanes], depth[kLanes], w[kLanes];
   std::int32_t live[kLanes];   // 0 or 1
-  std::int32_t pixel[kLanes];  // of the depth; 0 where not live
+  std::int32_t pixel[kLanes];  // index of the pixel in the depth copy; 0 if `live` is 0
 };
 
 STRATA_LANES void project(const BlockTest& test, const std::uint64_t* positions,
@@ -63,7 +63,7 @@ STRATA_LANES void project(const BlockTest& test, const std::uint64_t* positions,
   }
 }
 
-// Rejects texels that the planes cut away, or where the inside of a solid is seen
+// Rejects texels that the section cuts away, and texels at which the inside of a solid is visible
 // (shaders/shared/section.h).
 STRATA_LANES void test_section(const BlockTest& test, const std::uint64_t* positions,
                                const mesh::SurfaceMap::PackedBox& box, Lanes& lanes) {
@@ -118,8 +118,8 @@ STRATA_LANES void add_swept_disc(const shader::EditSegment& s, const Lanes& lane
   }
 }
 
-// The point is inside the square around a + t (b - a) for some t in [0, 1]: four linear conditions
-// c + t g > 0.
+// A point is inside the swept square if, for some t in [0, 1], it is inside the square around a + t
+// (b - a). These are four linear conditions c + t g > 0.
 STRATA_LANES void add_swept_square(const shader::EditSegment& s, const Lanes& lanes,
                                    std::int32_t* inside) {
   const float sx = s.ends.z - s.ends.x, sy = s.ends.w - s.ends.y, grow = s.tool.y - s.tool.x;
@@ -142,9 +142,9 @@ STRATA_LANES void add_swept_square(const shader::EditSegment& s, const Lanes& la
   }
 }
 
-// Whether a line between two points of the shape's raster meets a set cell of it. Each step leaves
-// the square of cells around the current one in which no cell is set, so there are few steps, at
-// most one for each cell along the line.
+// Returns whether a line between two points of the shape's raster meets a set cell. Each step
+// leaves the empty square of cells around the current cell. Therefore only a few steps are needed,
+// at most one for each cell along the line.
 bool meets_shape(const std::uint8_t* distances, float ax, float ay, float bx, float by) {
   constexpr auto kSide = static_cast<float>(kShapeSide);
   constexpr float kNever = std::numeric_limits<float>::infinity();
@@ -179,8 +179,8 @@ bool meets_shape(const std::uint8_t* distances, float ax, float ay, float bx, fl
   return false;
 }
 
-// Maps a window point into the shape's raster at both ends of the segment; the raster's rows go
-// down.
+// Maps a window point into the shape's raster at both ends of the segment. The raster's first row
+// is the top row.
 void add_swept_texture(const shader::EditSegment& s, const std::uint8_t* distances,
                        const Lanes& lanes, std::int32_t* inside) {
   constexpr float kHalf = kShapeSide / 2.0f;
@@ -231,8 +231,8 @@ STRATA_LANES void test_depth(const BlockTest& test, Lanes& lanes) {
   }
 }
 
-// Computes the limit of FacingLimit. At the window's border the existing neighbor is used; where a
-// pixel shows no surface, nothing is painted.
+// Tests the limit of FacingLimit. Uses the existing neighbor at the window's border. Rejects pixels
+// without surface.
 STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
   const FacingLimit& facing = *test.facing;
   const float* const depth = test.depth->depth.data();
@@ -242,7 +242,7 @@ STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
                   far_row = facing.far_row;
   const float least = facing.least_squared_cosine;
   for (int i = 0; i < kLanes; ++i) {
-    // A rejected texel reads the first pixel: its own pixel may be outside the window.
+    // A rejected texel reads the first pixel, because its own pixel may be outside the window.
     const std::int32_t live = lanes.live[i], pixel = live ? lanes.pixel[i] : 0;
     const std::int32_t px = live ? static_cast<std::int32_t>(lanes.x[i]) : 0,
                        py = live ? static_cast<std::int32_t>(lanes.y[i]) : 0;
@@ -271,7 +271,7 @@ STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
   }
 }
 
-// Bit i corresponds to lane i.
+// Packs the lanes into bits: bit i is lane i.
 STRATA_LANES std::uint64_t bits_of(const std::int32_t* lanes) {
   alignas(64) std::uint8_t bytes[kLanes];
   for (int i = 0; i < kLanes; ++i) bytes[i] = static_cast<std::uint8_t>(lanes[i]);
@@ -279,7 +279,7 @@ STRATA_LANES std::uint64_t bits_of(const std::int32_t* lanes) {
   for (int row = 0; row < kBlockSize; ++row) {
     std::uint64_t eight;
     std::memcpy(&eight, bytes + row * kBlockSize, sizeof eight);
-    // the lowest bits of all bytes, packed together
+    // Collects the lowest bit of each byte.
     bits |= (eight * 0x0102040810204080u >> 56) << (row * kBlockSize);
   }
   return bits;

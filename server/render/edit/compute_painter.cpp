@@ -103,7 +103,8 @@ void ComputePainter::begin_tiles(GpuScene& scene, const PaintTarget& target) {
   reading_.clear();
   while (next_tile_ < outcome_.tiles.size() && pages.size() < TileReader::kMaxPages) {
     const PageId page = target.layer.page(outcome_.tiles[next_tile_].address);
-    if (page != shader::kNoPage) {  // an eraser finds nothing there: the tile stays empty
+    // Without a page there is nothing to erase, so the tile stays empty.
+    if (page != shader::kNoPage) {
       pages.push_back(page);
       reading_.push_back(next_tile_);
     }

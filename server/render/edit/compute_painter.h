@@ -6,8 +6,9 @@
 
 namespace strata::render {
 
-// Steps: radii under the path, parts that may be touched, dispatch over them, read-back of the
-// written texels, read-back of their tiles. After the dispatch only a lost context is an error.
+// Paints a stroke with compute passes. The steps are: compute the radii along the path; find the
+// parts that the stroke may touch; dispatch the edit over them; read back the written texels; read
+// back their tiles. After the dispatch only a lost context can cause an Error.
 class ComputePainter : public StrokePainter {
  public:
   using StrokePainter::StrokePainter;

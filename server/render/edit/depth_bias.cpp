@@ -6,8 +6,8 @@
 
 namespace strata::render {
 
-// Window depth changes with the distance t along the axis by |P22 P33 - P32 P23| / (2 w²) per unit;
-// a scaling view matrix converts its units to model units.
+// Per unit of distance along the camera's axis, window depth changes by |P22 P33 - P32 P23| / (2
+// w²). The scale of the view matrix converts model units to view units.
 DepthBias depth_bias_of(const StrokeBatch& stroke, double model_diagonal) {
   DepthBias bias;
   bias.fixed = stroke.fixed_depth_bias;

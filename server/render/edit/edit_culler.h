@@ -14,29 +14,30 @@
 
 namespace strata::render {
 
-// The parts and tiles of a layer that a stroke may touch, as found by the GPU.
+// The parts and tiles of a layer that a stroke may touch, as computed by the GPU.
 struct TouchedTiles {
-  std::uint32_t parts = 0;         // of the block tree
-  std::vector<TileAddress> tiles;  // in the order of their numbers
+  std::uint32_t parts = 0;         // number of parts of the block tree
+  std::vector<TileAddress> tiles;  // in the order of EditTiles::tiles
 };
 
-// BlockCuller on the GPU (shaders/edit_cull_pass.comp), where testing all nodes of the tree takes
-// microseconds. The list of parts stays on the GPU for EditPass; only the tiles are read back,
-// because they need pages.
+// The GPU counterpart of BlockCuller (shaders/edit_cull_pass.comp). It tests all nodes of the tree
+// within microseconds. The list of parts stays on the GPU for EditPass. The tiles are read back,
+// because the CPU allocates their pages.
 class EditCuller {
  public:
   static Result<EditCuller> create(const std::filesystem::path& shader_dir,
                                    gl::ReadbackPool& readback);
 
-  // Uploads the stroke and lists the parts. `depth_grid` is null if the stroke paints through.
-  // `origin`: of the model.
+  // Uploads the stroke and lists the parts. `origin` is the model's origin. `depth_grid` is null if
+  // the stroke also paints hidden surfaces.
   Result<gl::Readback> dispatch(const StrokeBatch& stroke, const glm::dvec3& origin,
                                 const ToolPath& path, const DepthBias& bias,
                                 const SurfaceMapTextures& map, const gl::Buffer* depth_grid,
                                 const LayerTextures& layer);
-  static TouchedTiles touched(const gl::Readback& read, int resolution);  // when it is ready
+  // Returns the listed parts and tiles. Requires that `read` is ready.
+  static TouchedTiles touched(const gl::Readback& read, int resolution);
 
-  // Binds the data of the last dispatch for edit_pass.comp.
+  // Binds the buffers of the last dispatch for edit_pass.comp.
   void bind(const SurfaceMapTextures& map) const;
   std::size_t bytes_up() const { return bytes_up_; }     // of the last dispatch
   double gpu_ms() const { return timer_.elapsed_ms(); }  // of the last dispatch

@@ -8,7 +8,7 @@
 namespace strata::render {
 namespace {
 
-// A small dab finishes before other threads would start.
+// The time before other threads start: a small stroke is complete by then.
 constexpr std::chrono::microseconds kAlone(200);
 
 using Clock = std::chrono::steady_clock;

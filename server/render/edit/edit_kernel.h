@@ -7,22 +7,22 @@
 
 namespace strata::render {
 
-// The texels that a stroke writes, computed on the CPU.
+// The texels that a stroke writes, as computed on the CPU.
 struct KernelResult {
   struct Tile {
     TileAddress address;
-    TileMask written;  // surface and gutter texels
+    TileMask written;  // written surface and gutter texels
   };
-  // only tiles with a written texel, in the order of the culler
+  // The tiles with written texels, row by row.
   std::vector<Tile> tiles;
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks
   std::size_t tested_blocks = 0;
 };
 
-// The texture editing and padding algorithms of the paper, as in shaders/edit_pass.comp: gutter
-// texels have their owner's position. Reads the surface map in main memory and does not use GL.
-// Uses up to `threads` threads, tile by tile: the same thread culls and tests blocks, so that no
-// list of blocks is stored.
+// Runs the texture editing and padding algorithms of the paper, as in shaders/edit_pass.comp: a
+// gutter texel has the position of its owner. Reads the surface map in main memory and does not use
+// GL. Uses up to `threads` threads. Each thread culls and tests the blocks of one tile at a time,
+// so no list of all blocks is stored.
 KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& culler,
                              const BlockTest& test, TestBlock test_block, int threads);
 

@@ -12,7 +12,7 @@
 namespace strata::render {
 namespace {
 
-// Inverse of the float-ordered numbers of shaders/edit_pass.comp.
+// The inverse of ordered() in shaders/edit_pass.comp.
 float unordered(std::uint32_t number) {
   return std::bit_cast<float>((number >> 31) != 0 ? number & 0x7fffffffu : ~number);
 }
@@ -28,7 +28,7 @@ Result<EditPass> EditPass::create(const std::filesystem::path& shader_dir,
   };
   auto programs = STRATA_TRY(ProgramPerWidth::load(shader_dir, "edit_pass.comp", format));
   pass.programs_ = std::move(programs);
-  // Separate programs, so that strokes of discs and squares do not include the code for shapes.
+  // Strokes with a disc or a square use programs without the code for shapes.
   auto shape_programs =
       ProgramPerWidth::load(shader_dir, "edit_pass.comp", format, {"TOOL_TEXTURE"});
   if (!shape_programs) return tl::unexpected(shape_programs.error());
@@ -90,7 +90,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTile
   for (const TileAddress tile : edit.tiles)
     if (const PageId page = layer.page(tile); page != shader::kNoPage)
       chunks.insert(page >> shader::kPageChunkShift);
-  if (chunks.empty()) chunks.insert(0);  // nothing to erase: counts as written, too
+  if (chunks.empty()) chunks.insert(0);  // nothing to erase, but the texels still count as written
 
   const bool has_shape = stroke.shape == ToolShape::texture;
   const gl::Program& program =
@@ -108,7 +108,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTile
       (touched.parts + shader::kEditPartsPerGroup - 1) / shader::kEditPartsPerGroup;
   const GLuint columns = std::min(groups, shader::kEditGroupsPerRow);
   timer_.begin();
-  for (const std::uint32_t chunk : chunks) {  // only one pair of images can be bound at a time
+  for (const std::uint32_t chunk : chunks) {  // a dispatch binds only one pair of images
     if (layer.pool().has_chunk(chunk)) {
       layer.pool().values(chunk).bind_image(0, GL_WRITE_ONLY);
       layer.pool().valid(chunk).bind_image(1, GL_WRITE_ONLY);

@@ -15,35 +15,35 @@
 
 namespace strata::render {
 
-// A dispatch before its read-back.
+// A dispatch whose read-back is not complete.
 struct DispatchedEdit {
-  gl::Readback edited;                   // an EditedTile for each of…
-  std::vector<TileAddress> tiles;        // …these
-  std::vector<TileAddress> fresh_tiles;  // pages were made for these
+  gl::Readback edited;  // an EditedTile for each entry of `tiles`
+  std::vector<TileAddress> tiles;
+  std::vector<TileAddress> fresh_tiles;  // those of `tiles` that got new pages
 };
 
 // The result of a dispatch.
 struct EditedTiles {
-  std::map<TileAddress, TileMask> masks;     // of tiles with written texels
+  std::map<TileAddress, TileMask> masks;     // only tiles with written texels
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written parts
 };
 
-// The texture editing and padding algorithms of the paper in one compute dispatch
-// (shaders/edit_pass.comp) over the parts listed by EditCuller.
+// Runs the texture editing and padding algorithms of the paper in one compute dispatch
+// (shaders/edit_pass.comp) over the parts that EditCuller listed.
 class EditPass {
  public:
   static Result<EditPass> create(const std::filesystem::path& shader_dir,
                                  gl::ReadbackPool& readback);
 
-  // Allocates pages for the touched tiles (unless erasing) and dispatches the parts that `culler`
-  // listed for the stroke. After an Error nothing is changed. `depth` may be null if the stroke
-  // paints through.
+  // Allocates pages for the touched tiles, unless the stroke erases. Then dispatches the parts that
+  // `culler` listed for the stroke. If it fails, the layer is unchanged. `depth` may be null if the
+  // stroke also paints hidden surfaces.
   Result<DispatchedEdit> dispatch(const StrokeBatch& stroke, TouchedTiles touched,
                                   const EditCuller& culler, const SurfaceMapTextures& map,
                                   const gl::Texture* depth, LayerTextures& layer,
                                   PageTables& tables);
-  static EditedTiles edited(const DispatchedEdit& edit);  // when `edit.edited` is ready
-  double gpu_ms() const { return timer_.elapsed_ms(); }   // of the last dispatch
+  static EditedTiles edited(const DispatchedEdit& edit);  // requires that `edit.edited` is ready
+  double gpu_ms() const { return timer_.elapsed_ms(); }   // time of the last dispatch
 
  private:
   Result<std::vector<TileAddress>> make_pages(const std::vector<TileAddress>& tiles,
@@ -53,8 +53,8 @@ class EditPass {
 
   gl::ReadbackPool* readback_ = nullptr;
   ProgramPerWidth programs_, shape_programs_;
-  gl::Texture shape_distances_;  // created for the first stroke that needs it; those of…
-  std::shared_ptr<const ShapeTexture> shape_;  // …the last shape
+  gl::Texture shape_distances_;  // the distances of `shape_`, created at the first use
+  std::shared_ptr<const ShapeTexture> shape_;  // the last used shape
   gl::TimerQuery timer_;
   StreamBuffer edited_{"edited tiles"};
 };

@@ -5,7 +5,7 @@
 namespace strata::render {
 
 FacingLimit make_facing_limit(const Camera& camera, double max_angle_deg) {
-  // A translation of the origin does not change directions.
+  // The rows need no origin, because a translation does not change directions.
   const glm::dmat4 rows = glm::transpose(camera.projection * camera.view);
   const double cosine = max_angle_deg < 90 ? std::cos(glm::radians(max_angle_deg)) : 0.0;
   return {glm::vec3(rows[0]), glm::vec3(rows[1]), glm::vec3(rows[3]),

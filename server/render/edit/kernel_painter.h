@@ -6,9 +6,9 @@
 
 namespace strata::render {
 
-// Steps: copy the depth to main memory, once for each camera; find the written texels with the
-// kernel; allocate missing pages; read each tile that has content, change it, and upload it whole.
-// After the allocation of pages only a lost context is an error.
+// Paints a stroke on the CPU. The steps are: copy the depth to main memory, once for each camera;
+// compute the written texels with the kernel; allocate missing pages; read, change and upload each
+// written tile. After the pages are allocated, only a lost context can cause an Error.
 class KernelPainter : public StrokePainter {
  public:
   using StrokePainter::StrokePainter;
@@ -17,7 +17,7 @@ class KernelPainter : public StrokePainter {
  private:
   enum class Stage { begin, depth_drawn, paint };
   KernelResult find_written(const PaintTarget& target);
-  // One for each written tile; kNoPage where an eraser finds no page.
+  // Returns one page for each written tile: kNoPage for a tile without a page if the stroke erases.
   Result<std::vector<PageId>> find_pages(const KernelResult& written, LayerTextures& layer) const;
   void write(const KernelResult& written, std::span<const PageId> pages, LayerTextures& layer);
 

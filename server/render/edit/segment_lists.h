@@ -7,10 +7,12 @@
 
 namespace strata::render {
 
-// Lists of segment numbers of a path, one after the other. Neighboring blocks mostly share a list.
+// Lists of segment numbers of a path, stored one after another. Neighboring blocks usually share a
+// list.
 class SegmentLists {
  public:
-  // Returns where the list begins: at the last one again if both are equal.
+  // Returns the position of the list's first number. A list that equals the previous one shares its
+  // numbers.
   std::uint32_t add(std::span<const std::uint32_t> list) {
     const auto last = std::span(numbers_).subspan(last_list_);
     if (numbers_.empty() || !std::ranges::equal(last, list)) {
@@ -19,7 +21,7 @@ class SegmentLists {
     }
     return static_cast<std::uint32_t>(last_list_);
   }
-  // Appends other lists. Returns where their first one begins.
+  // Appends other lists. Returns the position of their first number.
   std::uint32_t append(const SegmentLists& others) {
     const std::size_t begin = numbers_.size();
     last_list_ = begin + others.last_list_;

@@ -5,17 +5,17 @@
 
 namespace strata::render {
 
-// The target of a stroke; looked up again for each step, because a layer may be removed between two
-// steps.
+// The target of a stroke. It is looked up again for each step, because a layer may be removed
+// between two steps.
 struct PaintTarget {
   const MeshBuffers& mesh;
   const SurfaceMapTextures& map;
   LayerTextures& layer;
 };
 
-// Paints one stroke batch after the depth of the full mesh is complete. There are two:
-// ComputePainter on the GPU, and KernelPainter on the CPU, used if the "GPU" is one
-// (GpuScene::edits_on_cpu). They write the same surface texels except for rounding.
+// Paints one stroke batch after the depth of the full mesh is complete. ComputePainter paints on
+// the GPU. KernelPainter paints on the CPU and is used with software renderers
+// (GpuScene::edits_on_cpu). Both write the same surface texels except for rounding.
 class StrokePainter {
  public:
   // `depth` is null if the stroke does not need it.
@@ -25,19 +25,19 @@ class StrokePainter {
   StrokePainter& operator=(const StrokePainter&) = delete;
   virtual ~StrokePainter() = default;
 
-  // Works for a few milliseconds. After an Error nothing is painted.
+  // Runs for a few milliseconds. If it fails, nothing is painted.
   virtual Result<Step> step(GpuScene& scene, const PaintTarget& target) = 0;
-  StrokeOutcome take_outcome() { return std::move(outcome_); }  // when done
+  StrokeOutcome take_outcome() { return std::move(outcome_); }  // after the last step
 
  protected:
-  // Points of the path at which a radius in model units needs the depth: those inside the window.
-  // Origin lower left.
+  // The points of the path inside the window and their pixels, origin lower left. A radius in model
+  // units depends on the depth at these pixels.
   struct PathPixels {
     std::vector<glm::ivec2> pixels;
     std::vector<std::size_t> points;
   };
   PathPixels path_pixels() const;
-  // `depths` has one entry for each pixel of `at`.
+  // `depths` contains one depth for each pixel of `at`.
   ToolPath make_path(const mesh::Geometry& geometry, const PathPixels& at,
                      std::span<const float> depths) const;
   DepthBias depth_bias(const mesh::Geometry& geometry) const;

@@ -7,9 +7,9 @@
 namespace strata::render {
 namespace {
 
-// Covers any window, and its square does not overflow float.
+// A radius that covers any window. Its square does not overflow float.
 constexpr double kMaxRadius_px = 1e9;
-// Covers no texel, and is not zero.
+// A radius that covers no texel but is not zero.
 constexpr double kMinRadius_px = 1e-3;
 
 PixelBox join(const PixelBox& a, const PixelBox& b) {
@@ -86,7 +86,7 @@ std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const
   const double scale = view_scale(stroke.camera) * 0.5 * stroke.camera.height *
                        std::abs(stroke.camera.projection[1][1]);
   std::vector<double> ws(count, 0);
-  std::vector<std::size_t> distance(count, count);  // to the path point that the depth is from
+  std::vector<std::size_t> distance(count, count);  // to the path point with the used depth
   const auto spread = [&](std::size_t i, std::size_t from) {
     if (distance[from] + 1 < distance[i]) {
       distance[i] = distance[from] + 1;

@@ -11,12 +11,12 @@
 
 namespace strata::render {
 
-// A layer of the scene. A layer with a mirror is on the GPU while it is shown or painted. If the
-// memory is needed for something else, the layer is evicted: its pages are freed, and uploaded
-// again from the mirror before their next use. GPU thread only.
+// A layer of the scene. A layer with a mirror is on the GPU while it is shown or painted. If other
+// objects need the memory, the layer is evicted: its pages are freed, and uploaded again from the
+// mirror before their next use. GPU thread only.
 class GpuLayer {
  public:
-  // `mirror` is null for a layer without another copy: it is never evicted.
+  // `mirror` is null for a layer that exists on the GPU only. Such a layer is never evicted.
   GpuLayer(std::uint64_t model, std::unique_ptr<LayerTextures> textures,
            std::shared_ptr<const TileMirror> mirror)
       : model_(model),
@@ -27,17 +27,19 @@ class GpuLayer {
   std::uint64_t model() const { return model_; }
   LayerTextures& textures() const { return *textures_; }
   std::uint64_t last_used() const { return last_used_; }
-  bool is_here() const { return is_here_; }  // all of it is on the GPU
+  bool is_here() const { return is_here_; }  // the whole layer is on the GPU
 
-  // The layer is not evicted during the lifetime of the token. `now` counts uses.
+  // Returns a token. The layer is not evicted during the token's lifetime. `now` is the number of
+  // this use.
   std::shared_ptr<const void> use(std::uint64_t now) {
     last_used_ = now;
     return users_;
   }
-  // Uploads the next part of the mirror, for a millisecond or two; true when all of it is on the
-  // GPU. After an Error nothing is uploaded.
+  // Uploads the next part of the mirror, within about two milliseconds. Returns true when the whole
+  // layer is on the GPU. If it fails, the layer has no pages.
   Result<bool> bring();
-  // False if the pages contain edits that the mirror lacks.
+  // Returns whether the layer can be evicted. It cannot be evicted while a token exists or a caller
+  // holds the mirror, because the pages may contain edits that the mirror lacks.
   bool can_leave() const;
   void leave();
 
@@ -49,7 +51,7 @@ class GpuLayer {
   const std::shared_ptr<const TileMirror> mirror_;
   bool is_here_;
   std::optional<std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>>
-      coming_;  // uploaded from the back
+      coming_;  // the rest of the mirror, uploaded from the back
   std::shared_ptr<const void> users_ = std::make_shared<char>();
   std::uint64_t last_used_ = 0;
 };

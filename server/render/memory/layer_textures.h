@@ -10,8 +10,8 @@
 
 namespace strata::render {
 
-// One layer on the GPU: its range of the page tables and its pages in the pool of its texel width.
-// Uses 4 bytes a tile while empty. GPU thread only, except `bytes`.
+// One layer on the GPU: its range of the page tables, and its pages in the pool of its texel width.
+// An empty layer uses 4 bytes per tile. GPU thread only, except `bytes`.
 class LayerTextures {
  public:
   static Result<std::unique_ptr<LayerTextures>> create(ValueType type, int resolution,
@@ -30,15 +30,17 @@ class LayerTextures {
   bool contains(TileAddress tile) const {
     return tile.x < tiles_per_side_ && tile.y < tiles_per_side_;
   }
-  PageId page(TileAddress tile) const { return tables_.at(index(tile)); }  // kNoPage when empty
-  // Returns the tile's page, or an empty new one if it has no page.
+  // Returns kNoPage if the tile is empty.
+  PageId page(TileAddress tile) const { return tables_.at(index(tile)); }
+  // Returns the tile's page. If the tile has no page, adds an empty page.
   Result<PageId> ensure_page(TileAddress tile);
   // Assigns a page of the pool to a tile without a page.
   void put_page(TileAddress tile, PageId page);
   void free_page(TileAddress tile);
-  void free_pages();  // of all tiles
+  void free_pages();  // frees the pages of all tiles
 
-  // Bytes of table and pages. The counter outlives the layer, so that any thread may read it.
+  // Returns the bytes of the table and the pages. The counter outlives the layer, so any thread may
+  // read it.
   const std::shared_ptr<std::atomic<std::uint64_t>>& bytes() const { return bytes_; }
 
  private:

@@ -21,11 +21,11 @@ glm::vec4 corner_of(const mesh::ClusterBox& box, unsigned corner) {
           (corner & 4) != 0 ? box.max.z : box.min.z, 1};
 }
 
-// Whether all corners are outside one side of the clip volume. The slack covers the rounding of the
-// vertex stage.
+// Returns whether all corners are outside one side of the clip volume. The slack covers the
+// rounding of the vertex stage.
 bool outside(const mesh::ClusterBox& box, const glm::mat4& clip_from_model) {
   constexpr float kSlack = 1e-5f;
-  unsigned beyond = 0x3f;  // a bit a side
+  unsigned beyond = 0x3f;  // one bit for each side
   for (unsigned corner = 0; corner < kCorners && beyond != 0; ++corner) {
     const glm::vec4 clip = clip_from_model * corner_of(box, corner);
     for (int axis = 0; axis < 3; ++axis) {
@@ -44,8 +44,8 @@ constexpr std::array<gl::VertexAttribute, 4> kAttributes{{
     {3, 4, GL_UNSIGNED_BYTE, true, offsetof(mesh::Vertex, color)},
 }};
 
-// Mean of some thousand triangles from the whole mesh, weighted by area: a few large ones may cover
-// most of a view.
+// Returns the mean side of some thousand triangles from the whole mesh. The mean is weighted by
+// area, because a few large triangles may cover most of a view.
 float side_of_triangles(const mesh::Geometry& geometry) {
   const auto corner = [&](std::size_t i) -> const glm::vec3& {
     return geometry.vertices[geometry.indices[i]].position;

@@ -7,7 +7,8 @@
 namespace strata::render {
 namespace {
 
-// light values in the table back to sRGB: finer than sRGB steps, except for the darkest few
+// The number of light values in the table back to sRGB. They are finer than sRGB steps, except for
+// the darkest few.
 constexpr int kCodes = 4096;
 
 double light_of(double srgb) {

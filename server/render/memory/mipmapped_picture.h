@@ -6,9 +6,9 @@
 
 namespace strata::render {
 
-// A picture of a model's surface in the layout for the GPU: RGBA8, lowest row first (v = 0), with
-// every mipmap down to one texel. Coarser levels average light instead of sRGB codes, weighted by
-// alpha, so that fine detail keeps its brightness and transparent pixels do not darken edges.
+// A surface image in the layout for the GPU: RGBA8, lowest row first (v = 0), with all mipmap
+// levels down to one texel. Coarser levels are means of light instead of sRGB codes, so fine detail
+// keeps its brightness. They are weighted by alpha, so transparent pixels do not darken edges.
 struct MipmappedPicture {
   struct Level {
     int width = 0, height = 0;
@@ -19,8 +19,8 @@ struct MipmappedPicture {
   std::size_t bytes() const;
 };
 
-// Makes the levels from width x height RGBA8 texels, top row first. Levels with a side above
-// `largest_side` are left out. Takes about a second for 8192² on one core.
+// Makes the levels from width x height RGBA8 texels, top row first. Omits levels with a side longer
+// than `largest_side`. Takes about a second for 8192² texels on one core.
 MipmappedPicture make_mipmaps(std::vector<std::uint8_t> rgba, int width, int height,
                               int largest_side);
 

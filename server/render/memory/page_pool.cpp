@@ -109,16 +109,16 @@ Result<void> PagePool::add_chunk() {
   const int present =
       std::accumulate(chunks_.begin(), chunks_.end(), 0,
                       [](int sum, const Chunk& chunk) { return sum + chunk.values.layers(); });
-  // 1, 2, 4 … if no chunk was dropped.
+  // The chunks get 1, 2, 4 … slices if no chunk was dropped.
   int slices = static_cast<int>(
       std::min(std::bit_floor(static_cast<unsigned>(present) + 1), kMaxSlicesPerChunk));
   auto chunk = make_chunk(number, slices);
-  // Near the budget fewer slices may still fit.
+  // If the budget is nearly used, fewer slices may still fit.
   while (!chunk && slices > 1) chunk = make_chunk(number, slices /= 2);
   if (!chunk) return tl::unexpected(chunk.error());
   if (number == chunks_.size()) chunks_.emplace_back();
   chunks_[number] = std::move(*chunk);
-  // In reverse, so that pages are allocated in ascending order.
+  // In reverse order, because the last free page is allocated first.
   for (auto i = static_cast<std::uint32_t>(slices) * kCellsPerSlice; i-- > 0;) {
     free_.push_back(static_cast<std::uint32_t>(number) << shader::kPageChunkShift | i);
   }

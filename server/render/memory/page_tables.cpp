@@ -9,8 +9,8 @@
 namespace strata::render {
 namespace {
 
-constexpr std::size_t kMinTable = 4096;  // entries
-// Runs of changed entries with smaller gaps are uploaded together.
+constexpr std::size_t kMinTable = 4096;  // in entries
+// Changed entries are uploaded together if the distance between them is at most kJoinGap.
 constexpr std::uint32_t kJoinGap = 64;
 
 }  // namespace

@@ -10,18 +10,18 @@
 
 namespace strata::render {
 
-// The page tables of all layers in one storage buffer, so that a dispatch over many layers binds
-// only one. Entries are page ids or kNoPage. Changes stay on the CPU until `flush`.
+// The page tables of all layers in one storage buffer, so a dispatch over many layers binds only
+// one buffer. An entry is a page id or kNoPage. Changes stay on the CPU until `flush`.
 class PageTables {
  public:
   explicit PageTables(GpuMemory& memory) : memory_(memory) {}
 
-  // Allocates `count` entries, all kNoPage.
+  // Allocates `count` entries with the value kNoPage. Returns the index of the first one.
   Result<std::uint32_t> allocate(std::uint32_t count);
   void free(std::uint32_t offset, std::uint32_t count);
   PageId at(std::uint32_t index) const { return entries_[index]; }
   void set(std::uint32_t index, PageId page);
-  // Uploads the changes; an Error `out_of_memory` if the buffer cannot grow.
+  // Uploads the changes. Returns the Error `out_of_memory` if the buffer cannot grow.
   Result<void> flush();
   void bind(GLuint binding) const { buffer_.bind_storage(binding); }
 

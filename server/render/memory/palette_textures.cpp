@@ -25,7 +25,7 @@ std::vector<shader::PalettePoint> points_of(const Palette& palette, ValueType ty
       points.push_back({std::bit_cast<std::uint32_t>(static_cast<float>(point.at)),
                         packed(point.color), packed_pattern(point)});
     } else if (const auto bits = encode_value(type, point.at)) {
-      // a key that the type cannot hold never occurs
+      // No texel has a key that is outside the type's range.
       points.push_back({*bits, packed(point.color), packed_pattern(point)});
     }
   }

@@ -11,11 +11,11 @@
 
 namespace strata::render {
 
-std::uint32_t packed(const Rgba& color);  // red in the low byte
+std::uint32_t packed(const Rgba& color);  // red is in the low byte
 
-// Palettes on the GPU: linear ones as rows of one texture; the points of stepped and categorical
-// ones in one storage buffer, because thresholds and keys must be exact. Entries are kept as long
-// as there is room.
+// Palettes on the GPU. Linear palettes are rows of one texture. The points of stepped and
+// categorical palettes are in one storage buffer, because thresholds and keys must be exact.
+// Entries are kept while there is room.
 class PaletteTextures {
  public:
   static Result<PaletteTextures> create();
@@ -24,14 +24,14 @@ class PaletteTextures {
     std::shared_ptr<const Palette> palette;
     ValueType type;
     std::uint32_t row = 0, points = 0, point_count = 0;
-    bool patterned = false;  // some point is not solid
+    bool patterned = false;  // at least one point is not solid
   };
-  // Drops old entries if these palettes might not fit with them; entries found after it stay until
-  // the next call. An Error `out_of_memory` if the driver has no memory.
+  // Removes all entries if there may be no room for these palettes. Entries that `find` returns are
+  // then valid until the next call. Returns the Error `out_of_memory` if the driver has no memory.
   Result<void> make_room(std::span<const std::shared_ptr<const Palette>> palettes);
   Entry find(const std::shared_ptr<const Palette>& palette, ValueType type);
 
-  // the largest number of palettes in one call
+  // The largest number of palettes in one call of `make_room`.
   static constexpr std::size_t kMaxPalettes = shader::kMaxShadeLayers;
 
   void bind(GLuint texture_unit, GLuint points_binding) const;

@@ -9,7 +9,7 @@
 
 namespace strata::render {
 
-// A buffer whose whole content is replaced for each dispatch. Grows by doubling.
+// A buffer with new content for each dispatch. Its size is doubled as required.
 class StreamBuffer {
  public:
   explicit StreamBuffer(std::string label = {}) : label_(std::move(label)) {}
@@ -20,7 +20,7 @@ class StreamBuffer {
     buffer_.upload_values(0, values);
     return {};
   }
-  // Provides `bytes` of undefined content.
+  // Provides at least `bytes` bytes with undefined content.
   Result<void> make_room(std::size_t bytes) {
     const std::size_t needed = std::max<std::size_t>(bytes, 4096);
     if (buffer_.size() < needed) {
@@ -28,7 +28,7 @@ class StreamBuffer {
           STRATA_TRY(gl::Buffer::create(std::bit_ceil(needed), gl::Buffer::Use::fixed, label_));
       buffer_ = std::move(buffer);
     } else {
-      // the driver need not wait for commands that read the old content
+      // The driver need not wait for commands that read the old content.
       glInvalidateBufferData(buffer_.id());
     }
     return {};

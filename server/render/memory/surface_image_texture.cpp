@@ -6,7 +6,7 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kSliceBytes = std::size_t{4} << 20;  // ≈ 1 ms of copying
-// Keeps slanted surfaces sharp; a software renderer would need time for each sample.
+// Keeps slanted surfaces sharp. Not used with software renderers, because each sample takes time.
 constexpr float kAnisotropy = 8;
 
 }  // namespace

@@ -8,14 +8,15 @@
 
 namespace strata::render {
 
-// A picture of a model's surface on the GPU, uploaded in slices. Filtered between texels and
-// between mipmaps.
+// A surface image on the GPU, uploaded in slices. Sampling interpolates between texels and between
+// mipmap levels.
 class SurfaceImageTexture {
  public:
   static Result<std::unique_ptr<SurfaceImageTexture>> create(
       std::shared_ptr<const MipmappedPicture> image, bool software, GpuMemory& memory);
 
-  // Uploads the next few megabytes; true when complete, after which the image is released.
+  // Uploads the next few megabytes. Returns true when the upload is complete, and then releases the
+  // image in main memory.
   bool upload_slice();
   const gl::Texture& texture() const { return texture_; }
 

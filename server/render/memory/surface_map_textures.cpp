@@ -16,7 +16,7 @@ constexpr std::size_t kRowsPerUpload = 256;  // 4 MiB
 constexpr std::size_t kBytesPerUpload = std::size_t{4} << 20;
 constexpr std::size_t kNodeLevel = 2;
 
-// In the layout of shaders/edit_pass.comp and edit_cull_pass.comp.
+// These structs must have the layout that shaders/edit_pass.comp and edit_cull_pass.comp read.
 static_assert(sizeof(mesh::SurfaceMap::PackedBox) == 6 * sizeof(float));
 static_assert(sizeof(mesh::BoundingSphere) == 4 * sizeof(float));
 static_assert(mesh::BlockTree::kChildren * mesh::BlockTree::kChildren == shader::kEditPartsPerNode);
@@ -45,7 +45,7 @@ Result<std::unique_ptr<SurfaceMapTextures>> SurfaceMapTextures::create(
   const std::size_t layers =
       std::max<std::size_t>(1, (textures->total_rows_ + kRowsPerSlice - 1) / kRowsPerSlice);
   const auto contents = buffer_contents(*textures->map_);
-  // buffers must not be empty
+  // GL buffers must not be empty.
   const auto room = [](std::size_t bytes) { return std::max<std::size_t>(bytes, 16); };
   const std::size_t touched_bytes =
       room(textures->map_->tree.parts.size() * sizeof(shader::TouchedPart));
@@ -84,7 +84,7 @@ bool SurfaceMapTextures::upload_slice() {
   return complete();
 }
 
-// True if nothing was left to upload.
+// Returns true if all buffers were already uploaded.
 bool SurfaceMapTextures::upload_buffers() {
   while (next_buffer_ < buffers_.size() &&
          uploaded_bytes_ == buffers_[next_buffer_].content.size()) {

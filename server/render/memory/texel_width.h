@@ -9,17 +9,17 @@
 
 namespace strata::render {
 
-// Values are stored as bits in pools of 1, 2 and 4 bytes a texel. Each program that reads or writes
-// them is built for each width.
+// Values are stored as bits in pools with 1, 2 and 4 bytes per texel. Each program that reads or
+// writes values is built for each width.
 
-// GL names of a texel width.
+// Return the GL names for a texel width.
 GLenum texel_format(int texel_bytes);
 GLenum texel_component(int texel_bytes);
 
-// Programs of one shader file for all widths.
+// The programs of one shader file, one for each width.
 class ProgramPerWidth {
  public:
-  // `define_of` returns the width's define; `others` are passed to all.
+  // `define_of` returns the preprocessor definition for a width. All programs get `others`.
   template <class DefineOf>
   static Result<ProgramPerWidth> load(const std::filesystem::path& shader_dir,
                                       const std::string& file, DefineOf define_of,

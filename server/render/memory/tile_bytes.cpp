@@ -9,7 +9,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "byte i of a word is its texel i");
 
-// Spreads eight bits to the lowest bits of eight bytes.
+// Makes a table that spreads eight bits to the lowest bits of eight bytes.
 constexpr std::array<std::uint64_t, 256> make_spread() {
   std::array<std::uint64_t, 256> spread{};
   for (std::size_t bits = 0; bits < spread.size(); ++bits)
@@ -18,7 +18,7 @@ constexpr std::array<std::uint64_t, 256> make_spread() {
 }
 constexpr auto kSpread = make_spread();
 
-// Eight texels at a time: mostly all or none of them are written.
+// Processes eight texels at a time, because usually all or none of them are written.
 template <class Texel>
 void fill_texels(const TileMask& mask, Texel value, std::uint8_t* values) {
   std::array<Texel, 8> run;

@@ -45,7 +45,7 @@ void TileReader::begin(const PagePool& pool, std::span<const PageId> pages, gl::
   program.use();
   pages_.bind_storage(0);
   room.buffer().bind_storage(1);
-  // Consecutive pages of one chunk share a dispatch.
+  // One dispatch reads consecutive pages of one chunk.
   for (std::size_t first = 0; first < pages.size();) {
     const auto chunk = pages[first] >> shader::kPageChunkShift;
     std::size_t last = first;

@@ -3,12 +3,12 @@
 namespace strata::render {
 namespace {
 
-// For a mesh in one frame of a moving camera: with shading and encoding this gives 30 frames a
-// second.
+// The time limit for drawing the mesh in one frame of a moving camera. With shading and encoding it
+// allows 30 frames per second.
 constexpr double kBudgetMs = 10;
-// Estimates before the first drawing: llvmpipe needs 27 to 59 ns.
+// Estimated times per triangle before the first drawing. llvmpipe needs 27 to 59 ns.
 constexpr double kNsSoftware = 40, kNsHardware = 1;
-// The time of smaller drawings depends on other costs of a frame more than on triangles.
+// The time of smaller drawings depends less on triangles than on the other costs of a frame.
 constexpr std::size_t kFewTriangles = 50'000;
 constexpr double kShareOfNew = 0.2;
 // For the samples of a frame after the first, in addition to its other time.

@@ -5,16 +5,16 @@
 
 namespace strata::render {
 
-// Chooses the level of detail of a model while its camera moves, and the number of samples of its
-// frames, from the times of earlier drawings on this GPU. It takes the finest level, and the most
-// samples, that can be drawn in a few milliseconds.
+// Chooses a model's level of detail while the camera moves, and the number of samples of a frame.
+// It takes the finest level, and the most samples, that can be drawn within a few milliseconds. The
+// times of earlier drawings on this GPU give the estimates.
 class DetailBudget {
  public:
   DetailBudget() = default;
   explicit DetailBudget(bool software);
 
-  // `triangles`: triangles of each level in the window, the finest first. Returns the coarsest if
-  // none fits.
+  // `triangles` contains the number of triangles of each level in the window, the finest level
+  // first. Returns the coarsest level if no level is fast enough.
   int choose(std::span<const std::size_t> triangles) const;
   void drawn(std::size_t triangles, double ms);
 

@@ -10,20 +10,21 @@
 namespace strata::render {
 namespace {
 
-// A refinement with fewer samples would show less than it costs.
+// A refinement with fewer samples is not worth its time.
 constexpr int kMinSamples = 4;
-// texture coordinates, light, depth, picture, mean
+// Bytes for texture coordinates, light, depth, frame and mean.
 constexpr std::uint64_t kSampledBytesPerPixel = 4 + 4 + 4 + 4 + 8;
 constexpr int kPixelsOfMeanPerStep = 1 << 20;
 
-constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
+constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // takes a few milliseconds
 
-// How far a point of a mark may be below the visible surface, in pixels of the camera's window: the
-// surface of a coarser copy may be anywhere in this range.
+// The largest distance of a mark's visible point below the visible surface, in pixels of the
+// camera's window. The surface of a coarser copy can differ from the full mesh by
+// kFeatureReachOfCopies_px.
 constexpr double kFeatureReach_px = 1, kFeatureReachOfCopies_px = 10;
 
-// All marks are drawn for each rectangle: the cost of one segment (0.8 µs with llvmpipe), in the
-// unit of `kRectCost_px`.
+// The cost of one segment of a mark (0.8 µs with llvmpipe), in the unit of `kRectCost_px`. Each
+// rectangle draws all marks again.
 constexpr std::int64_t kFeatureCost_px = 28;
 
 std::size_t row_bytes(const PixelRect& rect) {
@@ -39,12 +40,13 @@ ShadeInput::Patterns patterns_of(const FrameRequest& request, const Camera& came
                                  const mesh::Geometry& geometry) {
   const glm::dvec3 middle = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
   const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(middle, 1);
-  // Inside a model its center may be at the eye, or behind it: only the distance matters.
+  // If the eye is inside the model, the model's center may be at the eye or behind it. Only the
+  // distance matters.
   const double w = std::max(std::abs(clip.w), 1e-9);
   const glm::dvec2 size(request.width, request.height);
   const glm::dvec2 origin = (glm::dvec2(clip) / w * 0.5 + 0.5) * size;
-  const double pixel = 2 * w / (std::abs(camera.projection[0][0]) * size.x);  // model units
-  // The pattern repeats, so any of its cells can be the first; small numbers keep it sharp.
+  const double pixel = 2 * w / (std::abs(camera.projection[0][0]) * size.x);  // in model units
+  // The pattern repeats, so any of its cells can be the first. Small coordinates keep it sharp.
   const auto near = [](double v) { return static_cast<float>(std::clamp(v, -1e6, 1e6)); };
   return {{near(origin.x), near(origin.y)},
           static_cast<float>(std::clamp(pixel * request.style.unit_mm, 1e-30, 1e30)),
@@ -55,7 +57,7 @@ ShadeInput::Patterns patterns_of(const FrameRequest& request, const Camera& came
 
 Step FrameJob::step(GpuScene& scene) {
   const auto begin = std::chrono::steady_clock::now();
-  // Samples need their view's model alone, once.
+  // A frame with several samples uses the view only once, to get its model.
   auto view = sample_view_ ? Result<View*>(sample_view_.get()) : scene.view(task_.request.view);
   const auto refuse = [&](const Error& problem) {
     release_view(scene, false);
@@ -195,7 +197,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
            view.lighting == request.style.light;
   };
   if (request.moving) {
-    key.level = view.key.level;  // any level drawn for this camera is fine
+    key.level = view.key.level;  // any level drawn for this camera is good enough
     if (has_gbuffer(key)) return {};
     auto level = STRATA_TRY(choose_level(scene, view));
     key.level = level;
@@ -206,12 +208,13 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
 }
 
-// The view keeps its own picture and g-buffer: rectangles of later edits are added to them.
+// Uses separate buffers. The view keeps its frame and g-buffer, to which later edits add
+// rectangles.
 Result<void> FrameJob::start_samples(GpuScene& scene, ModelHandle model) {
   const FrameRequest& request = task_.request;
   const auto pixels =
       static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height);
-  // Nothing is evicted for a refinement.
+  // A refinement must not evict anything.
   if (request.refinement && !has_layers(scene))
     return fail(ErrorCode::out_of_memory, "Picture not refined",
                 "The server removed a layer of the picture from the GPU because the memory was "
@@ -264,7 +267,7 @@ Result<void> FrameJob::start_sample(GpuScene& scene) {
 }
 
 Result<bool> FrameJob::add_sample(GpuScene& scene, const View& view) {
-  // A software renderer works while it is called.
+  // A software renderer draws during the calls, so `busy_ms_` includes the drawing.
   const auto limit_ms = static_cast<double>(task_.request.samples_time.count());
   if (is_separate() && sample_ == 0 && limit_ms > 0 && scene.info().software) {
     const double sample_ms = std::max(busy_ms_ - samples_begin_ms_, 1.0);
@@ -279,7 +282,7 @@ Result<bool> FrameJob::add_sample(GpuScene& scene, const View& view) {
   scene.accumulation_pass().add(view.picture, *mean_, samples_);
   sample_drawn_ = gl::Fence::place();
   if (++sample_ < samples_) {
-    // Nobody waits for the picture of a removed view.
+    // If the view was removed, no client waits for the frame.
     if (!task_.request.refinement) STRATA_TRY(scene.view(task_.request.view));
     if (!sample_view_) {
       sample_view_ = std::make_unique<View>();
@@ -314,7 +317,7 @@ Result<bool> FrameJob::bring_layers(GpuScene& scene) {
 Result<int> FrameJob::choose_level(GpuScene& scene, const View& view) const {
   auto model = STRATA_TRY(scene.model(view.model));
   if (model->levels.size() == 1) return 0;
-  // All levels have the same origin as the full mesh.
+  // All levels have the origin of the full mesh.
   const glm::mat4 clip = clip_from_model(task_.request.camera, model->mesh().geometry().origin);
   std::vector<std::size_t> triangles;
   for (const auto& mesh : model->levels) triangles.push_back(mesh->visible_triangles(clip));
@@ -336,7 +339,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
                                                   {view.gbuffer, view.depth->texture}, progress_);
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
-  // A software renderer works during the calls, a GPU until the picture can be read.
+  // A software renderer draws during the calls. A GPU draws until the frame can be read.
   if (scene.info().software && &view != sample_view_.get())
     scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
   return true;
@@ -446,7 +449,7 @@ bool FrameJob::read_mean() {
   return true;
 }
 
-// Of the rectangle that `shaded_` is in.
+// Reads back a band of the rectangle that is being shaded.
 void FrameJob::read_band(const gl::Texture& picture, const PixelRect& band) {
   const PixelRect& rect = frame_.rects[shaded_.rect];
   const int rows_below = rect.height - shaded_.done - band.height;
@@ -462,7 +465,7 @@ void FrameJob::read_band(const gl::Texture& picture, const PixelRect& band) {
   advance(shaded_, band.height);
 }
 
-// Textures have their lowest row first, pictures their highest.
+// Copies rows to the frame. Textures start with the lowest row, frames with the highest.
 bool FrameJob::collect_rows() {
   if (!pixels_) return true;
   const auto data = pixels_.data();

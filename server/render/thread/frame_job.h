@@ -11,17 +11,17 @@
 
 namespace strata::render {
 
-// One frame, drawn by one view: the g-buffer in slices if the camera changed, then the changed
-// parts are shaded and read back in bands. A picture with several samples does so for each of them,
-// into buffers of its own, and reads back their mean. A frame with smooth edges is the mean of the
-// view's frame and of such samples.
+// One frame, drawn by one view. If the camera changed, the g-buffer is drawn in slices. Then the
+// changed parts are shaded and read back in bands. A frame with several samples repeats drawing and
+// shading for each sample, in separate buffers, and reads back the mean. A frame with smooth edges
+// is the mean of the view's frame and of such samples.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
 
   const FrameTask& task() const { return task_; }
   double busy_ms() const { return busy_ms_; }
-  // With the current served time of its requester.
+  // The frame's turn, with the current served time of its requester.
   FrameTask::Turn turn() const {
     return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size()),
             task_.turn.large};
@@ -39,12 +39,12 @@ class FrameJob {
   void release_view(GpuScene& scene, bool is_complete) const;
   Result<void> start_samples(GpuScene& scene, ModelHandle model);
   void make_smooth(GpuScene& scene, const View& view);
-  bool has_layers(GpuScene& scene) const;  // all are on the GPU
+  bool has_layers(GpuScene& scene) const;  // true if all layers are on the GPU
   Result<void> start_sample(GpuScene& scene);
-  Result<bool> add_sample(GpuScene& scene, const View& view);  // true when it was the last
+  Result<bool> add_sample(GpuScene& scene, const View& view);  // true after the last sample
   void measure(GpuScene& scene);
   Result<void> prepare(GpuScene& scene, View& view);
-  Result<bool> bring_layers(GpuScene& scene);  // true when all are on the GPU
+  Result<bool> bring_layers(GpuScene& scene);  // true when all layers are on the GPU
   Result<int> choose_level(GpuScene& scene, const View& view) const;
   Result<bool> draw_slice(GpuScene& scene, View& view);  // true when complete
   Result<void> choose_area(GpuScene& scene, View& view);
@@ -54,35 +54,35 @@ class FrameJob {
   void read_band(const gl::Texture& picture, const PixelRect& band);
   bool collect_rows();  // true when complete
 
-  // Progress of a walk over the rows of all rectangles, each from its top.
+  // The progress of a loop over the rows of all rectangles, each from its top row.
   struct Rows {
-    std::size_t rect = 0;    // of `frame_.rects`
-    std::size_t before = 0;  // bytes of the rectangles before it
-    int done = 0;            // of its rows
+    std::size_t rect = 0;    // index in `frame_.rects`
+    std::size_t before = 0;  // bytes of the earlier rectangles
+    int done = 0;            // completed rows of this rectangle
   };
   void advance(Rows& rows, int by) const;
   bool complete(const Rows& rows) const { return rows.rect == frame_.rects.size(); }
 
   FrameTask task_;
-  Camera camera_;  // of the picture, or of the current sample
-  // Of several samples.
+  Camera camera_;  // camera of the frame, or of the current sample
+  // The state of a frame with several samples.
   std::unique_ptr<View> sample_view_;
   std::optional<Accumulation> mean_;
   int samples_ = 1, sample_ = 0, level_ = 0;
   std::size_t own_triangles_ = 0;  // of the view's frame
-  // when the view's frame was drawn
+  // The time at which the view's frame was drawn and the other samples began.
   std::optional<std::chrono::steady_clock::time_point> samples_begin_;
-  double samples_begin_ms_ = 0;  // `busy_ms_` before the first
-  gl::Fence sample_drawn_;       // so that the GPU has at most one sample to do before an edit
+  double samples_begin_ms_ = 0;  // `busy_ms_` before the first sample
+  gl::Fence sample_drawn_;       // ensures that an edit waits for at most one sample
   Stage stage_ = Stage::prepare;
   std::vector<std::shared_ptr<const void>> layer_uses_;
   MeshProgress progress_;
-  std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
+  std::chrono::steady_clock::time_point mesh_begin_;  // time of the first slice
   Frame frame_;
-  PixelRect surface_;  // part of the picture that may show surface
-  PixelRect shadow_;   // part of the picture that may show the contact shadow
+  PixelRect surface_;  // the part of the frame that may show the surface
+  PixelRect shadow_;   // the part of the frame that may show the contact shadow
   Rows shaded_, collected_;
-  gl::Readback pixels_;  // of one rectangle after the other, lowest row first
+  gl::Readback pixels_;  // one rectangle after another, lowest row first
   double busy_ms_ = 0;
 };
 

@@ -11,11 +11,11 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 64;
-// One is drawn while the other is read back: more would occupy the places of smaller pictures
+// One band is drawn while another is read back. More bands would take slots from smaller frames
 // (GpuThread).
 constexpr std::size_t kMaxLarge = 2;
 
-// Merges the changes, so that everything that either request had to redraw is redrawn.
+// Merges the changes, so the result covers the areas of both requests.
 void inherit(FrameRequest& request, const FrameRequest& other) {
   if (!request.changed) return;
   if (!other.changed) {
@@ -51,7 +51,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
     return {false, std::move(done)};
   }
   enter_half(state, request.acting, waited);
-  // A request for a part is not combined with one for a whole picture.
+  // A request for a part is not combined with a request for the whole frame.
   auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const FrameTask& other) {
     return other.request.changed.has_value() == request.changed.has_value() &&
            same_picture(other.request, request);
@@ -69,7 +69,8 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   return pushed;
 }
 
-// A view that enters a half starts without credit or debt.
+// Moves a view to the half for acting users or to that for onlookers. The view starts without
+// credit or debt in that half.
 void FrameQueue::enter_half(View& state, bool acting, bool waited) {
   Half& to = half(acting);
   const bool is_empty =
@@ -183,17 +184,16 @@ std::optional<FrameTask> FrameQueue::take() {
 
 std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> under_way) {
   std::lock_guard lock(mutex_);
-  // The next turn of each half. A rectangle does not take the turn of the other half, nor the turn
-  // of a whole picture to precede the other half: otherwise rectangles alone would use all the time
-  // of their half.
+  // The next turn of each half. A rectangle must not use a turn of the other half. It also must not
+  // use a whole frame's turn to precede the other half. Otherwise rectangles alone could use all
+  // the time of their half.
   std::array<std::optional<FrameTask::Turn>, 2> next;
   for (const FrameTask& task : waiting_) {
     auto& first = next[task.turn.acting ? 0 : 1];
     if (is_under_way(task)) continue;
     if (const auto its = turn_of(task); !first || its.ms < first->ms) first = its;
   }
-  // A band of a large picture takes longer than most other pictures, which need not wait until it
-  // is done.
+  // A band of a large image takes longer than most frames, which need not wait for its end.
   const bool only_large =
       !under_way.empty() && std::ranges::all_of(under_way, &FrameTask::Turn::large);
   const auto may_go_before = [&](const FrameTask& task) {
@@ -222,7 +222,7 @@ void FrameQueue::finished(const FrameTask& task, double took_ms) {
     rests(asker.view, took_ms / static_cast<double>(task.askers.size()));
   rests(task.request.view, 0);
   Half& its = half(task.turn.acting);
-  if (its.under_way == 0) return;  // after `take_all`
+  if (its.under_way == 0) return;  // `take_all` has removed the frame
   large_under_way_ -= task.request.large;
   its.served_ms += took_ms;
   --its.under_way;
@@ -234,8 +234,7 @@ void FrameQueue::forget(ViewHandle view) {
   if (state == views_.end()) return;
   state->second.gone = true;
   state->second.drew.reset();
-  // A waiting request of this view is answered in its turn, with the error that the view does not
-  // exist.
+  // A waiting request of this view keeps its turn. It then fails because the view does not exist.
   if (!state->second.waits && !state->second.under_way) views_.erase(state);
 }
 

@@ -12,85 +12,86 @@
 
 namespace strata::render {
 
-// One picture, and all requesters of it.
+// One frame, and all its requesters.
 struct FrameTask {
   struct Asker {
     ViewHandle view = 0;
     Renderer::Done<SharedFrame> done;
   };
-  FrameRequest request;  // its view draws; it need not be a requester's view
+  FrameRequest request;  // `request.view` draws the frame and need not be a requester
   std::vector<Asker> askers;
   struct Turn {
     bool acting = false;
-    double ms = 0;  // served time of its requester when its turn came
+    double ms = 0;  // served time of its requester at its turn
     bool large = false;
   } turn;
 };
 
-// Whether both requests show the same picture, except for changes on the surface.
+// Returns whether both requests show the same frame, except for changes on the surface.
 bool same_picture(const FrameRequest& a, const FrameRequest& b);
 
-// The waiting frames, and the order of their turns. Thread-safe.
+// The waiting frame requests and the order of their turns. Thread-safe.
 //
-// 1. A view has one place, where the latest request replaces the one before and inherits its area
-//    to redraw.
-// 2. Requests for the same picture of one model (`FrameRequest::model`) wait as one, and the view
-//    that drew that picture before draws it.
-// 3. Turns are fair by drawing time (start-time fair queueing): the next view is the one that was
-//    served the fewest milliseconds. A view that had no requests for a while does not gain credit
-//    over waiting views. So the rectangle of an edit, for a viewer, precedes the next whole picture
-//    of a person who rotates the model, and no request waits without limit.
-// 4. People who act and viewers (`FrameRequest::acting`) get half of the time each, if both wait,
-//    by the same rule: a hundred viewers do not delay a person who paints, and still see the edits.
-// 5. Bands of large pictures (`FrameRequest::large`) wait as all other requests do; only a few are
-//    in progress at a time, and smaller pictures whose turn it is precede them at each of their
-//    steps.
+// 1. Each view has at most one waiting request. A newer request replaces it and also redraws its
+//    area.
+// 2. Requests for the same frame of one model (`FrameRequest::model`) are combined. The view that
+//    has drawn this frame before draws it again.
+// 3. Turns are fair by drawing time (start-time fair queueing): the view with the shortest served
+//    time is next. A view without requests gains no credit over waiting views. Therefore an edit's
+//    rectangle for a viewer precedes the next whole frame of a user who rotates the model, and no
+//    request waits forever.
+// 4. If both wait, acting users and onlookers (`FrameRequest::acting`) get half of the time each,
+//    by the same rule. A hundred onlookers do not delay a user who paints, but still see the edits.
+// 5. Bands of large images (`FrameRequest::large`) wait for their turns like all other requests.
+//    Only a few of them are in progress at a time. At each of their steps, a smaller frame whose
+//    turn comes first can precede them.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}
 
   struct Pushed {
-    // false: the queue is full; the request is in `displaced`
+    // False: the queue is full, and `displaced` contains the callback of the request.
     bool accepted = false;
-    // of the refused or the replaced request
+    // The callback of the rejected or replaced request.
     std::optional<Renderer::Done<SharedFrame>> displaced{};
   };
   Pushed push(FrameRequest request, Renderer::Done<SharedFrame> done);
-  // Returns the next frame, except for views with a frame in progress; its views are then in
-  // progress until `finished`.
+  // Returns the next frame, but skips views with a frame in progress. The frame's views then count
+  // as in progress until `finished`.
   std::optional<FrameTask> take();
-  // The same, for rectangles only, whose turn precedes all of these: they may precede whole
-  // pictures in progress. If only bands of large pictures are in progress, any smaller picture may.
+  // Like `take`, but returns only rectangles whose turn precedes all turns in `under_way`, so they
+  // may precede whole frames in progress. If only bands of large images are in progress, it also
+  // returns smaller whole frames.
   std::optional<FrameTask> take_part(std::span<const FrameTask::Turn> under_way);
   void finished(const FrameTask& task, double took_ms);
-  void forget(ViewHandle view);       // the view is removed
-  std::vector<FrameTask> take_all();  // also clears frames in progress and all views
+  void forget(ViewHandle view);       // called when the view is removed
+  std::vector<FrameTask> take_all();  // also forgets the frames in progress and all views
 
  private:
   using Place = std::list<FrameTask>::iterator;
   struct View {
     bool acting = false;
-    double served_ms = 0;  // compared with views of its half
+    double served_ms = 0;  // compared with other views of its half
     std::optional<Place> waits;
     bool under_way = false;
-    bool gone = false;                 // removed, but waiting or in progress
-    std::optional<FrameRequest> drew;  // the last picture it drew
+    bool gone = false;                 // removed, but with a frame that waits or is in progress
+    std::optional<FrameRequest> drew;  // the last frame that the view drew
   };
-  // people who act, or viewers
+  // The state of acting users or of onlookers.
   struct Half {
     double served_ms = 0;
-    double now_ms = 0;  // served time of the view whose turn was last
+    double now_ms = 0;  // served time of the view with the last turn
     std::size_t under_way = 0;
   };
   void leave(ViewHandle view, View& state);
   Half& half(bool acting) { return halves_[acting ? 0 : 1]; }
   const Half& half(bool acting) const { return halves_[acting ? 0 : 1]; }
   void enter_half(View& state, bool acting, bool waited);
-  bool is_acting(const FrameTask& task) const;     // any of its askers
-  bool is_under_way(const FrameTask& task) const;  // one of its askers has another in progress
+  bool is_acting(const FrameTask& task) const;     // any requester acts
+  bool is_under_way(const FrameTask& task) const;  // a requester has another frame in progress
   bool is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) const;
   FrameTask::Turn turn_of(const FrameTask& task) const;
-  // The view that will draw it; nothing while that view has another frame in progress.
+  // Returns the view that will draw the frame, or nothing while that view has a frame in progress.
   std::optional<ViewHandle> drawer_of(const FrameTask& task) const;
   template <class Predicate>
   std::optional<FrameTask> take_if(const Predicate& predicate);
@@ -99,10 +100,10 @@ class FrameQueue {
   std::mutex mutex_;
   std::list<FrameTask> waiting_;  // oldest first
   std::unordered_map<ViewHandle, View> views_;
-  std::size_t askers_ = 0;  // of `waiting_`
+  std::size_t askers_ = 0;  // requesters of the frames in `waiting_`
   std::array<Half, 2> halves_;
   std::size_t large_under_way_ = 0;
-  double now_ms_ = 0;  // served time of the half whose turn was last
+  double now_ms_ = 0;  // served time of the half with the last turn
 };
 
 }  // namespace strata::render

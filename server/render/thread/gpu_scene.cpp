@@ -6,8 +6,8 @@
 namespace strata::render {
 namespace {
 
-// A slice of a long drawing takes 1 to 2 ms: llvmpipe needs 27 to 59 ns a triangle, and draws a
-// slice while the next is prepared.
+// A slice of a long drawing takes 1 to 2 ms. llvmpipe needs 27 to 59 ns per triangle, and draws a
+// slice while the next one is prepared.
 constexpr std::size_t kTrianglesPerSliceSoftware = 32 * 1024;
 constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
 constexpr int kLowestResolution = kTileSize, kMaxResolution = 16384;
@@ -36,7 +36,7 @@ GpuInfo read_info() {
   return info;
 }
 
-// 70 % of the dedicated memory if the driver reports it.
+// Returns 70 % of the dedicated memory if the driver reports it.
 std::uint64_t default_budget() {
   if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
     const int total_kib = integer(GL_GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX);
@@ -102,8 +102,8 @@ Result<void> GpuScene::load() {
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
-// Evicts pages that no layer uses first, then depth buffers of cameras that no view has, then the
-// layer that was unused for the longest time, and at last the buffers of such a view.
+// Evicts the first available of: pages that no layer uses; depth buffers of cameras that no view
+// has; the least recently used layer; the buffers of the least recently used view.
 bool GpuScene::evict_one() {
   for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
     if (pool->drop_empty_chunk()) return true;

@@ -19,21 +19,21 @@
 
 namespace strata::render {
 
-// Everything in one GL context: passes, pools, models, layers, views. Created and destroyed as a
-// whole, so that nothing of a lost context remains. GPU thread only.
+// All objects of one GL context: passes, pools, models, layers, views. They are created and
+// destroyed together, so no object of a lost context remains. GPU thread only.
 class GpuScene {
  public:
   struct Model {
-    std::vector<std::unique_ptr<MeshBuffers>> levels;  // the full mesh, then coarser copies
+    std::vector<std::unique_ptr<MeshBuffers>> levels;  // the full mesh, then its coarser copies
     const MeshBuffers& mesh() const { return *levels.front(); }
-    std::map<int, std::unique_ptr<SurfaceMapTextures>> maps;  // by resolution, complete ones only
+    std::map<int, std::unique_ptr<SurfaceMapTextures>> maps;  // complete maps by resolution
   };
   struct SurfaceImage {
     ModelHandle model = 0;
     std::unique_ptr<SurfaceImageTexture> texture;
   };
 
-  // `generation` is part of handles; `memory` and `messages` must outlive the scene.
+  // `generation` is part of all handles. `memory` and `messages` must outlive the scene.
   static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options,
                                                   std::uint64_t generation, GpuMemory& memory,
                                                   gl::DebugMessages& messages);
@@ -51,7 +51,7 @@ class GpuScene {
   EditCuller& edit_culler() { return *edit_culler_; }
   EditPass& edit_pass() { return *edit_pass_; }
   TileReader& tile_reader() { return *tile_reader_; }
-  // Whether KernelPainter paints strokes, which needs no surface maps on the GPU.
+  // True if KernelPainter paints strokes. It needs no surface maps on the GPU.
   bool edits_on_cpu() const { return info_.edit_path == EditPath::kernel; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
@@ -59,7 +59,7 @@ class GpuScene {
   FeaturePass& feature_pass() { return *feature_pass_; }
   AccumulationPass& accumulation_pass() { return *accumulation_pass_; }
   DetailBudget& detail_budget() { return detail_budget_; }
-  // The number of pixels of one layer that a step shades.
+  // The number of pixels that a step shades, for one layer.
   int pixels_per_band() const {
     return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware;
   }
@@ -71,33 +71,34 @@ class GpuScene {
 
   ModelHandle add(Model model);
   SurfaceImageHandle add(SurfaceImage image);
-  // `mirror` may be null: see GpuLayer.
+  // `mirror` may be null (see GpuLayer).
   Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution,
                                 std::shared_ptr<const TileMirror> mirror = nullptr);
   Result<ViewHandle> add_view(ModelHandle model);
-  // An Error `not_found` for a handle that is unknown, removed, or of another generation.
+  // These functions return the Error `not_found` if the handle is unknown, removed, or belongs to
+  // another generation.
   Result<Model*> model(ModelHandle handle);
   Result<GpuLayer*> layer(LayerHandle handle);
   Result<View*> view(ViewHandle handle);
   Result<SurfaceImage*> image(SurfaceImageHandle handle);
-  void remove_model(ModelHandle handle);  // and its layers, looks and views
+  void remove_model(ModelHandle handle);  // with its layers, images and views
   void remove_surface_image(SurfaceImageHandle handle) { images_.erase(handle); }
   void remove_layer(LayerHandle handle) { layers_.erase(handle); }
   void remove_view(ViewHandle handle) { views_.erase(handle); }
 
  private:
-  // A few milliseconds; a picture of 1280 x 720 with three layers is one band.
+  // A band takes a few milliseconds. A frame of 1280 x 720 pixels with three layers is one band.
   static constexpr int kPixelsPerBandSoftware = 1 << 22, kPixelsPerBandHardware = 1 << 28;
 
   GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
   Result<void> load();
   bool evict_one();
-  // Evicts the layer that was unused for the longest time; of `pool`, if given.
+  // Evicts the least recently used layer. If `pool` is given, evicts a layer of this pool.
   bool let_a_layer_leave(const PagePool* pool = nullptr);
   std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }
   Error unknown(const char* what, std::uint64_t handle) const;
 
-  gl::EglContext context_;  // first: destroyed after all its objects
+  gl::EglContext context_;  // the first member, so it is destroyed after its objects
   const RendererOptions options_;
   const std::uint64_t generation_;
   GpuMemory& memory_;

@@ -10,15 +10,15 @@
 namespace strata::render {
 namespace {
 
-// Time of polling without sleep while the GPU works: the read-back of an edit is usually ready
-// within microseconds.
+// The time of polling without sleep. The read-back of an edit is usually ready within microseconds.
 constexpr auto kBusyPolling = std::chrono::microseconds(200);
 constexpr auto kPollPause = std::chrono::microseconds(100);
 constexpr auto kRecoveryPause = std::chrono::seconds(1);
-// Frames that are drawn and wait for their read-back; more would only use memory.
+// The largest number of frames in progress. More frames would only use memory, because drawn frames
+// wait for their read-back.
 constexpr std::size_t kMaxActiveFrames = 4;
-// How long edits may run before frames: a stroke takes some milliseconds, so only very many edits
-// take this long.
+// The longest time of edits before a frame gets a turn. A stroke takes a few milliseconds, so only
+// very many edits take this long.
 constexpr std::chrono::milliseconds kMaxAhead{30};
 
 Error lost_problem() {
@@ -111,7 +111,7 @@ void GpuThread::run() {
     const bool is_under_way =
         std::ranges::any_of(current_, [](const auto& job) { return job.has_value(); });
     if (is_under_way || !frames_.empty()) {
-      // Something waits for the GPU.
+      // A job waits for the GPU.
       if (Clock::now() - last_progress > kBusyPolling)
         changed_.wait_for(lock, kPollPause, has_news);
     } else if (broken_) {
@@ -158,7 +158,7 @@ bool GpuThread::step_behind_edits() {
   if (step_frames()) return true;
   const auto step = step_lane(Lane::background);
   if (step && *step != Step::waiting) return true;
-  // A frame that waits for the GPU would wait for the work of an idle job, too.
+  // If a frame waits for the GPU, the work of an idle job would delay it.
   if (step || !frames_.empty() || current_[0]) return false;
   const auto idle = step_lane(Lane::idle);
   return idle && *idle != Step::waiting;
@@ -177,8 +177,8 @@ std::optional<Step> GpuThread::step_lane(Lane lane) {
   return step;
 }
 
-// Runs the first frame that does not wait. A new one starts if all others wait for the GPU, or if
-// it is a small one whose turn it is.
+// Runs a step of the first frame that does not wait for the GPU. Starts a new frame if all others
+// wait for the GPU, or if a small frame's turn precedes theirs.
 bool GpuThread::step_frames() {
   if (!frames_.empty() && frames_.size() < kMaxActiveFrames)
     if (auto part = hooks_.next_part()) frames_.push_front(std::move(*part));

@@ -15,44 +15,45 @@
 
 namespace strata::render {
 
-// The result of a job's step. A step takes a few milliseconds at most; long work is divided into
+// The result of a job's step. A step takes a few milliseconds at most, so long work is divided into
 // many steps.
 enum class Step {
-  more,     // call again
-  yield,    // call again, after a step of the later lanes: a long job that delays its own lane
-  waiting,  // for the GPU: run others, then call again
+  more,     // has more work
+  yield,    // like `more`, but a step of a later lane may run first: for long jobs
+  waiting,  // waits for the GPU, so other jobs may run
   done,
 };
 
-// Work for the GPU thread. It ends either by a step that returns `done`, or by `abort`.
+// Work for the GPU thread. It ends with a step that returns `done`, or with `abort`.
 struct Job {
   std::function<Step()> step;
   std::function<void(const Error&)> abort;
 };
 
 enum class Lane {
-  ordered,  // edits and layer changes: one after the other, before all else
-  // uploads of models, surface maps and opened layers: one after the other, after frames
+  // Edits and layer changes, one after another, before all other work.
+  ordered,
+  // Uploads of models, surface images and surface maps, one after another, after frames.
   background,
-  // refinements of pictures: one after the other, while nothing else is in progress
+  // Refinements of frames, one after another, while no other work is in progress.
   idle,
 };
 
-// The thread that owns the GPU. Ordered jobs precede frames, frames precede background jobs. While
-// a job waits, the next kind runs, but no job overtakes another in its lane. Frames wait while an
-// ordered job can run, unless it yields, or ordered jobs have run for a while: then both get the
-// same time, so that many edits are visible during their work.
+// The thread that owns the GPU. Ordered jobs precede frames, and frames precede background jobs.
+// While a job waits, jobs of the next kind run, but jobs of one lane keep their order. Frames wait
+// while an ordered job can run and does not yield. After ordered jobs have run for some time,
+// frames get the same time. So users see the first results while many edits run.
 class GpuThread {
  public:
   struct Hooks {
-    std::function<Result<void>()> start;    // makes the context; its error is that of `start`
-    std::function<void()> stop;             // destroys it
+    std::function<Result<void>()> start;    // creates the context; `start` returns its Error
+    std::function<void()> stop;             // destroys the context
     std::function<bool()> lost;             // called before each step
-    std::function<Result<void>()> recover;  // after a loss: all jobs were aborted
-    std::function<std::optional<Job>()> next_frame;  // takes a waiting frame, if any may start
-    // the same, if it should precede the frames in progress
+    std::function<Result<void>()> recover;  // replaces a lost context, after all jobs were aborted
+    std::function<std::optional<Job>()> next_frame;  // takes a waiting frame that may start
+    // Takes a waiting frame that should precede the frames in progress.
     std::function<std::optional<Job>()> next_part;
-    std::function<void(const Error&)> abort_frames;  // answers those still waiting
+    std::function<void(const Error&)> abort_frames;  // aborts all waiting frames
   };
 
   explicit GpuThread(std::size_t capacity) : capacity_(capacity) {}
@@ -61,26 +62,25 @@ class GpuThread {
   GpuThread& operator=(const GpuThread&) = delete;
 
   Result<void> start(Hooks hooks);
-  // Aborts waiting jobs and joins. Called by the owner, not on the GPU thread.
+  // Aborts waiting jobs and joins the thread. Must not be called on the GPU thread.
   void stop();
 
-  // False if the lane is full (unless `always`) or the thread has stopped: the caller answers.
-  // `always` is for removals, at most one for each handle, and for a caller that waits for the end
-  // of a lane.
+  // Returns false if the thread has stopped, or if the lane is full and `always` is false. The
+  // caller must then abort the job. `always` is for removals, at most one for each handle, and for
+  // callers that wait for the end of a lane.
   bool post(Lane lane, Job job, bool always = false);
-  // Runs `reply` on the GPU thread before any other work; on the calling thread if it has stopped.
-  // Replies have no limit of their own: at most one waits for each request that was refused or
-  // replaced during a step.
+  // Runs `reply` on the GPU thread before any other work, or on the calling thread if the GPU
+  // thread has stopped. The number of replies needs no limit, because each request has at most one.
   void post_reply(std::function<void()> reply);
-  void wake();  // a frame was queued
+  void wake();  // called when a frame is queued
   bool ready() const { return !broken_; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
   void run();
-  bool run_some();  // false if all jobs wait
-  // Runs a step of the lane's first job; nothing if the lane is empty.
+  bool run_some();  // returns false if all jobs wait
+  // Runs a step of the lane's first job. Returns nothing if the lane is empty.
   std::optional<Step> step_lane(Lane lane);
   bool step_frames();
   bool step_behind_edits();
@@ -92,7 +92,7 @@ class GpuThread {
   const std::size_t capacity_;
   Hooks hooks_;
   std::thread thread_;
-  std::mutex mutex_;  // guards what follows, up to the blank line
+  std::mutex mutex_;  // guards the members up to the blank line
   std::condition_variable changed_;
   std::array<std::deque<Job>, 3> lanes_;
   std::deque<std::function<void()>> replies_;
@@ -100,12 +100,13 @@ class GpuThread {
   bool stopping_ = false;
   bool stopped_ = true;
 
-  // Used by the GPU thread only.
-  std::array<std::optional<Job>, 3> current_;  // of the lanes
+  // Only the GPU thread uses these members.
+  std::array<std::optional<Job>, 3> current_;  // the current job of each lane
   std::list<Job> frames_;
-  // how much longer ordered jobs ran than frames since frames were last idle
+  // The time of ordered jobs minus that of frames, since the last moment without work for one of
+  // them.
   Clock::duration ahead_{};
-  // a lost context that could not be replaced yet; other threads may read
+  // True while a lost context could not be replaced. Other threads may read it.
   std::atomic<bool> broken_ = false;
   Clock::time_point next_recovery_{};
 };

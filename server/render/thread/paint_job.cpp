@@ -137,7 +137,7 @@ Result<void> PaintJob::find_depth(GpuScene& scene) {
 }
 
 void PaintJob::finish(GpuScene& scene) {
-  // A reset between dispatch and read-back leaves undefined data in the mapped memory.
+  // After a reset between dispatch and read-back, the mapped memory contains undefined data.
   if (scene.lost()) {
     abort({ErrorCode::gpu_lost,
            "GPU lost",

@@ -4,8 +4,8 @@
 
 namespace strata::render {
 
-// Paints one stroke batch: uploads the layer if it was evicted, draws the depth of the mesh if no
-// view has it, then runs the StrokePainter. A refused stroke has painted nothing.
+// Paints one stroke batch. Uploads the layer if it was evicted, draws the depth of the mesh if no
+// view has it, and then runs the StrokePainter. A rejected stroke changes no texel.
 class PaintJob {
  public:
   PaintJob(LayerHandle layer, StrokeBatch stroke, Renderer::Done<StrokeOutcome> done)
@@ -32,7 +32,7 @@ class PaintJob {
   std::unique_ptr<StrokePainter> painter_;
 };
 
-// Refuses bad paths, radii and cameras, before any GPU work.
+// Rejects strokes with invalid values, for example paths, radii or cameras, before any GPU work.
 Result<void> validate(const StrokeBatch& stroke);
 
 }  // namespace strata::render

@@ -12,16 +12,16 @@
 
 namespace strata::render {
 
-// Of a request whose view made a newer one.
+// Returns the Error for a request that a newer request of its view replaced.
 Error superseded_error();
 
-// The refinements that views wait for, apart from the queue of frames: a refinement takes no turn
-// of its views. A newer request of a view ends its part in a refinement; a refinement that no view
-// waits for ends. Thread-safe.
+// The refinements that views wait for. They are not in the queue of frames and use no turns of
+// their views. After a newer request, a view no longer waits for its refinement. A refinement ends
+// when no view waits for it. Thread-safe.
 class Refinements {
  public:
   using Done = Renderer::Done<SharedFrame>;
-  // One picture, and the views that wait for it.
+  // One frame, and the views that wait for it.
   struct Task {
     FrameRequest request;
 
@@ -29,34 +29,35 @@ class Refinements {
     friend class Refinements;
     struct Asker {
       ViewHandle view;
-      std::uint64_t draw;  // the number of the view's newest other request at that time
+      std::uint64_t draw;  // the number of the view's other requests before this one
       Done done;
     };
     std::vector<Asker> askers;
-    std::optional<std::uint64_t> began_at;  // `changes_` then
+    std::optional<std::uint64_t> began_at;  // `changes_` at the start
     bool is_over = false;
   };
 
-  // A new task that waits to be drawn; null if the request joins a task: one that was not started,
-  // or since whose start no layer changed.
+  // Returns a new task. Returns null if the request was added to an existing task. Such a task has
+  // not started, or no layer has changed since its start.
   std::shared_ptr<Task> push(FrameRequest request, Done done);
-  // Layers change: called after the change was posted to the GPU thread.
+  // Notes a change to a layer. Called after the change was posted to the GPU thread.
   void content_changed();
-  // The view requests another picture.
+  // Notes that the view requested another frame.
   void overtake(ViewHandle view);
-  void forget(ViewHandle view);  // it is removed
-  // Starts or continues a task: answers askers that requested something newer. False if none is
-  // left.
+  void forget(ViewHandle view);  // called when the view is removed
+  // Starts or continues a task. Requesters with a newer request get the Error `superseded`. Returns
+  // false if no other requester is left.
   bool continues(Task& task);
-  // Answers all askers; the task is over.
+  // Sends the result to all requesters and ends the task.
   void answer(Task& task, const Result<SharedFrame>& frame);
 
  private:
   std::vector<Done> take_overtaken(Task& task);
 
   std::mutex mutex_;
-  std::unordered_map<ViewHandle, std::uint64_t> draws_;  // of views that asked for a refinement
-  std::uint64_t changes_ = 0;                            // of layers
+  // The number of other requests of each view that requested a refinement.
+  std::unordered_map<ViewHandle, std::uint64_t> draws_;
+  std::uint64_t changes_ = 0;  // number of changes to layers
   std::list<std::weak_ptr<Task>> tasks_;
 };
 

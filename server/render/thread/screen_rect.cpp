@@ -10,8 +10,8 @@
 namespace strata::render {
 namespace {
 
-// A texel's color affects the pixels around it, and so does its outline, which is wider in pictures
-// with more pixels than their window.
+// A texel's color and outline affect the pixels around it. The outline is wider in frames with more
+// pixels than the camera's window.
 double padding_px(double pixel_scale) {
   return 1.5 + shader::kOutlinePixels * std::max(1.0, pixel_scale);
 }
@@ -24,12 +24,12 @@ PixelRect around(const PixelRect& a, const PixelRect& b) {
           std::max(a.y + a.height, b.y + b.height) - y};
 }
 
-// Additional pixels of one rectangle around both. Negative if they overlap.
+// Returns the additional pixels of one rectangle around both. Negative if they overlap.
 std::int64_t growth(const PixelRect& a, const PixelRect& b) {
   return area(around(a, b)) - area(a) - area(b);
 }
 
-// Adds a rectangle to `rects`, merged with those that are cheaper to draw together.
+// Adds a rectangle to `rects` and merges it with all rectangles that are cheaper to draw together.
 void add_rect(std::vector<PixelRect>& rects, PixelRect rect, std::int64_t rect_cost_px) {
   for (std::size_t i = 0; i < rects.size();) {
     if (growth(rects[i], rect) > rect_cost_px) {
@@ -38,12 +38,12 @@ void add_rect(std::vector<PixelRect>& rects, PixelRect rect, std::int64_t rect_c
     }
     rect = around(rects[i], rect);
     rects.erase(rects.begin() + static_cast<std::ptrdiff_t>(i));
-    i = 0;  // it may be near others now
+    i = 0;  // the larger rectangle may be near others
   }
   rects.push_back(rect);
 }
 
-// Removes the two that grow least by merging and returns the merged one.
+// Removes the two rectangles that grow least when merged. Returns the merged one.
 PixelRect take_nearest(std::vector<PixelRect>& rects) {
   std::size_t first = 0, second = 1;
   for (std::size_t i = 0; i < rects.size(); ++i)
@@ -107,7 +107,8 @@ std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes,
     if (rects.size() > kMaxScreenRects) add_rect(rects, take_nearest(rects), rect_cost_px);
   }
   if (rects.size() < 2) return rects;
-  // Merging all may pay even if merging no two does, for example four along the sides of a picture.
+  // One rectangle around all may be cheaper even if no two of them are cheaper to merge. An example
+  // is four rectangles along the sides of a frame.
   PixelRect all = rects.front();
   std::int64_t apart = -rect_cost_px;
   for (const PixelRect& rect : rects) {

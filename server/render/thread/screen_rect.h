@@ -9,35 +9,38 @@
 
 namespace strata::render {
 
-// Returns the rectangle of a picture (origin top left) that a model-space box covers; conservative,
-// clamped; the whole picture if the box crosses the eye's plane, empty if it is outside.
-// `align_to_16` grows it to multiples of 16 inside the picture. `pixel_scale`: pixels of the
-// picture for one of the camera's window, the unit of outlines.
+// Returns the part of a frame that a model-space box covers (origin top left). The result is
+// conservative and clamped to the frame. It is the whole frame if the box crosses the eye's plane,
+// and empty if the box is outside. `align_to_16` enlarges it to multiples of 16 inside the frame.
+// `pixel_scale` is the number of frame pixels per pixel of the camera's window, the unit of
+// outlines.
 PixelRect screen_rect(const FrameRequest::Box& box, const glm::dmat4& clip_from_model, int width,
                       int height, bool align_to_16, double pixel_scale = 1);
 
-// The cost of one more rectangle (a draw, a transfer, a JPEG's tables, a decoding), in pixels of a
-// larger one. Drawing alone, with llvmpipe and three layers: 0.2 ms a rectangle and 30 ns a pixel.
+// The cost of one more rectangle (draw call, transfer, JPEG tables, decoding), as a number of
+// pixels. With llvmpipe and three layers, drawing alone takes 0.2 ms per rectangle and 30 ns per
+// pixel.
 constexpr std::int64_t kRectCost_px = 96 * 96;
 
-// Returns rectangles that cover those of all boxes, at most `kMaxScreenRects`. Rectangles are
-// merged if one is cheaper than two; all of them, if one around all is cheaper.
+// Returns at most `kMaxScreenRects` rectangles that cover all boxes. Two rectangles are merged if
+// one is cheaper. All are merged if one rectangle around all of them is cheaper.
 constexpr std::size_t kMaxScreenRects = 16;
 std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes,
                                     const glm::dmat4& clip_from_model, int width, int height,
                                     bool align_to_16, std::int64_t rect_cost_px = kRectCost_px,
                                     double pixel_scale = 1);
 
-// Adds a box to `boxes`, unless it is there; if there are `most`, extends the one that grows least.
+// Adds a box to `boxes` unless it is in the list. If the list has `most` boxes, extends the box
+// that grows least.
 void add_box(std::vector<FrameRequest::Box>& boxes, const FrameRequest::Box& box, std::size_t most);
 
-// Bytes of a rectangle's pixels in a frame.
+// Returns the bytes of a rectangle's pixels in a frame.
 constexpr std::size_t rgba_bytes(const PixelRect& rect) {
   return std::size_t{4} * static_cast<std::size_t>(rect.width) *
          static_cast<std::size_t>(rect.height);
 }
 
-// Empty (all zero) if they do not intersect.
+// Returns an empty rectangle (all zero) if they do not intersect.
 PixelRect intersection(const PixelRect& a, const PixelRect& b);
 
 }  // namespace strata::render

@@ -155,7 +155,7 @@ Result<void> TilesUpload::write(LayerTextures& layer, const TileUpload& tile) {
     pool_->upload(present, *tile.data);
     return {};
   }
-  if (pages_.empty()) {  // it had one when it was prepared
+  if (pages_.empty()) {  // the tile had a page when it was prepared, but lost it since then
     auto page = STRATA_TRY(pool_->allocate());
     pages_.push_back(page);
   }

@@ -5,7 +5,7 @@
 
 namespace strata::render {
 
-// Uploads in slices of a few milliseconds. Each ends by a `step` that returns done or by `abort`.
+// These jobs upload data in slices of a few milliseconds.
 
 class ModelUpload {
  public:
@@ -54,9 +54,9 @@ class SurfaceMapUpload {
   std::unique_ptr<SurfaceMapTextures> textures_;
 };
 
-// All pages are allocated before the first tile is written: after an Error the layer is unchanged.
-// A page becomes visible only when it contains its tile, so that frames may be drawn between the
-// steps.
+// Allocates all pages before it writes the first tile, so the layer is unchanged if the allocation
+// fails. A page becomes visible only when it contains its tile. Therefore frames may be drawn
+// between the steps.
 class TilesUpload {
  public:
   TilesUpload(LayerHandle layer, std::vector<TileUpload> tiles, Renderer::Done<void> done)
@@ -74,9 +74,9 @@ class TilesUpload {
   const std::vector<TileUpload> tiles_;
   Renderer::Done<void> done_;
   std::shared_ptr<const void> layer_use_;
-  std::size_t prepared_ = 0, written_ = 0;  // tiles
-  PagePool* pool_ = nullptr;                // of the layer
-  std::vector<PageId> pages_;               // of `pool_`, for tiles without a page
+  std::size_t prepared_ = 0, written_ = 0;  // numbers of tiles
+  PagePool* pool_ = nullptr;                // the layer's pool
+  std::vector<PageId> pages_;               // pages of `pool_` for tiles without a page
 };
 
 }  // namespace strata::render

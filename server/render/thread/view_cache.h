@@ -8,40 +8,40 @@
 
 namespace strata::render {
 
-// The state of a view between frames: the g-buffer of its camera and its last picture, which
-// partial frames update. Without buffers (new, or evicted) only the handle remains.
+// The state of a view between frames: the g-buffer of its camera and its last frame, which partial
+// frames update. A view without buffers is new or was evicted.
 struct View {
   ModelHandle model = 0;
-  bool drawing = false;  // a frame is in progress: must not be evicted
+  bool drawing = false;  // a frame is in progress, so it must not be evicted
   std::uint64_t last_used = 0;
 
   DepthKey key;
-  std::vector<SurfaceImageStyle> images;  // of the g-buffer, as is the lighting
+  std::vector<SurfaceImageStyle> images;  // images in the g-buffer
   Light lighting;
   bool gbuffer_complete = false;
   std::shared_ptr<DepthBuffer> depth;
   gl::Texture uv, light, picture;
   gl::Framebuffer gbuffer;
-  gl::Framebuffer shading;  // the picture and the g-buffer's depth
+  gl::Framebuffer shading;  // renders to `picture` with the g-buffer's depth
   GpuMemory::Share share;
 
   bool picture_complete = false;
-  std::vector<LayerStyle> layers;  // of the picture
+  std::vector<LayerStyle> layers;  // layers in `picture`
   Background background;
   glm::vec2 background_rows{0, 1};
   double unit_mm = 0;
   FeaturesShown features;
   std::shared_ptr<const mesh::ContactShadow> contact_shadow;
-  FeatureBuffer seen_features;  // the marks as seen by the camera of the g-buffer
+  FeatureBuffer seen_features;  // the marks, tested with the g-buffer's camera
 
   bool has_buffers() const { return static_cast<bool>(picture); }
   void drop_buffers();
-  // Whether the picture shows this request, except for changes on the surface.
+  // Returns whether `picture` shows this request, except for changes on the surface.
   bool shows(const FrameRequest& request) const;
 };
 
-// Prepares new buffers of `view` for the size and the camera of `key`. A depth buffer that an edit
-// uses is left to that edit.
+// Prepares the buffers of `view` for the size and the camera of `key`. If an edit uses the depth
+// buffer, the view gets a new one.
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,
                              GpuMemory& memory);
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint64_t kBytesPerPixel = 8;
 
-// 1 / φ₂ and 1 / φ₂², where φ₂³ = φ₂ + 1.
+// The steps of the recurrence R2: 1 / φ₂ and 1 / φ₂², where φ₂³ = φ₂ + 1.
 constexpr glm::dvec2 kStep{0.7548776662466927, 0.5698402909980532};
 
 glm::dvec2 place(int index) {

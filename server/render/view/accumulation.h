@@ -12,33 +12,35 @@
 
 namespace strata::render {
 
-// Where sample `index` of `count` looks, in pixels from the middle of a pixel. The samples cover a
-// square of one pixel evenly, and their mean is the middle: the additive recurrence R2 (Roberts
-// 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"), moved by its mean.
+// Returns the offset of sample `index` of `count`, in pixels from the center of a pixel. The
+// samples cover a square of one pixel evenly, and their mean is the center. They follow the
+// additive recurrence R2 (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"),
+// moved by its mean.
 glm::dvec2 sample_offset(int index, int count);
 
-// The same for a frame with smooth edges: the first sample is the middle of the pixel, the others
-// surround it.
+// The same for a frame with smooth edges. The first sample is the center of the pixel, and the
+// others surround it.
 glm::dvec2 smooth_sample_offset(int index, int count);
 
-// `camera`, whose picture of `width` × `height` pixels shows the scene at `offset` pixels (x to the
-// right, y upwards) from where `camera` shows it.
+// Returns a camera that moves the scene in a frame of `width` × `height` pixels by `offset` pixels
+// (x to the right, y upwards).
 Camera jittered(const Camera& camera, int width, int height, glm::dvec2 offset);
 
-// The mean of several pictures of one size.
+// The mean of several frames with the same size.
 struct Accumulation {
-  gl::Texture sum;  // RGBA16: the shares of the pictures so far
+  gl::Texture sum;  // RGBA16: the sum of the weighted frames so far
   gl::Framebuffer target;
   GpuMemory::Share share;
 
   static Result<Accumulation> create(int width, int height, GpuMemory& memory);
 };
 
-// Adds pictures to an Accumulation. Sets all state it needs, and leaves blending off.
+// Adds frames to an Accumulation. Sets all GL state that it needs, and disables blending at the
+// end.
 class AccumulationPass {
  public:
   static Result<AccumulationPass> create(const std::filesystem::path& shader_dir);
-  // Adds a `count`th of `picture`, which has the size of the sum.
+  // Adds `picture`, multiplied by 1 / `count`. It must have the size of the sum.
   void add(const gl::Texture& picture, Accumulation& to, int count);
 
  private:

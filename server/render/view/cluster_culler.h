@@ -8,16 +8,16 @@
 
 namespace strata::render {
 
-// Removes clusters that are hidden by the depth drawn so far from a list of draws, on the GPU:
-// indirect draws read the list, so nothing is read back to the CPU. Exact: a cluster that would
-// show a pixel keeps its draw. Clusters are not culled by the cone of normals, because scans are
-// open and their back sides are shown.
+// Disables the draws of clusters that the depth drawn so far hides. It runs on the GPU. Indirect
+// draws read the list, so the CPU reads nothing back. A cluster with a visible pixel always keeps
+// its draw. Clusters are not culled by their cones of normals, because scans are open and their
+// back sides are visible.
 class ClusterCuller {
  public:
   static Result<ClusterCuller> create(const std::filesystem::path& shader_dir);
 
-  // Processes `count` commands from `first` on, which draw clusters of `mesh`; `depth` contains the
-  // depth drawn so far.
+  // Processes `count` commands, starting at `first`. The commands draw clusters of `mesh`. `depth`
+  // contains the depth drawn so far.
   Result<void> hide(const gl::Texture& depth, const MeshBuffers& mesh,
                     const glm::mat4& clip_from_model, const gl::Buffer& commands, std::size_t first,
                     std::size_t count);

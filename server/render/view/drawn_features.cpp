@@ -6,13 +6,13 @@
 namespace strata::render {
 namespace {
 
-constexpr double kReachOfSize = 1e-3, kReachOfLine = 0.02,
-                 kReachOfPoint = 5e-4;  // of the model's size; of a line's length
-// in pixels of the camera's window
+// kReachOfLine is a share of a line's length, the others are shares of the model's size.
+constexpr double kReachOfSize = 1e-3, kReachOfLine = 0.02, kReachOfPoint = 5e-4;
+// The longest piece, in pixels of the camera's window.
 const double kPiece_px = shader::kFeatureMaxPlaces * static_cast<double>(shader::kFeatureStep_px);
 
-// Narrows a segment from `a` to `b` to the part where a linear function with the values `at_a` and
-// `at_b` at its ends is not negative.
+// Reduces a segment to the part in which a linear function is not negative. `at_a` and `at_b` are
+// the values of the function at both ends.
 void narrow(double at_a, double at_b, double& begin, double& end) {
   if (at_a >= 0 && at_b >= 0) return;
   if (at_a < 0 && at_b < 0) {
@@ -27,18 +27,18 @@ void narrow(double at_a, double at_b, double& begin, double& end) {
     end = std::min(end, t);
 }
 
-// A point on the plane of a picture.
+// A point on the image plane.
 struct Projected {
-  glm::dvec3 at{0};        // pixels, depth 0…1
-  double pixel_depth = 0;  // change of depth over the length of a pixel there
-  double pixel = 1;        // that length, world
+  glm::dvec3 at{0};        // in pixels; depth 0…1
+  double pixel_depth = 0;  // change of depth over the length of a pixel at this point
+  double pixel = 1;        // length of a pixel in world units
 };
 
 class Projection {
  public:
   Projection(const Camera& camera, int width, int height)
       : camera_(camera), size_(width, height), orthographic_(is_orthographic(camera)) {
-    // Length of a pixel, per distance from the eye for a perspective camera.
+    // The length of a pixel; for a perspective camera, per unit of distance from the eye.
     across_ = 2 / (std::abs(camera.projection[0][0]) * width);
     scale_ = static_cast<double>(width) / camera.width;
   }
@@ -46,7 +46,8 @@ class Projection {
   double scale() const { return scale_; }
   const glm::dvec2& size() const { return size_; }
 
-  // False: no part of it is in front of the eye and kept by the section.
+  // Projects the visible part of a segment. Returns false if the section or the near and far planes
+  // remove the whole segment.
   bool segment(const glm::dvec3& from, const glm::dvec3& to, Projected& begins,
                Projected& ends) const {
     double begin = 0, end = 1;
@@ -54,7 +55,7 @@ class Projection {
       narrow(glm::dot(plane, glm::dvec4(from, 1)), glm::dot(plane, glm::dvec4(to, 1)), begin, end);
     const glm::dvec4 a = camera_.projection * (camera_.view * glm::dvec4(from, 1));
     const glm::dvec4 b = camera_.projection * (camera_.view * glm::dvec4(to, 1));
-    // In front of the near and the far plane.
+    // The part between the near and the far plane.
     narrow(a.w + a.z, b.w + b.z, begin, end);
     narrow(a.w - a.z, b.w - b.z, begin, end);
     if (begin > end) return false;
@@ -67,7 +68,7 @@ class Projection {
   Projected project(const glm::dvec3& place) const {
     const glm::dvec4 view = camera_.view * glm::dvec4(place, 1);
     const double pixel = orthographic_ ? across_ : across_ * std::abs(view.z);
-    // towards the eye, but not past it
+    // Towards the eye, but at most half the distance to it.
     const double step = orthographic_ ? pixel : std::min(pixel, std::abs(view.z) / 2);
     const glm::dvec3 at = on_picture(camera_.projection * view);
     const glm::dvec3 near = on_picture(camera_.projection * (view + glm::dvec4(0, 0, step, 0)));
@@ -84,16 +85,16 @@ class Projection {
   double across_ = 0, scale_ = 1;
 };
 
-// The style of a mark, the same for all its pieces.
+// The style of a mark. All its pieces have the same style.
 struct Style {
   float half_width = 0, casing = 0;
   glm::vec4 color{0};
-  double reach = 0;     // world
+  double reach = 0;     // in world units
   double reach_px = 0;  // minimum
 };
 
-// Adds the pieces of a segment that a picture may show. `joins_last`: the first one continues the
-// last one added before.
+// Adds the pieces of a segment that may be visible in the frame. If `joins_last` is true, the first
+// piece continues the last piece in `pieces`.
 void add_pieces(const Projection& projection, const Projected& from, const Projected& to,
                 const Style& style, bool joins_last, std::vector<shader::FeatureSegment>& pieces) {
   const glm::dvec2 a(from.at), b(to.at);
@@ -173,7 +174,7 @@ std::vector<shader::FeatureSegment> project_features(const std::vector<DrawnFeat
       const std::size_t before = pieces.size();
       if (projection.segment(feature.places[i - 1], feature.places[i], from, to))
         add_pieces(projection, from, to, style, joins, pieces);
-      // The added pieces reach the segment's end only if the last one does.
+      // The next segment is connected only if the last piece ends at this segment's end.
       joins = pieces.size() > before && glm::vec2(pieces.back().to) == glm::vec2(to.at);
     }
   }

@@ -8,30 +8,30 @@
 
 namespace strata::render {
 
-// A line or a point on a model, as shown in pictures.
+// A line or a point on a model, as drawn in frames.
 struct DrawnFeature {
-  std::vector<glm::dvec3> places;  // world; one: a point
+  std::vector<glm::dvec3> places;  // in world space; one position: a point
   Rgba color{};
 };
 
-// Widths of marks, in pixels of a camera's window.
+// The widths of marks, in pixels of the camera's window.
 inline constexpr double kLineWidth_px = 3, kPointWidth_px = 10, kFeatureCasing_px = 1.25;
 // The largest distance of a mark's pixels from its position.
 inline constexpr double kFeatureMargin_px = kPointWidth_px / 2 + kFeatureCasing_px + 1;
 
-// How far a mark's point may be below the visible surface and still be visible, perpendicular to
-// that surface: the larger of some pixels of the camera's window and of a length on the model. A
-// line is stored as points between which the surface bulges by half a pixel of the view in which it
-// was drawn: a share of the line's length bounds that, and for long lines a share of the model's
-// size.
+// The largest distance below the visible surface at which a mark's point is still visible. It is
+// perpendicular to that surface, and the larger of two limits: a number of pixels of the camera's
+// window, and a length on the model. A line is stored as points. Between them, the surface can rise
+// above the line by half a pixel of the view in which the line was drawn. A share of the line's
+// length, and for long lines a share of the model's size, bounds this height.
 struct FeatureReach {
   double pixels = 1;
-  double model_size = 0;  // diagonal of its box, world
+  double model_size = 0;  // diagonal of its box, in world units
 };
 
-// Returns the pieces of the marks in a picture of `width` × `height`: those in front of the eye
-// whose pixels may be in it, and of them the parts kept by the section. Pieces have the same ends
-// in every picture of the same scale, so that parts of a figure join.
+// Returns the pieces of the marks that may be visible in a frame of `width` × `height` pixels.
+// Omits parts that are behind the eye or that the section removes. The ends of the pieces depend
+// only on the camera and the scale, so the bands of a figure match.
 std::vector<shader::FeatureSegment> project_features(const std::vector<DrawnFeature>& features,
                                                      const Camera& camera, int width, int height,
                                                      const FeatureReach& reach);

@@ -46,7 +46,7 @@ Result<void> FeaturePass::draw(const FeatureBuffer& features, const gl::Framebuf
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
-  // the picture stays opaque
+  // The frame stays opaque.
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.x, height - rect.y - rect.height, rect.width, rect.height);

@@ -13,25 +13,25 @@
 
 namespace strata::render {
 
-// The marks of a view on the GPU, as seen by the camera of its g-buffer.
+// The marks of a view on the GPU, projected by the camera of its g-buffer.
 struct FeatureBuffer {
   StreamBuffer segments{"marks"};
   std::size_t count = 0;
 };
 
-// Draws lines and points over a view's picture (shaders/feature_*). `test_sight` determines once
-// for a camera which of their points the surface hides; `draw` then draws them completely where
-// their points are visible, into one rectangle after the other. Both set all state they need, and
-// reset scissor and blending.
+// Draws lines and points over a view's frame (shaders/feature_*). `test_sight` determines the
+// points that the surface hides, once for each camera. `draw` then draws the symbols of all visible
+// points completely, for one rectangle per call. Both set all GL state that they need, and reset
+// scissor and blending.
 class FeaturePass {
  public:
   static Result<FeaturePass> create(const std::filesystem::path& shader_dir);
-  // `depth`: of the whole picture. `cut_open`: it contains the marks of a solid's inside
-  // (shared/section.h).
+  // `depth` is the depth of the whole frame. If `cut_open` is true, it marks the visible inside of
+  // solids (shared/section.h).
   Result<void> test_sight(std::span<const shader::FeatureSegment> segments,
                           const gl::Texture& depth, bool cut_open, FeatureBuffer& features) const;
-  // `target`: RGBA8 picture of `width` × `height`, already shaded; row 0 lowest. `rect`: origin top
-  // left.
+  // `target` is a shaded RGBA8 frame of `width` × `height` pixels, lowest row first. `rect` has its
+  // origin at the top left.
   Result<void> draw(const FeatureBuffer& features, const gl::Framebuffer& target, int width,
                     int height, const PixelRect& rect);
 

@@ -20,15 +20,15 @@ const char* light_define(LightMode mode) {
   return nullptr;
 }
 
-// A plane that faces the viewer is middle gray at any height of the light.
+// A plane that faces the eye is middle gray at any height of the light.
 constexpr double kRakingOnPlane = 0.5, kMaxRaking = 3;
 
-// Smaller triangles are lit at their vertices: there is no visible difference, and a software
-// renderer is a thirteenth faster.
+// Smaller triangles are lit at their vertices. There is no visible difference, and a software
+// renderer saves a thirteenth of the time.
 constexpr float kPixelsLitAtVertices = 10;
 
-// Part of the remaining clusters is drawn before the others are culled; drawing a few clusters is
-// faster than culling them.
+// A part of the remaining clusters is drawn before the others are culled. A few clusters are not
+// culled, because drawing them is faster.
 constexpr std::size_t kCullAfter = 4, kFewClusters = 256;
 
 std::size_t next_culling(const MeshProgress& progress) {
@@ -146,7 +146,7 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   progress.next_cluster += count;
   for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i)
     glDisable(GL_CLIP_DISTANCE0 + i);
-  glFlush();  // the driver can draw this slice while the next is prepared
+  glFlush();  // the driver can draw this slice during the preparation of the next one
   return progress.next_cluster == progress.clusters;
 }
 
@@ -177,7 +177,7 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
   std::ranges::copy(section_in_model(camera, origin), uniforms.section);
   uniforms.eye_is_cut_away = eye_is_cut_away(camera) ? 1 : 0;
   view.is_cut = !camera.section.empty();
-  // Clip space is left-handed.
+  // Clip space is left-handed, so a camera without mirroring has a negative product.
   view.is_mirrored = glm::determinant(camera.projection) * glm::determinant(camera.view) > 0;
   return view;
 }

@@ -21,58 +21,60 @@ namespace strata::render {
 // The parameters for drawing a mesh.
 struct MeshView {
   shader::MeshUniforms uniforms;
-  bool is_cut = false;  // by section planes
-  // the camera swaps left and right: triangles that face it are clockwise
+  bool is_cut = false;  // section planes cut the model
+  // The camera swaps left and right, so triangles that face it are clockwise.
   bool is_mirrored = false;
-  // For the g-buffer.
+  // The members below are for the g-buffer only.
   LightMode light = LightMode::museum;
-  bool is_exposed = false;  // brighter or darker than the colors as they are stored
-  // bottom to top, at most kMaxSurfaceImages, with their opacity in the uniforms
+  bool is_exposed = false;  // brighter or darker than the stored colors
+  // At most kMaxSurfaceImagesShown, from bottom to top. The uniforms contain their opacities.
   std::vector<const gl::Texture*> images;
 };
-// For a model whose coordinates are relative to `origin`; without images.
+// Returns the parameters for a model whose coordinates are relative to `origin`, without images.
 MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light = {});
 
-// The target of a mesh drawing. The depth texture belongs to the framebuffer and has the window's
-// size.
+// The target of a mesh drawing. The depth texture is attached to the framebuffer and has the size
+// of the frame.
 struct MeshTarget {
   const gl::Framebuffer& framebuffer;
   const gl::Texture& depth;
 };
 
-// Progress of drawing a mesh in slices.
+// The progress of drawing a mesh in slices.
 struct MeshProgress {
-  gl::Buffer commands;       // shader::DrawCommand: clusters in drawing order
-  std::size_t clusters = 0;  // in the window
+  gl::Buffer commands;       // one shader::DrawCommand per cluster, in drawing order
+  std::size_t clusters = 0;  // number of clusters in the window
   std::size_t next_cluster = 0;
-  std::size_t next_culling = 0;  // the cluster at which those that follow are culled again
+  std::size_t next_culling = 0;  // the remaining clusters are culled again before this cluster
   bool cleared = false;
 
   std::size_t triangles() const { return clusters * mesh::Geometry::kTrianglesPerCluster; }
 };
 
-// Draws a mesh, near parts first, and leaves out clusters hidden by them: depth only, or the
-// g-buffer. Both use one vertex stage, so their depths are equal. Each call sets all state it
-// needs: other passes may run between slices. Back faces are not culled, because scans are open.
+// Draws the depth or the g-buffer of a mesh. Draws near parts first and omits the clusters that
+// they hide. Both kinds use the same vertex stage, so their depths are equal. Each call sets all GL
+// state that it needs, so other passes may run between slices. Back faces are not culled, because
+// scans are open.
 class MeshPass {
  public:
   enum class Kind { depth, gbuffer };
   static Result<MeshPass> create(Kind kind, const std::filesystem::path& shader_dir,
                                  std::size_t triangles_per_slice);
 
-  // Draws the next slice into `target` (cleared before the first); true when the mesh is complete.
+  // Draws the next slice into `target`, which the first slice clears. Returns true when the mesh is
+  // complete.
   Result<bool> draw_slice(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
                           MeshProgress& progress);
 
  private:
-  // Built on first use.
+  // Returns the program, which is built at its first use.
   Result<const gl::Program*> program(const MeshView& view, bool lit_at_vertices);
   Result<void> begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
                      MeshProgress& progress);
 
   Kind kind_ = Kind::depth;
   std::filesystem::path shader_dir_;
-  std::map<std::vector<std::string>, gl::Program> programs_;  // by their defines
+  std::map<std::vector<std::string>, gl::Program> programs_;  // key: preprocessor definitions
   gl::Buffer uniforms_;
   ClusterCuller culler_;
   std::size_t clusters_per_slice_ = 0;

@@ -11,7 +11,8 @@ namespace strata::render {
 namespace {
 
 constexpr GLuint kUvUnit = 0, kLightUnit = 1, kPaletteUnit = 2, kValuesUnit = 3, kValidUnit = 9;
-// A model has few combinations of layers, but painting adds chunks to them.
+// A model has few combinations of layers, but painting adds chunks, and each new combination of
+// chunks needs a program.
 constexpr std::size_t kMaxPrograms = 64;
 
 glm::vec4 color(const Rgba& c) { return glm::vec4(c[0], c[1], c[2], c[3]) / 255.0f; }
@@ -104,22 +105,23 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
                  : layer.bare     ? shader::kBarePatterns
                                   : shader::kPatterns;
   out.blend = blend_of(layer.blend);
-  // Without a range every value maps to an end; the shader divides by the range.
+  // Without a range, each value maps to one end of the palette. The range must not be 0, because
+  // the shader divides by it.
   const bool has_range = out.palette_max > out.palette_min;
   if (!has_range && layer.palette->mode == PaletteMode::linear)
     out.palette_max = std::nextafter(out.palette_min, 1e38f);
   static_assert(shader::kNoChunkUnit == 0xfu);
-  out.units_low = out.units_high = 0xffffffffu;  // no chunk is bound yet
+  out.units_low = out.units_high = 0xffffffffu;  // no chunk has a unit so far
   return out;
 }
 
-// Plans batches in drawing order. A layer whose chunks do not all fit is in several batches: each
-// of its texels is in one of them.
+// Plans batches in drawing order. If the chunks of a layer do not fit into one batch, the layer is
+// in several batches. Each of its texels belongs to one of them.
 std::vector<ShadePass::Batch> ShadePass::plan(std::span<const ShadeInput::Layer> layers) {
   std::vector<Batch> batches(1);
   for (const ShadeInput::Layer& layer : layers) {
     const auto described = describe(layer);
-    bool listed = false;  // in the last batch
+    bool listed = false;  // the layer is in the last batch
     for (std::uint32_t i = 0; i < PagePool::kMaxChunks; ++i) {
       if (!layer.textures->has_page_in(i)) continue;
       const Chunk chunk{&layer.textures->pool(), i};
@@ -167,7 +169,7 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
       for (const Batch& batch : plan(group)) {
         STRATA_TRY(draw_surface(input, batch, first, tables));
         first = false;
-        // The next draw outputs `picture + kept * destination`; the picture stays opaque.
+        // The next draw outputs `picture + kept * destination`. The frame stays opaque.
         glBlendFuncSeparate(GL_ONE, GL_SRC1_COLOR, GL_ZERO, GL_ONE);
         glEnable(GL_BLEND);
       }
@@ -177,7 +179,8 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
   auto drawn = draw_all();
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
-  // Drivers refuse draws to two textures while the function has two sources, also without blending.
+  // Drivers reject draws to two textures while the blend function has two sources, even if blending
+  // is disabled.
   glBlendFunc(GL_ONE, GL_ZERO);
   glDepthMask(GL_TRUE);
   return drawn;

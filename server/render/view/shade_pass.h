@@ -23,40 +23,41 @@ struct ShadeInput {
     std::shared_ptr<const Palette> palette;
     float opacity;
     LayerBlend blend = LayerBlend::normal;
-    bool bare = false;  // patterns without tint and border
+    bool bare = false;  // hatch and dots have neither tint nor border
   };
-  // Placement of patterns on the picture's plane.
+  // The placement of patterns on the image plane.
   struct Patterns {
-    // their origin in pixels from the bottom left: the model's center
+    // The origin, in pixels from the bottom left: the model's center.
     glm::vec2 origin{0};
-    float mm_per_pixel = 1;  // at the distance of the model's center
-    float pixel_scale = 1;   // pixels of the picture for one of the camera's window
+    float mm_per_pixel = 1;  // at the depth of the model's center
+    float pixel_scale = 1;   // frame pixels per pixel of the camera's window
   };
   const gl::Texture& uv;
   const gl::Texture& light;
-  const gl::Framebuffer& target;  // RGBA8 picture and the g-buffer's depth; row 0 lowest
-  PixelRect rect;                 // origin top left, as all rectangles of pictures
-  PixelRect surface_rect;         // contains all pixels of `rect` that may show surface
+  const gl::Framebuffer& target;  // RGBA8 frame with the g-buffer's depth, lowest row first
+  PixelRect rect;                 // origin top left, like all rectangles of frames
+  PixelRect surface_rect;         // contains all pixels of `rect` that may show the surface
   Background background;
-  glm::vec2 background_rows{0, 1};  // FrameRequest::background_rows
-  std::vector<Layer> layers;        // bottom to top
+  glm::vec2 background_rows{0, 1};  // see FrameRequest::background_rows
+  std::vector<Layer> layers;        // from bottom to top
   Patterns patterns{};
-  bool shows_inside = false;  // of a solid that a section cuts open
+  bool shows_inside = false;  // a section may show the inside of a solid
 };
 
-// Colors a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the
-// background, then the surface, which the depth test finds. Layers share a draw as long as their
-// chunks fit into the texture units; otherwise there are several draws, each over the one before.
-// Sets all state it needs, and resets scissor and blending.
+// Colors a rectangle of a view's frame from its g-buffer (shaders/shade_pass.frag): first the
+// background, then the surface, which the depth test selects. One draw shades all layers whose
+// chunks fit into the texture units. Further layers need further draws over it. Sets all GL state
+// that it needs, and resets scissor and blending.
 class ShadePass {
  public:
-  // pairs; with 3 more units, 15 of the 16 that every driver has
+  // Each chunk uses two texture units. With 3 more, 15 of the 16 units that all drivers have are
+  // used.
   static constexpr std::size_t kChunksPerDraw = 6;
   static constexpr std::size_t kLayersPerProgram = 4;
 
-  // `program_per_kinds`: one program for each combination of the layers' palettes, types and
-  // chunks, with these as constants. Software renderers run both sides of every branch in every
-  // lane; GPUs are faster with one program.
+  // If `program_per_kinds` is true, each combination of the layers' palettes, types and chunks gets
+  // its own program, with these as constants. Software renderers need this, because they run both
+  // sides of each branch in all lanes. GPUs are faster with one program.
   static Result<ShadePass> create(const std::filesystem::path& shader_dir, bool program_per_kinds);
   Result<void> shade(const ShadeInput& input, const PageTables& tables);
 
@@ -68,7 +69,7 @@ class ShadePass {
   };
   struct Batch {
     std::vector<shader::ShadeLayer> layers;
-    std::vector<std::uint32_t> units;  // for each layer: bits of the units with its chunks
+    std::vector<std::uint32_t> units;  // for each layer, the bits of the units with its chunks
     std::vector<Chunk> chunks;
   };
   bool can_take(const Batch& batch, const Chunk& chunk, bool listed) const;
@@ -84,7 +85,7 @@ class ShadePass {
   std::filesystem::path shader_dir_;
   bool program_per_kinds_ = false;
   gl::Program background_;
-  // by chunks, kinds, whether they show insides and whether they draw first, built on first use
+  // Built at first use. The key: number of chunks, kinds of layers, shows_inside, first.
   std::map<std::tuple<std::size_t, std::string, bool, bool>, gl::Program> programs_;
   gl::VertexArray no_vertices_{"picture"};
   PaletteTextures palettes_;

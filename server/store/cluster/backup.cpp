@@ -32,7 +32,7 @@ Error damaged(const fs::path& folder, const std::string& why) {
   return {ErrorCode::invalid, "Backup damaged", folder.string() + ": " + why, {}};
 }
 
-// Creates a folder to write into, and deletes it in the destructor unless it was kept.
+// A folder that is being written. The destructor deletes it unless it was kept.
 class Unfinished {
  public:
   explicit Unfinished(fs::path folder) : folder_(std::move(folder)) {}
@@ -68,7 +68,7 @@ Result<fs::path> make_scratch() {
   return fs::path(folder);
 }
 
-// --- the programs of PostgreSQL
+// --- PostgreSQL programs
 
 // Escapes a value for a field of libpq's password file.
 std::string passfile_field(std::string_view value) {
@@ -133,7 +133,7 @@ Result<void> run_program(const std::vector<std::string>& command, const fs::path
   return fail(ErrorCode::internal, "Command failed", name + " failed: " + said);
 }
 
-// Finds programs that are not older than the server whose data they read.
+// Returns the folder of programs that are not older than the server whose data they read.
 Result<fs::path> programs_for(PgConnection& connection) {
   auto version =
       STRATA_TRY(connection.query("SELECT current_setting('server_version_num')::int8 / 10000"));
@@ -145,7 +145,7 @@ Result<fs::path> programs_for(PgConnection& connection) {
 
 Result<PgConnection> connect(const std::string& dsn) {
   auto connection = STRATA_TRY(PgConnection::connect(dsn, kMigrationLimits));
-  // Rows are compared as text: set everything that changes how a value is written.
+  // Rows are compared as text, so fix all settings that affect how a value is written.
   if (auto set = connection.script(
           "SET datestyle = 'ISO'; SET intervalstyle = 'postgres'; SET timezone = 'UTC'; "
           "SET extra_float_digits = 1; SET bytea_output = 'hex'; SET search_path = ''");
@@ -178,8 +178,8 @@ Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progres
   for (const Relation& table : tables) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(double(done) / double(all), "Reading it over");
-    // Add up sixty bits of a hash of each row: the order of the rows has no effect, and two equal
-    // rows do not cancel each other.
+    // Add up 60 bits of a hash of each row. The order of the rows has no effect on the sum, and two
+    // equal rows do not cancel each other.
     auto sum = STRATA_TRY(connection.query_once(
         "SELECT count(*), coalesce(sum(('x' || left(md5(t::text), 15))::bit(60)::int8), 0)::text FROM ONLY " +
         table.name + " t"));
@@ -311,10 +311,10 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
         "folder");
   auto connection = STRATA_TRY(connect(dsn));
 
-  // Only the owner can read a backup: it contains everything, also the hashes of passwords.
+  // Only the owner can read a backup, because it contains everything, also the hashes of passwords.
   fs::path part = folder;
   part += ".part";
-  fs::remove_all(part, error);  // left by a process that was killed
+  fs::remove_all(part, error);  // a process that was killed may have left it
   fs::create_directories(fs::absolute(part, error).parent_path(), error);
   if (mkdir(part.c_str(), 0700) != 0)
     return fail(ErrorCode::internal, "Cannot create folder",
@@ -331,8 +331,8 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   facts.schema_version = state.integer(0, 2);
   facts.server_version = state.text(0, 3);
 
-  // Read the contents before the dump: sequences are not part of a snapshot. In the dump, they are
-  // then equal to these values or later.
+  // Read the contents before the dump, because sequences are not part of a snapshot. The sequences
+  // in the dump then have these values or later ones.
   progress.begin_stage(0, 0.4);
   STRATA_TRY(read_contents(connection, facts, progress));
   progress.begin_stage(0.4, 0.9);

@@ -32,11 +32,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr std::size_t kMaxSocketPathLength = 107;  // sockaddr_un
+constexpr std::size_t kMaxSocketPathLength = 107;  // limit of sockaddr_un
 constexpr std::uintmax_t kMaxLog = 16u << 20;
 
-// Returns the folder of the socket: `folder`, or a short one if the path would be too long for a
-// socket.
+// Returns the folder of the socket: `folder`, or a folder with a short path if the path would be
+// too long for a socket.
 fs::path socket_folder(const fs::path& folder) {
   if ((folder / ".s.PGSQL.65535.lock").string().size() <= kMaxSocketPathLength) return folder;
   return "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
@@ -44,13 +44,15 @@ fs::path socket_folder(const fs::path& folder) {
 
 constexpr int kUsualPort = 5432;
 
-// PostgreSQL uses its port also in the name of its socket.
+// Returns the connection string. It contains the port, because PostgreSQL uses the port in the name
+// of its socket.
 std::string dsn_of(const fs::path& sockets, int port, const std::string& database) {
   return "host=" + dsn_value(sockets.string()) + " port=" + std::to_string(port) +
          " user=strata dbname=" + dsn_value(database);
 }
 
-// Returns the port of the postmaster that has the data open, from the fourth line of its file.
+// Returns the port of the postmaster that has the data open, from the fourth line of
+// postmaster.pid.
 int running_port(const fs::path& data) {
   std::ifstream file(data / "postmaster.pid");
   std::string line;
@@ -75,7 +77,7 @@ int version_of(const fs::path& data) {
 struct Cluster::Impl {
   fs::path folder;   // data_dir/postgres
   fs::path data;     // folder/pgdata
-  fs::path sockets;  // `folder`, or a short one if its path is too long for a socket
+  fs::path sockets;  // see socket_folder
   fs::path programs;
   fs::path log_file;
   DatabaseUser user;
@@ -180,8 +182,8 @@ struct Cluster::Impl {
     return write_access_rules();
   }
 
-  // Writes the access rules: the server connects by the socket, in a folder that only the database
-  // user can enter; analysts, and nobody else, connect by TCP.
+  // Writes the access rules. The server connects by the socket, which is in a folder that only the
+  // database user can enter. Only analysts connect by TCP.
   Result<void> write_access_rules() {
     std::ofstream file(access_rules(), std::ios::trunc);
     file << "local all all trust\n";
@@ -197,8 +199,8 @@ struct Cluster::Impl {
   }
   fs::path access_rules() const { return folder / "access.conf"; }
 
-  // Runs initdb in a folder of another name first: an interrupted initdb leaves nothing that looks
-  // like a database.
+  // Runs initdb in a folder with another name first, so that an interrupted initdb leaves nothing
+  // that looks like a database.
   Result<void> initialise() {
     const fs::path fresh = folder / "pgdata.new";
     std::error_code error;
@@ -229,8 +231,8 @@ struct Cluster::Impl {
     return false;
   }
 
-  // Returns true if the running server is ours, and not a server that a killed process left and
-  // that has not ended yet.
+  // Returns true if the running PostgreSQL was started by this process. A killed process may have
+  // left a PostgreSQL that has not ended yet.
   bool owns_data() const {
     pid_t owner = 0;
     std::ifstream(data / "postmaster.pid") >> owner;
@@ -240,8 +242,9 @@ struct Cluster::Impl {
   int port() const { return sql ? sql->port : kUsualPort; }
   std::string dsn(const std::string& database) const { return dsn_of(sockets, port(), database); }
 
-  // Starts PostgreSQL. After a `kill -9` of the postmaster, its orphans hold the lock file and the
-  // shared memory for a while, so a start that fails at once is repeated every 100 ms.
+  // Starts PostgreSQL. After a `kill -9` of the postmaster, its child processes keep the lock file
+  // and the shared memory for some time, so a start that fails immediately is repeated every 100
+  // ms.
   Result<void> run() {
     if (running()) return {};
     const auto deadline = Clock::now() + 30s;
@@ -272,8 +275,8 @@ struct Cluster::Impl {
                          user, log_file, SIGINT);
       if (!child) return tl::unexpected(child.error());
       postmaster = *child;
-      // Replaying the log after a crash may take minutes; it ends by itself, or the postmaster
-      // ends.
+      // Replaying the log after a crash may take minutes. It has no limit, because either it
+      // succeeds or the postmaster ends.
       while (running()) {
         if (owns_data() && PQping(dsn("postgres").c_str()) == PQPING_OK) return {};
         std::this_thread::sleep_for(10ms);
@@ -285,8 +288,9 @@ struct Cluster::Impl {
     }
   }
 
-  // Stops PostgreSQL with a fast shutdown, which ends sessions and writes a checkpoint. If it does
-  // not end, stronger signals follow; then the next start recovers the data from the log.
+  // Stops PostgreSQL with a fast shutdown, which ends sessions and writes a checkpoint. If
+  // PostgreSQL does not end, stronger signals follow. In that case, the next start recovers the
+  // data from the log.
   Result<void> stop() {
     for (const auto& [signal_number, patience] :
          {std::pair{SIGINT, 30s}, std::pair{SIGQUIT, 5s}, std::pair{SIGKILL, 5s}}) {

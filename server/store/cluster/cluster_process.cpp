@@ -76,8 +76,8 @@ Result<fs::path> find_programs(int expected_major) {
 
 namespace {
 
-// Makes only system calls: other threads may hold the locks of malloc and stdio at the time of the
-// fork.
+// Makes only system calls, because other threads may hold the locks of malloc and stdio at the time
+// of the fork.
 bool become(const DatabaseUser& user) {
   if (!user.switch_user) return true;
   return setgroups(user.groups.size(), user.groups.data()) == 0 && setgid(user.gid) == 0 &&
@@ -88,8 +88,8 @@ bool become(const DatabaseUser& user) {
 
 Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   std::error_code error;
-  // The database user can pass through every folder that is made here; the permissions of the
-  // folders inside protect the content.
+  // The database user can enter every folder that is made here. The permissions of the inner
+  // folders protect the content.
   fs::path made;
   for (const auto& part : folder) {
     made /= part;
@@ -130,7 +130,7 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   std::vector<char*> environment;
-  // PGDATA, PGPORT… belong to other programs
+  // PGDATA, PGPORT… are for other programs
   for (char** variable = environ; *variable; ++variable)
     if (std::strncmp(*variable, "PG", 2) != 0) environment.push_back(*variable);
   environment.push_back(nullptr);

@@ -11,8 +11,8 @@
 
 namespace strata::store {
 
-// The user that PostgreSQL runs as. PostgreSQL refuses to run as root: then this is the system user
-// "postgres".
+// The user that runs PostgreSQL. PostgreSQL refuses to run as root, so for root this is the system
+// user "postgres".
 struct DatabaseUser {
   bool switch_user = false;
   uid_t uid = 0;
@@ -22,17 +22,17 @@ struct DatabaseUser {
 };
 Result<DatabaseUser> database_user();
 
-// Returns /usr/lib/postgresql/N/bin with the expected N (0: the newest), or else the folder of
-// `postgres` on the PATH.
+// Returns /usr/lib/postgresql/N/bin with the expected N (0 means the newest). If it does not exist,
+// returns the folder of `postgres` on the PATH.
 Result<std::filesystem::path> find_programs(int expected_major);
 
-// Makes `user` the owner of the folder with mode 0700, and verifies in a child process that this
-// user can enter it.
+// Makes `user` the owner of the folder, sets its mode to 0700, and verifies in a child process that
+// this user can enter it.
 Result<void> give_folder(const std::filesystem::path& folder, const DatabaseUser& user);
 
-// Forks and runs a program as `user`, with output appended to `log`, no other open files, default
-// signals, a separate process group (so that Ctrl-C reaches only the server) and `death_signal`
-// when the calling thread ends. Returns the pid.
+// Forks and runs a program as `user`, and returns its pid. Output is appended to `log`. The program
+// has no other open files, default signal handlers, and a separate process group, so Ctrl-C reaches
+// only the server. It receives `death_signal` when the calling thread ends.
 Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
                     const std::filesystem::path& log, int death_signal);
 

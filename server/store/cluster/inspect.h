@@ -8,11 +8,11 @@
 
 namespace strata::store {
 
-// The state of a database. Reading it changes nothing.
+// The state of a database. Reading the state does not change anything.
 struct DatabaseState {
   std::string server_version, encoding;
-  std::int64_t schema_version = 0;  // 0: no migration was applied yet
-  std::int64_t known_version = 0;   // of the newest migration in the folder
+  std::int64_t schema_version = 0;  // 0 if no migration was applied yet
+  std::int64_t known_version = 0;   // version of the newest migration in the folder
   std::uint64_t bytes = 0;
 };
 // Returns the version of the newest migration.

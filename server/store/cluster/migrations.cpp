@@ -13,7 +13,7 @@
 namespace strata::store {
 namespace {
 
-// The advisory lock that every starting server takes; the number is arbitrary but fixed.
+// The advisory lock that every server takes when it starts. The number is arbitrary but fixed.
 constexpr const char* kLock = "SELECT pg_advisory_lock(7130915062201)";
 constexpr const char* kUnlock = "SELECT pg_advisory_unlock(7130915062201)";
 
@@ -95,7 +95,7 @@ Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<
                   "Migration " + ours->name +
                       " has changed since it was applied. Do not edit applied migrations: restore "
                       "the file and put the change into a new migration.");
-    if (sum.empty()) {  // applied by dbmate
+    if (sum.empty()) {  // dbmate applied the migration
       STRATA_TRY(connection.query("INSERT INTO schema_checksums (version, sha256) VALUES ($1, $2)",
                                   Params().text(version).text(ours->sha256)));
     }

@@ -48,7 +48,8 @@ Result<std::string> password_in(const fs::path& file) {
 
 }  // namespace
 
-// The identifiers and settings are constants; the password has no character that is special in SQL.
+// The SQL needs no quoting: identifiers and settings are constants, and the password has no
+// character that is special in SQL.
 Result<void> admit_readers(const std::string& dsn, const fs::path& password_file) {
   const auto password = STRATA_TRY(password_in(password_file));
   auto connection = STRATA_TRY(PgConnection::connect(dsn));
@@ -76,8 +77,8 @@ Result<void> admit_readers(const std::string& dsn, const fs::path& password_file
          "; "
          "ALTER DEFAULT PRIVILEGES IN SCHEMA analysis GRANT SELECT ON TABLES TO " +
          role + "; ";
-  // Revoke functions that everybody may call in a fresh database and that store data or block other
-  // sessions.
+  // Revoke the functions that store data or block other sessions. All roles may call them in a new
+  // database.
   sql +=
       "DO $$ DECLARE f regprocedure; BEGIN FOR f IN SELECT p.oid::regprocedure FROM pg_proc p "
       "WHERE p.pronamespace = 'pg_catalog'::regnamespace AND p.proname ~ '^(lo_|lowrite|loread|pg_(try_)?advisory_|pg_notify)' "

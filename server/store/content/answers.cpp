@@ -24,8 +24,8 @@ Result<std::optional<nlohmann::json>> Answers::find(const std::string& key) {
   });
 }
 
-// Deletes some expired answers first. Another server may do the same: each skips the rows that the
-// other has locked.
+// Deletes some expired responses first. Another server may do the same, so each server skips the
+// rows that the other has locked.
 Result<void> insert_answer(PgConnection& connection, const std::string& key,
                            const nlohmann::json& answer) {
   STRATA_TRY(check_key(key));

@@ -10,8 +10,8 @@ namespace strata::store {
 
 class Pool;
 
-// Answers to HTTP calls that change something, by Idempotency-Key; kept for 7 days. Part of Store:
-// its rules for threads and errors hold.
+// Responses to HTTP requests that change data, by Idempotency-Key. They are kept for 7 days. Part
+// of Store, with the same rules for threads and errors.
 class Answers {
  public:
   explicit Answers(Pool& pool) : pool_(pool) {}

@@ -6,21 +6,21 @@
 #include "store/pg/sql.h"
 #include "store/store_impl.h"
 
-// A transaction that adds or removes a reply locks the thread's first comment, so that its replies
-// cannot change between the check whether it is deleted or kept and the commit.
+// A transaction that adds or removes a reply locks the first comment of the thread. A deletion
+// checks whether the comment has replies, and the lock keeps the result true until the commit.
 
 namespace strata::store {
 namespace {
 
 constexpr std::size_t kMaxTextLength = 10'000;  // characters
 
-// The visibility of a thread is that of the layer that it is about, in the Trash or not. This also
-// works for a comment that the same statement has just made.
+// The visibility of a thread is that of its layer, which may be in the Trash. This also works for a
+// comment that the same statement has just made.
 constexpr auto kCommentVisibility = sql(
     "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) "
     "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "
     "WHERE f.id = c.thread_id) END");
-// A layer in the Trash is not returned; it is returned again when it is restored.
+// A layer in the Trash is not returned until it is restored.
 constexpr auto kCommentLayer = sql("(SELECT id FROM layers WHERE id = c.layer_id) AS layer_id");
 constexpr auto kCommentColumns = sql(
     "c.id, c.model_id, c.thread_id, c.position, c.normal, ", kCommentLayer,
@@ -83,7 +83,8 @@ Result<void> check_words(const std::string& text) {
 constexpr auto kComment =
     sql("FROM comments c WHERE id = $1 AND EXISTS (SELECT 1 FROM models WHERE id = c.model_id)");
 
-enum class Lock { none, keep, change };  // `keep`: it cannot change while this transaction lasts
+// `keep`: the comment cannot change during this transaction
+enum class Lock { none, keep, change };
 
 Result<Comment> load(PgConnection& connection, CommentId id, Lock lock) {
   constexpr auto kRead = sql("SELECT ", kCommentColumns, " ", kComment);
@@ -181,7 +182,8 @@ Result<Comment> Comments::create(const Comment& comment,
       auto first = STRATA_TRY(load_thread(connection, *comment.thread, Lock::keep));
       model_id = first.model_id;
     }
-    // Locked, so that the later of two concurrent transactions counts the comment of the earlier.
+    // Locked, so that the later of two concurrent transactions counts the comment of the earlier
+    // one.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(model_id)));
     if (model.rows() == 0) return no_such("model", to_string(model_id));

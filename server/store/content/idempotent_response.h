@@ -9,19 +9,19 @@
 
 namespace strata::store {
 
-// The answer to a call with an Idempotency-Key, stored in the transaction of the call's effect:
-// after a crash, either both exist or neither does. `make` turns the effect (the created or changed
-// object) into the answer; it may run more than once.
+// The response to a request with an Idempotency-Key. It is stored in the transaction of the effect
+// of the request, so after a crash either both exist or neither does. `make` converts the effect
+// (the created or changed object) to the response. It may run more than once.
 template <class... Effect>
 struct IdempotentResponse {
-  std::string key;  // empty: no answer is stored
+  std::string key;  // if empty, no response is stored
   std::function<nlohmann::json(const Effect&...)> make;
-  // The user who made the call, for the project's activity. Empty: the activity does not list
-  // changes, and lists creations and deletions without a name. (Journal entries have a separate
-  // user name.)
+  // The user who made the request, for the activity of the project. If it is empty, the activity
+  // does not list changes, and lists creations and deletions without a name. (Journal entries have
+  // a separate user name.)
   std::string user{};
-  // The stored job that does this work: the same transaction marks it as done, with `make` as its
-  // result. 0: no job.
+  // The stored job that does this work, or 0 without a job. The same transaction marks the job as
+  // done, with the result of `make` as its result.
   JobId job = 0;
 };
 

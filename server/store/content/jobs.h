@@ -16,18 +16,18 @@ class Pool;
 struct StoredJob {
   JobId id = 0;
   ProjectId project_id = 0;
-  std::string user;  // the user who started it; empty: no particular user
+  std::string user;  // the user who started it; empty for no particular user
   std::string kind;  // "import", "layers", "look", "figure"
   // "done", "failed", "cancelled"; "lost": the server ended before the job did
   std::string state;
-  nlohmann::json problem;  // code, title, detail, field; null: no problem
-  // "model", "layers", "look", "report", as far as the job made them; null: no result
+  nlohmann::json problem;  // code, title, detail, field; null if there was no problem
+  // "model", "layers", "look", "report", if the job made them; null if there is no result
   nlohmann::json result;
 };
 
-// Jobs that can be found again after a restart. Part of Store: thread-safe and blocking as Store
-// is. The success of a job is written in the transaction of its result (`IdempotentResponse::job`),
-// so that neither exists without the other.
+// Jobs that can be found again after a restart. Part of Store, with the same rules for threads and
+// errors. The success of a job is written in the transaction of its result
+// (`IdempotentResponse::job`), so neither exists without the other.
 class Jobs {
  public:
   static constexpr int kDaysKept = 7;
@@ -38,7 +38,7 @@ class Jobs {
   // deletes jobs that ended more than kDaysKept days ago. Returns the newest `most` of the other
   // jobs, newest first.
   Result<std::vector<StoredJob>> take_over(int most);
-  Result<void> begin(const StoredJob& job);  // not_found: the project does not exist
+  Result<void> begin(const StoredJob& job);  // `not_found` if the project does not exist
   // Writes the end of a job. A job that a transaction has marked as done stays done.
   Result<void> end(const StoredJob& job);
 

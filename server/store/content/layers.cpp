@@ -29,8 +29,8 @@ constexpr auto kLayerColumns = sql(
     "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') "
     "FROM layer_inputs i WHERE i.layer_id = layers.id)");
 
-// Replaces a palette without points by the palette of the terms, if the layer's table is a term
-// list.
+// Replaces a palette without points by the palette of the terms, if the table of the layer is a
+// term list.
 Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
   if (!layer.table || !takes_term_colors(layer.palette)) return {};
   auto palette = STRATA_TRY(term_palette_of(connection, *layer.table));
@@ -66,7 +66,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.resolution = static_cast<int>(row.integer());
   layer.unit = row.text();
   layer.description = row.text();
-  // One damaged palette must not hide a layer's paint.
+  // A damaged palette must not hide the paint of its layer.
   layer.palette = palette_from_json(row.json())
                       .value_or(default_palette(layer.type, layer.kind == LayerKind::database));
   layer.opacity = row.real();
@@ -111,8 +111,8 @@ Result<Layer> load_layer(PgConnection& connection, LayerId id) {
   return read_layer(connection, row, 0);
 }
 
-// Replaces the layer's formula and its inputs. Refused (invalid): a layer that is computed from
-// itself, directly or through other layers.
+// Replaces the formula of the layer and its inputs. Returns an `invalid` error for a layer that is
+// computed from itself, directly or through other layers.
 Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   auto gone =
       connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().id(layer.id));
@@ -185,7 +185,7 @@ bool same_formula(const std::optional<LayerFormula>& a, const std::optional<Laye
                  a->inputs == b->inputs));
 }
 
-// Finds the table of a database layer in its model's project, or makes a new one.
+// Finds the table of a layer of records in the project of its model, or makes a new table.
 Result<void> find_table(PgConnection& connection, Layer& layer, ProjectId project_id,
                         const std::vector<Column>& columns) {
   if (!layer.table) {
@@ -356,8 +356,8 @@ Result<Layer> Layers::set_computed(LayerId layer_id, const std::string& expressi
     STRATA_TRY(connection.query(
         "UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
         Params().id(layer_id).text(expression).integer(sequence)));
-    // The new content overwrites edits made by hand; the layer is locked again, as it was when it
-    // was made.
+    // The new content overwrites edits made by hand. The layer is locked again, as when it was
+    // created.
     STRATA_TRY(connection.query(
         "WITH whole AS (UPDATE layer_origins SET edited_by_hand = false WHERE layer_id = $1 AND edited_by_hand RETURNING layer_id) "
         "UPDATE layers SET locked = true, version = version + 1 FROM whole WHERE id = whole.layer_id",
@@ -398,8 +398,8 @@ namespace {
 
 constexpr int kRevisionsAtOnce = 256;
 
-// Converts differences to the wider type without changing their bits: the bits above are the same
-// before and after.
+// Converts differences to the wider type. Their bits stay the same, because the additional bits do
+// not differ before and after an edit.
 Result<void> widen_revisions(PgConnection& connection, const Layer& layer, ValueType type) {
   for (std::int64_t y = -1, x = 0, sequence = 0;;) {
     auto rows = STRATA_TRY(connection.query(

@@ -55,7 +55,7 @@ Model read_model(const PgResult& rows, int i) {
   for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method,
                             &m.accuracy, &m.processing, &m.rights_uri, &m.credit})
     *text = row.text();
-  // An unknown role must not make the files downloadable for more roles.
+  // An unknown role must not make the files downloadable for additional roles.
   m.source_download = parse_role(row.text()).value_or(Role::curator);
   m.sequence = row.integer();
   m.version = row.integer();
@@ -182,7 +182,7 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
                 "looks");
   for (std::size_t i = 0; i < fresh.images.size(); ++i)
     STRATA_TRY(check_surface_image(surface_image_of(fresh.images[i], i)));
-  // The geometry, its coarser copies, the surface images, the source files.
+  // In this order: the geometry, its coarser copies, the surface images, the source files.
   std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
   for (const auto& level : fresh.detail_levels) contents.push_back(content_of(Bytes(level)));
   const std::size_t first_surface_image = contents.size();

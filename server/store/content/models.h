@@ -18,25 +18,25 @@ namespace strata::store {
 class Pool;
 
 struct NewModel {
-  Model model;                         // id 0; the slug is a suggestion, made unique
+  Model model;                         // the model, with id 0; its slug is made unique
   std::vector<std::uint8_t> geometry;  // mesh::encode_geometry
   std::vector<std::vector<std::uint8_t>>
-      detail_levels;  // of mesh::make_detail_levels, encoded in the same way, finest first
+      detail_levels;  // from mesh::make_detail_levels, encoded in the same way, finest first
   struct Source {
     std::string name;
     std::filesystem::path file;
   };
-  std::vector<Source> sources;  // streamed and hashed bit for bit
+  std::vector<Source> sources;  // streamed, and hashed byte for byte
   struct NewSurfaceImage {
     std::string name, media_type;     // "image/jpeg" or "image/png"
-    std::vector<std::uint8_t> bytes;  // of the encoded picture
+    std::vector<std::uint8_t> bytes;  // the encoded image
     int width = 0, height = 0;
   };
-  std::vector<NewSurfaceImage> images;  // bottom to top; only the first is visible at first
+  std::vector<NewSurfaceImage> images;  // bottom to top; initially, only the first is visible
 };
 
-// 3D models with their geometry and source files. Part of Store: its rules for threads and errors
-// hold.
+// 3D models with their geometry and source files. Part of Store, with the same rules for threads
+// and errors.
 class Models {
  public:
   explicit Models(Pool& pool) : pool_(pool) {}
@@ -46,12 +46,12 @@ class Models {
   Result<std::vector<Model>> all(std::optional<ProjectId> project_id = {});
   Result<Model> find(const std::string& ref);
   Result<Model> update(Model model, const IdempotentResponse<Model>& answer = {});
-  // permanent; deletion by users goes through the Trash
+  // Deletes the model permanently. Users move it to the Trash instead.
   Result<void> remove(ModelId id, const IdempotentResponse<>& answer = {});
   Result<std::vector<std::uint8_t>> geometry(ModelId model_id);
-  // finest first
+  // Returns the coarser copies of the geometry, finest first.
   Result<std::vector<std::vector<std::uint8_t>>> detail_levels(ModelId model_id);
-  // Streams a source file in chunks of at most 1 MiB; `sink` returns false to stop.
+  // Streams a source file in chunks of at most 1 MiB. `sink` returns false to stop.
   Result<SourceFile> read_source(ModelId model_id, const std::string& name,
                                  const std::function<bool(std::span<const std::uint8_t>)>& sink);
 

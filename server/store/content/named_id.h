@@ -5,7 +5,7 @@
 
 namespace strata::store {
 
-// By what a list that is sorted by names is in order.
+// The sort key of lists that are sorted by name.
 struct NamedId {
   std::string name;
   std::int64_t id = 0;

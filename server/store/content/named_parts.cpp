@@ -85,7 +85,7 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
                                      const IdempotentResponse<NamedPart>& answer) {
   STRATA_TRY(check_part(part));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
-    // Locked, so that the later of two concurrent transactions counts the part of the earlier.
+    // Locked, so that the later of two concurrent transactions counts the part of the earlier one.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(part.model_id)));
     if (model.rows() == 0) return no_such("model", to_string(part.model_id));
@@ -115,7 +115,7 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
 
 namespace {
 
-// Returns the error for an update or deletion without effect: the part does not exist, or has
+// Returns the error for an update or deletion without effect, if the part does not exist or has
 // another version.
 tl::unexpected<Error> missed(const Result<PgResult>& known, const NamedParts::Kind& kind,
                              const NamedPart& part) {

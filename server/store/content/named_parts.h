@@ -20,18 +20,18 @@ class Pool;
 struct NamedPart {
   NamedPartId id = 0;
   ModelId model_id = 0;
-  std::string slug;  // unique in the model; made from the name if it is empty
+  std::string slug;  // unique in the model; made from the name if empty
   std::string name;
   std::string text;  // plain, UTF-8, at most 10 000 characters
-  // the other fields of the protocol's View, Tour or Snapshot, with ids in place of slugs
+  // the other fields of View, Tour or Snapshot in the protocol, with ids in place of slugs
   nlohmann::json content;
   std::string user;  // the user who made it
   std::chrono::system_clock::time_point time;
   std::int64_t version = 1;
 };
 
-// Saved views of models, tours, or snapshots. Part of Store: thread-safe and blocking as Store is,
-// with the same errors for missing, stale or unreachable data.
+// Saved views of models, tours, or snapshots. Part of Store, with the same rules for threads and
+// errors.
 class NamedParts {
  public:
   struct Kind {
@@ -45,21 +45,21 @@ class NamedParts {
   NamedParts(Pool& pool, const Kind& kind) : pool_(pool), kind_(kind) {}
 
   struct Page {
-    std::vector<NamedPart> parts;  // in the order of their creation
+    std::vector<NamedPart> parts;  // sorted by time of creation
     std::int64_t total = 0;
   };
-  // `after`: only those with higher ids.
+  // `after` selects only parts with higher ids.
   Result<Page> of_model(ModelId model_id, int limit, int offset, std::int64_t after = 0);
-  Result<std::map<NamedPartId, std::string>> slugs(ModelId model_id);  // of all, by id
+  Result<std::map<NamedPartId, std::string>> slugs(ModelId model_id);  // slugs of all parts, by id
   Result<NamedPart> find(ModelId model_id, const std::string& ref);
 
-  // The store sets id, slug, time and version. Refused: an empty name (malformed), too many parts
-  // (conflict).
+  // Creates a part. The store sets id, slug, time and version. Returns a `malformed` error for an
+  // empty name, and `conflict` for too many parts.
   Result<NamedPart> create(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
-  // Changes name, text and content, if the version equals; the slug stays, so that links stay
-  // valid.
+  // Changes name, text and content, if the version is the present version. The slug does not
+  // change, so links stay valid.
   Result<NamedPart> update(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
-  // if the version equals
+  // Deletes the part if the version is the present version.
   Result<void> remove(const NamedPart& part, const IdempotentResponse<>& answer = {});
 
  private:

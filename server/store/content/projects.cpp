@@ -15,7 +15,7 @@ Result<void> check(const Project& project) {
   return check_texts({{&project.slug, "slug"}, {&project.description, "description"}});
 }
 
-// Erases the models of a project that were erased from the Trash but whose content still exists.
+// Erases the models of a project that were erased from the Trash but still have content.
 Result<void> erase_models_of(PgConnection& connection, ProjectId project_id) {
   auto models = STRATA_TRY(connection.query(
       "SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().id(project_id)));
@@ -71,7 +71,7 @@ Result<std::size_t> Projects::names_until(const NamedId& place, std::span<const 
 
 Result<std::string> Projects::state(ProjectId id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::string> {
-    // Returns the ids and versions of the rows of a part, whose FROM clause follows.
+    // Returns SQL for the ids and versions of some rows of the project. `part` is the FROM clause.
     const auto versions = [](const std::string& part) {
       return "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " +
              part + "), '')";

@@ -18,7 +18,7 @@ namespace strata::store {
 class Pool;
 
 // Projects of the site; `default` exists from the start. `ref` is an id in digits or a slug. Part
-// of Store: its rules for threads and errors hold.
+// of Store, with the same rules for threads and errors.
 class Projects {
  public:
   explicit Projects(Pool& pool) : pool_(pool) {}
@@ -26,19 +26,20 @@ class Projects {
   Result<std::vector<Project>> all();
   Result<Project> find(const std::string& ref);
   Result<Project> create(Project project, const IdempotentResponse<Project>& answer = {});
-  // If the version equals; returns the project with version + 1.
+  // Changes the project if the version is the present version, and returns it with version + 1.
   Result<Project> update(Project project, const IdempotentResponse<Project>& answer = {});
-  // refused (conflict) while the project has models, and for `default`
+  // Deletes the project. Returns a `conflict` error while it has models, and for `default`.
   Result<void> remove(ProjectId id, const IdempotentResponse<>& answer = {});
   // Returns the number of items that do not follow `place`. The items are sorted by name, ignoring
   // case, and then by id.
   Result<std::size_t> names_until(const NamedId& place, std::span<const NamedId> sorted);
-  // Returns a text that changes whenever stored data of the project changes: its models, layers,
-  // surface images, views, tables or records; not its edits, comments and people. For comparison
-  // only.
+  // Returns a text that changes whenever the models, layers, surface images, views, tables or
+  // records of the project change. It does not depend on edits, comments and members. For
+  // comparison only.
   Result<std::string> state(ProjectId id);
-  // Returns the project's activity without the lines about layers that the role does not see. A
-  // page costs the same for a history of any length. An unknown project or model has no activity.
+  // Returns the project's activity without the lines about layers that the role does not see. The
+  // cost of a page does not depend on the length of the history. An unknown project or model has no
+  // activity.
   Result<ActivityPage> activity(ProjectId project_id, Role seen_by, const ActivityQuery& query);
 
  private:

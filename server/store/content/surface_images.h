@@ -14,19 +14,19 @@ namespace strata::store {
 
 class Pool;
 
-// Pictures of a model's surface, stored unchanged. Part of Store: its rules for threads and errors
-// hold.
+// Images of the surface of a model, stored unchanged. Part of Store, with the same rules for
+// threads and errors.
 class SurfaceImages {
  public:
   explicit SurfaceImages(Pool& pool) : pool_(pool) {}
 
-  static constexpr int kMaxSurfaceImages = 32;  // of a model
+  static constexpr int kMaxSurfaceImages = 32;  // per model
 
-  Result<std::vector<SurfaceImage>> of_model(ModelId model_id);  // by order
+  Result<std::vector<SurfaceImage>> of_model(ModelId model_id);  // sorted by their order
   Result<SurfaceImage> find(ModelId model_id, const std::string& ref);
   Result<SurfaceImage> create(const SurfaceImage& image, std::span<const std::uint8_t> picture,
                               const IdempotentResponse<SurfaceImage>& answer = {});
-  // changes everything except the picture
+  // Changes the properties, but not the image file.
   Result<SurfaceImage> update(const SurfaceImage& image,
                               const IdempotentResponse<SurfaceImage>& answer = {});
   Result<void> remove(SurfaceImageId id, const IdempotentResponse<>& answer = {});

@@ -14,22 +14,22 @@ namespace strata::store {
 
 class Pool;
 
-// Brush shapes of the whole site. Part of Store: its rules for threads and errors hold.
+// Brush shapes of the whole site. Part of Store, with the same rules for threads and errors.
 class Tools {
  public:
   explicit Tools(Pool& pool) : pool_(pool) {}
 
-  static constexpr int kMaxTools = 200;  // without deleted ones
+  static constexpr int kMaxTools = 200;  // without deleted tools
 
-  Result<std::vector<Tool>> all();  // without deleted ones, by name
-  // A slug finds only tools that are not deleted; an id finds deleted tools, too.
+  Result<std::vector<Tool>> all();  // without deleted tools, sorted by name
+  // Finds a tool by slug, if it is not deleted, or by id, also if it is deleted.
   Result<Tool> find(const std::string& ref);
   Result<Tool> create(const Tool& tool, const ShapeBits& shape,
                       const IdempotentResponse<Tool>& answer = {});
-  Result<Tool> update(const Tool& tool, const IdempotentResponse<Tool>& answer = {});  // changes
-                                                                                       // the name
+  // Changes the name.
+  Result<Tool> update(const Tool& tool, const IdempotentResponse<Tool>& answer = {});
   Result<void> remove(ToolId id, const IdempotentResponse<>& answer = {});
-  Result<ShapeBits> shape(ToolId id);  // of a deleted tool, too
+  Result<ShapeBits> shape(ToolId id);  // also of a deleted tool
 
  private:
   Pool& pool_;

@@ -56,7 +56,7 @@ Result<TourFile> TourFiles::add(NamedPartId tour_id, const NewTourFile& file,
   const Content content = STRATA_TRY(content_of(file.file, {}));
   const auto work = [&](PgConnection& connection) -> Result<TourFile> {
     STRATA_TRY(keep_blob(connection, content, {}));
-    // Locked, so that the later of two concurrent transactions counts the file of the earlier.
+    // Locked, so that the later of two concurrent transactions counts the file of the earlier one.
     auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
                                             Params().id(tour_id)));
     if (tour.rows() == 0) return no_such("tour", to_string(tour_id));

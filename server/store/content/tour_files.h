@@ -20,7 +20,7 @@ class Pool;
 
 using TourFileId = Id<struct TourFileTag>;
 
-// A picture, sound, video or subtitles file of a tour. Its content never changes.
+// A file of a tour: an image, sound, video or subtitles. Its content never changes.
 struct TourFile {
   TourFileId id = 0;
   NamedPartId tour_id = 0;
@@ -28,7 +28,7 @@ struct TourFile {
   std::string media_type;  // determined from its bytes
   std::uint64_t bytes = 0;
   std::string sha256;                // hexadecimal
-  std::optional<int> width, height;  // of pictures
+  std::optional<int> width, height;  // for images: size in pixels
 };
 
 struct NewTourFile {
@@ -38,22 +38,21 @@ struct NewTourFile {
   std::optional<int> width, height;
 };
 
-// Files of tours. Part of Store: thread-safe and blocking as Store is, with the same errors for
-// missing or unreachable data.
+// Files of tours. Part of Store, with the same rules for threads and errors.
 class TourFiles {
  public:
-  static constexpr std::int64_t kMaxFiles = 200;                    // of a tour
-  static constexpr std::int64_t kMaxBytes = std::int64_t{2} << 30;  // of a tour
+  static constexpr std::int64_t kMaxFiles = 200;                    // per tour
+  static constexpr std::int64_t kMaxBytes = std::int64_t{2} << 30;  // per tour
 
   explicit TourFiles(Pool& pool) : pool_(pool) {}
 
-  // conflict: too many files or bytes.
+  // Returns a `conflict` error for too many files or bytes.
   Result<TourFile> add(NamedPartId tour_id, const NewTourFile& file, const std::string& user,
                        const IdempotentResponse<TourFile>& answer = {});
-  Result<std::vector<TourFile>> of_tour(NamedPartId tour_id);  // by id
+  Result<std::vector<TourFile>> of_tour(NamedPartId tour_id);  // sorted by id
   Result<TourFile> find(NamedPartId tour_id, TourFileId id);
-  // Deletes the files of the tour that are not in `used` and older than `age`: an open editor may
-  // still use a younger one.
+  // Deletes the files of the tour that are not in `used` and are older than `age`. An open editor
+  // may still use a newer file.
   Result<void> drop_unused(NamedPartId tour_id, const std::set<TourFileId>& used,
                            std::chrono::seconds age);
 

@@ -14,8 +14,8 @@ using Kind = TrashEntry::Kind;
 constexpr int kRowsAtOnce = 2000;
 
 // The content of the Trash of project $1 and of its models that are not in the Trash: layers and
-// models with one of the visibilities $2 if $3 (curators), and records that were deleted in the
-// last $4 days and not created again since.
+// models with one of the visibilities $2 if $3 is true (for curators), and records that were
+// deleted in the last $4 days and not created again.
 constexpr auto kTrash = sql(
     "(SELECT 'layer' AS kind, l.id, l.name, l.model_id, m.name AS model_name, 0::bigint AS table_id, '' AS table_name, "
     "l.binned_by, l.binned, l.binned_bytes FROM all_layers l JOIN models m ON m.id = l.model_id WHERE m.project_id = $1 "
@@ -67,7 +67,7 @@ tl::unexpected<Error> not_in_trash(const TrashEntry& entry) {
                   " is no longer in the Trash: somebody restored or erased it.");
 }
 
-// Success if one row was changed; otherwise the layer or model `id` does not exist.
+// Returns success if one row was changed. Otherwise the layer or model `id` does not exist.
 Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t id) {
   if (!done) return tl::unexpected(done.error());
   return done->affected() > 0 ? Result<void>{} : no_such(name_of(kind), std::to_string(id));
@@ -76,7 +76,8 @@ Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t i
 }  // namespace
 
 Result<void> erase_layer(PgConnection& connection, LayerId id) {
-  // Comments about the layer keep its visibility, so that no more people see them than before.
+  // Comments about the layer keep its visibility, so that they are not visible to more users than
+  // before.
   STRATA_TRY(connection.query(
       "UPDATE comments c SET visibility = l.visibility FROM all_layers l WHERE l.id = $1 AND c.layer_id = l.id",
       Params().id(id)));
@@ -175,8 +176,8 @@ Result<TrashRestored> Trash::restore(const TrashEntry& entry,
                                      const IdempotentResponse<TrashRestored>& answer) {
   const bool is_layer = entry.kind == Kind::layer;
   return change(pool_, answer, [&](PgConnection& connection) -> Result<TrashRestored> {
-    // Lock the model of a layer first: it must not go into the Trash, or get a layer with this
-    // slug, before the commit.
+    // Lock the model of a layer first. Before the commit, it must not be moved to the Trash, or get
+    // a layer with this slug.
     if (is_layer) {
       auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
                                                Params().id(entry.model_id)));

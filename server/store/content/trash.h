@@ -20,27 +20,27 @@ struct TableChange;
 struct TrashEntry {
   enum class Kind { layer, model, record };
   Kind kind = Kind::layer;
-  std::int64_t id = 0;  // of the layer or model; key of the record
+  std::int64_t id = 0;  // id of the layer or model, or key of the record
   std::string name;
-  ModelId model_id = 0;    // model of a layer; of a model, its own id
-  std::string model_name;  // of a layer
-  TableId table_id = 0;    // of a record
-  std::string table_name;  // of a record
-  std::string user;        // the user who deleted it; empty: the server
+  ModelId model_id = 0;    // model of the layer, or the model itself
+  std::string model_name;  // for a layer: name of its model
+  TableId table_id = 0;    // for a record: its table
+  std::string table_name;  // for a record: name of its table
+  std::string user;        // the user who deleted it; empty for the server
   std::chrono::system_clock::time_point deleted;
-  std::uint64_t bytes = 0;  // of its files and history, approximately
+  std::uint64_t bytes = 0;  // approximate size of its files and history
 };
 
 struct TrashRestored {
   TrashEntry entry;
-  std::string slug;         // after restoring
-  std::string former_slug;  // before, if another object uses it now; else empty
+  std::string slug;  // slug after the restore
+  // slug before the deletion, if another object uses it now; otherwise empty
+  std::string former_slug;
 };
 
-// The Trash of projects. Part of Store: thread-safe and blocking as Store is, with the same errors
-// for missing or unreachable data. All other parts of Store ignore models and layers that are in
-// the Trash (db/migrations/000023_bin.sql). Records are never erased: the journals of their tables
-// keep their values, and the Trash finds them there.
+// The Trash of projects. Part of Store, with the same rules for threads and errors. All other parts
+// of Store ignore models and layers that are in the Trash (db/migrations/000023_bin.sql). Records
+// are never erased: the journals of their tables keep their values, and the Trash reads them there.
 class Trash {
  public:
   explicit Trash(Pool& pool) : pool_(pool) {}
@@ -53,39 +53,40 @@ class Trash {
     Role role = Role::viewer;      // curators see layers and models, annotators see records
     std::chrono::days records{0};  // how long deleted records are listed
   };
-  // The entry where a page ends.
+  // The position of the last entry of a page.
   struct Place {
-    std::int64_t deleted_us = 0;  // since 1970
+    std::int64_t deleted_us = 0;  // microseconds since 1970
     TrashEntry::Kind kind = TrashEntry::Kind::layer;
     TableId table_id = 0;
     std::int64_t id = 0;
   };
-  // Layers on a model in the Trash are restored with the model, and are not listed. `after`: only
-  // the entries that follow it.
+  // Layers on a model in the Trash are restored with the model, and are not listed. `after` selects
+  // only the entries after a position.
   Result<Page> of_project(ProjectId project_id, const Sight& sight, int limit, int offset,
                           const std::optional<Place>& after = {});
   // `table_id` is the table of a record.
   Result<TrashEntry> entry(ProjectId project_id, TrashEntry::Kind kind, std::int64_t id,
                            TableId table_id, const Sight& sight);
 
-  // Moves a layer or model into the Trash, as the user in `answer`.
+  // Move a layer or model to the Trash, in the name of the user in `answer`.
   Result<void> put_layer(LayerId id, const IdempotentResponse<>& answer);
   Result<void> put_model(ModelId id, const IdempotentResponse<>& answer);
-  // Restores a layer or model, with its former slug if that is free. An open room does not contain
-  // it yet.
+  // Restores a layer or model, with its former slug if that slug is free. An open room does not
+  // contain the restored object yet.
   Result<TrashRestored> restore(const TrashEntry& entry,
                                 const IdempotentResponse<TrashRestored>& answer);
-  // Restores a record, with its key, as an entry of the table's journal. Refused (conflict): its
-  // values do not fit the present table, or it exists.
+  // Restores a record, with its key, as an entry in the journal of the table. Returns a `conflict`
+  // error if its values do not fit the present table, or if the record exists.
   Result<TableChange> restore_record(const TrashEntry& entry, const std::string& user,
                                      const IdempotentResponse<TableChange>& answer);
-  // Erases a layer or model permanently; `erase_some` erases its content later.
+  // Erases a layer or model permanently. `erase_some` erases its content later.
   Result<void> erase(const TrashEntry& entry, const IdempotentResponse<>& answer);
 
-  // Erases, in the same way, everything that is in the Trash for longer than `after`.
+  // Erases, in the same way, all layers and models that have been in the Trash for longer than
+  // `after`.
   Result<void> expire(std::chrono::days after);
-  // Erases some of the content of erased models and layers, so little that no other caller has to
-  // wait. Returns false if nothing is left.
+  // Erases a part of the content of erased models and layers. The part is so small that no other
+  // caller has to wait. Returns false if nothing is left.
   Result<bool> erase_some();
 
  private:

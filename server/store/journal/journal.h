@@ -16,45 +16,46 @@
 
 namespace strata::store {
 
-// The sum of one key in one tile, in model space and units: area × position, and the box of the
-// texels.
+// The sums of one key in one tile, in model space and model units. `moment` is area × position, and
+// `low` and `high` are the bounding box of the texels.
 struct KeySum {
-  std::optional<std::int64_t> key;  // nothing: the layer does not distinguish values
+  std::optional<std::int64_t> key;  // nothing if the layer does not distinguish values
   std::uint64_t texels = 0;
   double area = 0;
   glm::dvec3 moment{0}, low{0}, high{0};
 };
 struct TileKeys {
   TileAddress tile;
-  std::vector<KeySum> keys;  // empty: no texel of the tile is valid
+  std::vector<KeySum> keys;  // empty if no texel of the tile is valid
 };
 
 // One edit with everything that becomes durable with it, in one transaction.
 struct JournalEntry {
   ModelId model_id = 0;
   LayerId layer_id = 0;
-  std::int64_t sequence = 0;  // in the model, from 1, without gaps
-  Uuid id;                    // of the message; unique per model
+  std::int64_t sequence = 0;  // number in the model, from 1, without gaps
+  Uuid id;                    // id of the message; unique per model
   std::string user;           // display name of the author
   Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits
   // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
   std::string op;
   nlohmann::json record;  // the edit as requested
-  nlohmann::json answer;  // the answer to the caller; a repeat of `id` receives it again
+  nlohmann::json answer;  // the response to the caller; a repeated `id` gets it again
   std::chrono::system_clock::time_point time;
   struct Revision {
     TileAddress tile;
     std::vector<std::uint8_t> difference;  // strata::encode_revision
-    // strata::encode_tile after the edit; empty except every 64th of a tile
+    // strata::encode_tile after the edit, for every 64th revision of a tile; otherwise empty
     std::vector<std::uint8_t> key_tile;
   };
   std::vector<Revision> revisions;
-  // Returns the sums of the tiles in `revisions` after the edit; called on the writer's thread, at
-  // each attempt. Empty: not known, and the layer must be counted again (Layers::to_sum).
+  // Returns the sums of the tiles in `revisions` after the edit. Called on the thread of the
+  // writer, at each attempt. If empty, the sums are not known, and the layer must be counted again
+  // (Layers::to_sum).
   std::function<std::vector<TileKeys>()> sum_tiles;
-  // undo, redo, reviews: the sequences whose `in_force` becomes false / true with this entry
+  // for undo, redo and reviews: sequences of edits whose `in_force` becomes false or true
   std::vector<std::int64_t> disable, enable;
-  Review review = Review::none;  // of this edit: none or pending
+  Review review = Review::none;  // review of this edit: none or pending
   struct Reviewed {
     std::vector<std::int64_t> edits;
     Review becomes = Review::pending;
@@ -62,7 +63,7 @@ struct JournalEntry {
   std::optional<Reviewed> reviewed;  // the decision that the entry makes
 };
 
-// A row of a layer's history (GET …/edits), newest first.
+// A row of the history of a layer (GET …/edits), which is sorted newest first.
 struct JournalRow {
   std::int64_t sequence = 0;
   Uuid id, stroke;
@@ -71,7 +72,7 @@ struct JournalRow {
   std::chrono::system_clock::time_point time;
   bool in_force = true;
   Review review = Review::none;
-  struct Reviewer {  // of accepted or rejected edits
+  struct Reviewer {  // reviewer of an accepted or rejected edit
     std::string user, reason;
     std::chrono::system_clock::time_point time;
   };
@@ -80,26 +81,27 @@ struct JournalRow {
 
 // The edits of a layer that wait for review.
 struct ReviewQueue {
-  struct Stroke {  // or another edit
+  struct Stroke {  // a stroke or another edit
     Uuid stroke;
-    std::int64_t sequence = 0;  // of its first batch, which identifies the stroke
+    std::int64_t sequence = 0;  // sequence of the first batch, which identifies the stroke
     std::int64_t last = 0;
     std::string user, op;
-    std::chrono::system_clock::time_point begun, time;  // of the first batch and the last
+    std::chrono::system_clock::time_point begun, time;  // times of the first and the last batch
     std::uint64_t texels = 0;                           // sum over all batches
     double area_m2 = 0;
-    nlohmann::json record;  // of the first batch
+    nlohmann::json record;  // record of the first batch
   };
   struct Person {
     std::string user;
     std::int64_t strokes = 0;
   };
-  std::vector<Stroke> strokes;  // of a page, oldest first
+  std::vector<Stroke> strokes;  // strokes on this page, oldest first
   std::int64_t total = 0;
-  std::vector<Person> people;  // of the whole layer, by name
+  std::vector<Person> people;  // users with edits in the whole layer, sorted by name
 };
 
-// Selects the edits of a decision: these edits, those of a user, or, if neither is given, all.
+// Selects the edits of a decision: the given edits, the edits of a user, or all edits if neither is
+// given.
 struct Reviewees {
   std::vector<std::int64_t> edits;
   std::optional<std::string> user;

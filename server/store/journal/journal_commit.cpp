@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kBytesPerInsert = 8u << 20;
 constexpr int kTilesASide = 16384 / kTileSize;
 
-// A message that fails these checks can never be written; the database makes all other checks.
+// A message that fails these checks can never be written. The database makes all other checks.
 Result<void> check(const JournalEntry& entry) {
   STRATA_TRY(check_texts({{&entry.user, "user"}, {&entry.op, "op"}}));
   STRATA_TRY(check_json(entry.record, "record"));
@@ -157,8 +157,8 @@ void insert_revisions(std::span<const JournalEntry* const> entries, Statements& 
   columns.flush(out);
 }
 
-// Runs after the inserts and in the order of the entries: an undo may be in the same transaction as
-// the edit that it undoes.
+// Appends the statements that enable and disable edits. They run after the inserts and in the order
+// of the entries, because an undo may be in the same transaction as the edit that it undoes.
 void switch_edits(std::span<const JournalEntry* const> entries, Statements& out) {
   for (const JournalEntry* entry : entries)
     for (const auto* sequences : {&entry->disable, &entry->enable}) {

@@ -21,7 +21,7 @@ namespace strata::store {
 
 class Pool;
 
-// Tiles that the given edits wrote, with the union of their written masks.
+// A tile that the given edits wrote, with the union of the masks that they wrote.
 struct WrittenTiles {
   TileAddress tile;
   TileMask written;
@@ -32,67 +32,70 @@ struct HistoryPage {
   std::int64_t total = 0;
 };
 
-// The model's last sequence, and the rows of the messages that were in the journal after it was
-// read.
+// The last sequence of a model, and the rows of the given messages that the journal contained after
+// that sequence was read.
 struct JournalState {
   std::int64_t last_sequence = 0;
   std::vector<JournalRow> known;
 };
 
-// Reads the journal of edits. Writes go through JournalWriter. Part of Store: its rules for threads
-// and errors hold.
+// Reads the journal of edits. JournalWriter writes it. Part of Store, with the same rules for
+// threads and errors.
 class Journal {
  public:
   explicit Journal(Pool& pool) : pool_(pool) {}
 
-  // Returns all tiles of a layer after `at_sequence` (nothing: the newest).
+  // Returns all tiles of a layer after `at_sequence`, or the newest tiles if it is empty.
   Result<TileMirror::Snapshot> load_tiles(const Layer& layer,
                                           std::optional<std::int64_t> at_sequence = {});
-  // The same for the state after `sequence`, an edit of the layer or 0. Reads only tiles that edits
-  // between it and `near` wrote; the others are those of `near`, a state that is in the journal.
+  // Returns all tiles after `sequence`, which is an edit of the layer or 0. Reads only the tiles
+  // that edits between `sequence` and `near` wrote. The other tiles are those of `near`, which is a
+  // state in the journal.
   Result<TileMirror::Snapshot> load_tiles_near(const Layer& layer, std::int64_t sequence,
                                                const TileMirror::Snapshot& near);
-  // Returns each layer's last edit up to a sequence of the model; layers without one are left out.
+  // Returns the last edit of each layer up to a sequence of the model. Layers without an edit are
+  // left out.
   Result<std::map<LayerId, std::int64_t>> layer_sequences(ModelId model_id, std::int64_t sequence);
-  // Returns revisions of a tile older than `before`, newest first, at most `limit`, with the
-  // present state of their edits.
+  // Returns at most `limit` revisions of a tile that are older than `before`, newest first, with
+  // the present state of their edits.
   Result<std::vector<PastRevision>> tile_history(const Layer& layer, TileAddress tile,
                                                  std::int64_t before, int limit);
   Result<std::vector<WrittenTiles>> written_by(const Layer& layer,
                                                std::span<const std::int64_t> sequences);
-  // Newest first; `before`: only edits with lower sequences.
+  // Returns the history, newest first. `before` selects only edits with lower sequences.
   Result<HistoryPage> history(LayerId layer_id, int limit, int offset,
                               std::optional<std::int64_t> before = {});
   Result<JournalState> state(ModelId model_id, std::span<const Uuid> ids);
-  // Return the sequences (ascending) of the newest stroke of `user` on the layer that is in force /
-  // that is undone and not followed by a newer in-force stroke of the same user; empty if there is
-  // no such stroke. `pending_only`: only strokes that wait for review.
+  // Return the sequences, ascending, of a stroke of `user` on the layer, or nothing if there is no
+  // such stroke. `undoable` returns the newest stroke in force. `redoable` returns the newest
+  // undone stroke, unless a newer stroke of the same user is in force. `pending_only` selects only
+  // strokes that wait for review.
   Result<std::vector<std::int64_t>> undoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
   Result<std::vector<std::int64_t>> redoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
-  // review.cpp: returns the strokes and other edits of a layer that are in force and wait for
-  // review, oldest first. `after`: only those that begin with a higher sequence.
+  // Returns the strokes and other edits of a layer that are in force and wait for review, oldest
+  // first (review.cpp). `after` selects only those that begin with a higher sequence.
   Result<ReviewQueue> review_queue(LayerId layer_id, const std::optional<std::string>& user,
                                    int limit, int offset, std::int64_t after = 0);
-  // Returns the edits that a decision affects: those that wait for review and are in force, and,
-  // for `reopen`, those that were accepted or rejected. Batches of a stroke belong together: naming
-  // one of them selects all.
+  // Returns the edits that a decision affects: edits that wait for review and are in force, or, for
+  // `reopen`, edits that were accepted or rejected. Batches of a stroke belong together, so naming
+  // one batch selects all.
   Result<std::vector<UnderReview>> under_review(LayerId layer_id, Decision decision,
                                                 const Reviewees& which);
-  // timeline.cpp: counts the edits of a model over time.
+  // Counts the edits of a model over time (timeline.cpp).
   Result<Timeline> timeline(ModelId model_id, const TimelineQuery& query);
-  // Returns the strokes and other edits up to `from` (backward) or after it, the nearest ones.
+  // Returns the nearest strokes and other edits: up to `from` if `backward`, otherwise after it.
   Result<TimelineSteps> timeline_steps(ModelId model_id, const std::vector<LayerId>& layers,
                                        std::int64_t from, bool backward, int limit);
-  // undo_steps.cpp: returns the steps that undo and redo would change, one after the other.
+  // Returns the steps that repeated undo and redo would change, in that order (undo_steps.cpp).
   Result<UndoSteps> undo_steps(ModelId model_id, const std::string& user, const UndoQuery& query);
   Result<std::int64_t> last_sequence(ModelId model_id);
-  // Returns the sequence of the last edit until a time (the text of core/text/timestamp.h); 0
+  // Returns the sequence of the last edit up to a time (text as in core/text/timestamp.h), or 0
   // before the first edit.
   Result<std::int64_t> sequence_at(ModelId model_id, const std::string& utc);
-  // Returns when the last edit of a layer that everybody sees was made, up to a sequence; nothing:
-  // no such edit exists.
+  // Returns the time of the last edit, up to a sequence, of the layers that are visible to all
+  // roles. Returns nothing if no such edit exists.
   Result<std::optional<std::chrono::system_clock::time_point>> time_of_state(ModelId model_id,
                                                                              std::int64_t sequence);
   Result<std::uint64_t> revision_bytes(ModelId model_id);

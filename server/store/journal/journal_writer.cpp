@@ -62,13 +62,13 @@ struct JournalWriter::Impl {
   mutable std::mutex mutex;
   std::condition_variable changed;
   std::deque<WaitingEntry> queue;
-  std::size_t waiting_bytes = 0;  // in the queue and in the current group
+  std::size_t waiting_bytes = 0;  // bytes in the queue and in the current group
   std::uint64_t submitted = 0;
   std::uint64_t answered = 0;
   bool closing = false;
   bool failing = false;  // the last commit failed and is being retried
 
-  // Used only by the writer's thread.
+  // Only the thread of the writer uses these members.
   std::optional<PgConnection> connection;
   std::thread thread;
 
@@ -100,8 +100,9 @@ struct JournalWriter::Impl {
       group.pop_front();
       waiting.done(result);
       bytes = waiting.bytes;
-    }  // Destroyed before it counts as answered: after a drain, the caller may destroy objects that
-       // it refers to.
+    }
+    // `waiting` is destroyed before it counts as answered: after a drain, the caller may destroy
+    // objects that it refers to.
     std::lock_guard lock(mutex);
     waiting_bytes -= bytes;
     ++answered;
@@ -114,7 +115,7 @@ struct JournalWriter::Impl {
     changed.notify_all();
   }
 
-  // Retries until the group is answered.
+  // Writes the group. Tries again until every entry of the group has a result.
   void write(std::deque<WaitingEntry>& group) {
     const auto started = Clock::now();
     bool failed_before = false;
@@ -155,8 +156,8 @@ struct JournalWriter::Impl {
     return &*connection;
   }
 
-  // Answers the entries at the front that an earlier attempt committed although its answer was
-  // lost. A transaction is atomic: the saved entries are the front of the group.
+  // Reports success for the entries that an earlier attempt committed although its response was
+  // lost. A transaction is atomic, so these entries are at the front of the group.
   tl::expected<void, CommitFailure> skip_saved(PgConnection& to, std::deque<WaitingEntry>& group) {
     const auto saved = find_saved(to, pointers(group));
     if (!saved) return tl::unexpected(CommitFailure{saved.error(), true});
@@ -171,9 +172,9 @@ struct JournalWriter::Impl {
                          : commit_entries(*to, pointers(group));
   }
 
-  // Commits each entry in a separate transaction, because one of the group can never be written.
-  // Later entries of the same model fail too, since they were made on top of it. (A lower sequence
-  // means that the model's owner started again.)
+  // Commits each entry in a separate transaction, because one entry of the group can never be
+  // written. Later entries of the same model fail too, because they depend on it. (A lower sequence
+  // means that the caller has started again.)
   tl::expected<void, CommitFailure> one_by_one(std::deque<WaitingEntry>& group) {
     struct Broken {
       std::int64_t sequence;

@@ -12,14 +12,14 @@ namespace strata::store {
 
 class Store;
 
-// The thread that makes edits durable, with a separate connection (synchronous_commit on). Entries
-// commit in the given order; waiting entries are grouped into one transaction. A failed commit is
-// retried in order until `retry_for` has passed since its first attempt began (reconnecting each
-// time; an entry whose id is already in the journal with the same sequence counts as saved, since
-// the first attempt may have committed before the answer was lost). Then every waiting entry is
-// answered with the Error, in order, and the writer continues with later entries. A database that
-// hangs fails like one that is unreachable: no attempt lasts longer than `limits.answer` without a
-// byte transferred.
+// Makes edits durable, on its own thread and with a separate connection (synchronous_commit on).
+// Entries are committed in the given order, and waiting entries are grouped into one transaction.
+// After a failed commit, the writer reconnects and tries again, in order, until `retry_for` has
+// passed since the first attempt began. An entry whose id is already in the journal with the same
+// sequence counts as saved, because an attempt may have committed before its response was lost.
+// After `retry_for`, every waiting entry gets the error, in order, and the writer continues with
+// later entries. A database that hangs counts as unreachable: no attempt lasts longer than
+// `limits.answer` without a byte transferred.
 class JournalWriter {
  public:
   struct Options {
@@ -27,21 +27,21 @@ class JournalWriter {
     std::size_t max_waiting_bytes = 256u << 20;
     PgLimits limits{std::chrono::seconds(10), std::chrono::seconds(0), std::chrono::seconds(5)};
   };
-  using Done = std::function<void(Result<void>)>;  // called on the writer's thread, in order
+  using Done = std::function<void(Result<void>)>;  // called on the thread of the writer, in order
 
   JournalWriter(Store& store, Options options);
-  ~JournalWriter();  // writes the waiting entries, then joins
+  ~JournalWriter();  // writes the waiting entries, then joins the thread
 
-  // Returns false when the queue is full or failing: the caller refuses new edits (`accepting()`
-  // returns the same in advance).
+  // Returns false if the queue is full or commits fail. The caller must then refuse new edits.
+  // `accepting()` returns the same in advance.
   bool submit(JournalEntry entry, Done done);
   bool accepting() const;
-  void drain();  // waits until all earlier entries are answered and new ones are accepted
+  void drain();  // waits until all earlier entries are done and new entries are accepted
 
-  // Gives what was made in a project since `since` an earlier time: comments, records, files,
-  // views, tours, kiosk links, and the activity about them. Edits have the times of their entries.
-  // For the demo, whose story is made up. Returns the database's present time, for the next
-  // `since`. Blocks.
+  // Sets an earlier time for the objects that were made in a project since `since`: comments,
+  // records, files, views, tours, kiosk links, and the activity about them. Edits have the times of
+  // their entries. For the demo, whose history is invented. Returns the present time of the
+  // database, for the next `since`. Blocks.
   static Result<std::chrono::system_clock::time_point> date_back(
       Store& store, ProjectId project, std::chrono::system_clock::time_point since,
       std::chrono::system_clock::time_point time);

@@ -18,8 +18,8 @@ Result<ReviewQueue> Journal::review_queue(LayerId layer_id, const std::optional<
       if (!user || *user == queue.people.back().user) queue.total += queue.people.back().strokes;
     }
     auto rows = STRATA_TRY(connection.query(
-        // The author's client chooses the id of a stroke: equal ids of two users are two strokes.
-        // Records contain whole paths and are read for one page only.
+        // The client of the author chooses the id of a stroke, so the same id from two users means
+        // two strokes. Records contain whole paths and are read for one page only.
         "SELECT w.stroke, w.first, w.last, w.user_name, e.op, w.begun, w.time, w.texels, w.area, e.record FROM "
         "(SELECT model_id, stroke, user_name, min(sequence) AS first, max(sequence) AS last, min(time) AS begun, "
         "max(time) AS time, sum((answer ->> 'texels_changed')::bigint)::bigint AS texels, "

@@ -10,14 +10,14 @@
 
 namespace strata::store {
 
-// By layer and tile.
+// The sums of keys by layer and tile.
 using TileKeysByPlace = std::map<std::pair<LayerId, TileAddress>, std::vector<KeySum>>;
 
 // Appends the statements that replace the stored sums.
 void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Statement>& out);
 
-// Appends the same statements for the sums of the entries; the last entry of a tile counts. Layers
-// of entries without sums are marked.
+// Appends the same statements for the sums of the entries. The last entry of each tile counts.
+// Marks the layers of entries without sums.
 void write_tile_sums(std::span<const JournalEntry* const> entries,
                      std::deque<PgConnection::Statement>& out);
 

@@ -12,7 +12,7 @@
 namespace strata::store {
 namespace {
 
-// One tile as read: its last key tile, if any, and the differences after it, in order.
+// One tile as it was read: its last key tile, if any, and the later differences, in order.
 struct StoredTile {
   TileAddress address;
   std::vector<std::uint8_t> key;
@@ -45,8 +45,8 @@ class TileLoader {
  public:
   explicit TileLoader(ValueType type) : type_(type) {}
 
-  // Adds a row. Tiles must come by y and x, and the revisions of each tile by sequence: another
-  // order would lose paint, so it is an error.
+  // Adds a row. Rows must be sorted by y and x of the tile, and then by sequence. Another order
+  // would lose paint, so it is an error.
   Result<void> add(TileAddress address, std::int64_t sequence, bool key, Bytes bytes) {
     const auto place = std::tuple(address.y, address.x, sequence);
     if (place <= last_)
@@ -74,7 +74,7 @@ class TileLoader {
 
  private:
   static constexpr std::size_t kBatchBytes = 4u << 20;
-  // approximate cost of decoding one row, in bytes
+  // approximate cost to decode one row, in bytes
   static constexpr std::size_t kDecodedBytes = kTexelsPerTile;
 
   Result<void> flush() {
@@ -106,13 +106,13 @@ TileAddress read_address(const PgResult& rows, int i) {
           static_cast<std::uint16_t>(rows.integer(i, 0))};
 }
 
-// Reads tile by tile by the primary key; of each tile, the rows since its last key tile. Older rows
-// are not read, so that a layer opens as fast after a year of painting as after a day. The order
-// comes from the nested loops, because a sort would hold every row in memory. Places are compared
-// as rows, which only the primary key supports: without statistics of a fresh table, the planner
-// would read the whole index by sequence for each tile.
-// Follows `tiles`: the rows of each, from its last key tile up to $2. LEFT JOIN: a tile without one
-// has a row of nulls.
+// Reads tile by tile, by the primary key, and for each tile the rows since its last key tile. Older
+// rows are not read, so a layer opens as fast after a year of painting as after a day. The nested
+// loops give the order, because a sort would keep every row in memory. Tile addresses are compared
+// as rows, which only the primary key supports. Otherwise, for a new table without statistics, the
+// planner would read the whole index by sequence for each tile. This SQL follows a WITH query
+// `tiles`. It returns the rows of each tile, from its last key tile up to $2. Because of the LEFT
+// JOIN, a tile without rows has one row of nulls.
 constexpr auto kRowsOfTiles = sql(
     "SELECT t.tile_y, t.tile_x, r.sequence, r.sequence = k.sequence, CASE WHEN r.sequence = k.sequence THEN r.key_tile ELSE r.difference END "
     "FROM tiles t LEFT JOIN LATERAL (SELECT sequence FROM tile_revisions WHERE layer_id = $1 AND tile_y = t.tile_y "
@@ -128,7 +128,7 @@ constexpr auto kLoadTiles = sql(
     "WHERE layer_id = $1 AND (tile_y, tile_x) > (t.tile_y, t.tile_x) ORDER BY tile_y, tile_x LIMIT 1) n) ",
     kRowsOfTiles);
 
-// Only the tiles that edits after $3 and up to $4 wrote.
+// Selects only the tiles that edits after $3 and up to $4 wrote.
 constexpr auto kLoadTilesNear =
     sql("WITH tiles AS MATERIALIZED (SELECT DISTINCT tile_y, tile_x FROM tile_revisions "
         "WHERE layer_id = $1 AND sequence > $3 AND sequence <= $4 ORDER BY tile_y, tile_x) ",

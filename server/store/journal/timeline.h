@@ -14,44 +14,44 @@ namespace strata::store {
 // The edits of a model over time, counted in equal intervals.
 struct Timeline {
   using Time = std::chrono::system_clock::time_point;
-  struct Interval {  // that contains an edit
-    int number = 0;  // from 0
+  struct Interval {  // an interval that contains an edit
+    int number = 0;  // counted from 0
     std::int64_t edits = 0;
     std::int64_t first = 0, last = 0;  // sequences
-    Time begun, ended;                 // of its first and last edit
+    Time begun, ended;                 // times of the first and the last edit
     struct Share {
       std::string user;
       std::int64_t edits = 0;
     };
-    std::vector<Share> people;    // kMaxNamed with the most edits, these first
-    std::int64_t others = 0;      // further people
-    std::vector<LayerId> layers;  // kMaxNamed with the most edits, these first
+    std::vector<Share> people;    // the kMaxNamed users with the most edits, in descending order
+    std::int64_t others = 0;      // number of further people
+    std::vector<LayerId> layers;  // the kMaxNamed layers with the most edits, in descending order
   };
   static constexpr int kMaxNamed = 3;
-  std::int64_t edits = 0;  // in all intervals
-  // begin of the first and end of the last interval; nothing: no edit
+  std::int64_t edits = 0;  // number of edits in all intervals
+  // begin of the first and end of the last interval; nothing if there is no edit
   std::optional<Time> from, to;
   std::vector<Interval> intervals;
 };
 struct TimelineQuery {
-  std::vector<LayerId> layers;          // only edits of these
-  std::optional<std::string> from, to;  // UTC; nothing: the first and the last edit
+  std::vector<LayerId> layers;          // only edits of these layers
+  std::optional<std::string> from, to;  // UTC; nothing means the first or the last edit
   int intervals = 1;
 };
 
-// A stroke, or another edit. A stroke whose batches lie on both sides of the page is cut there.
+// A stroke, or another edit. A stroke with batches on two pages is divided between them.
 struct TimelineStep {
   std::int64_t first = 0, last = 0;  // sequences
   Uuid stroke;
   LayerId layer;
   std::string user, op;
-  Timeline::Time time;       // of the last batch
+  Timeline::Time time;       // time of the last batch
   std::uint64_t texels = 0;  // sum over all batches
   double area_m2 = 0;
 };
 struct TimelineSteps {
-  std::vector<TimelineStep> steps;  // ascending by their last sequence
-  bool more = false;                // the journal continues in the direction of the query
+  std::vector<TimelineStep> steps;  // ascending by last sequence
+  bool more = false;                // the journal has more steps in the direction of the query
 };
 
 }  // namespace strata::store

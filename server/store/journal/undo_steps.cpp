@@ -12,8 +12,8 @@
 namespace strata::store {
 namespace {
 
-// Rows of the journal that are read for a list of `limit` steps: a stroke has a row for each batch,
-// and a long one has hundreds.
+// Returns the number of journal rows that are read for a list of `limit` steps. A stroke has a row
+// for each batch, and a long stroke has hundreds.
 constexpr int most_rows_of(int limit) { return limit * 8 + 500; }
 
 constexpr auto kLayers = sql(
@@ -21,7 +21,7 @@ constexpr auto kLayers = sql(
     "SELECT e.sequence, e.stroke, l.id, e.op, e.time, (e.answer ->> 'texels_changed')::bigint, "
     "(e.answer ->> 'area_m2')::double precision, coalesce(e.undone_by, 0) FROM l CROSS JOIN LATERAL ");
 
-// The rules are those of the steps that `Journal` gives to one undo or redo.
+// The rules are the same as in `Journal::undoable` and `Journal::redoable`.
 constexpr auto kDone =
     sql(kLayers,
         "(SELECT * FROM edits WHERE layer_id = l.id AND user_name = $3 AND writer AND in_force "
@@ -46,7 +46,7 @@ Result<std::vector<Row>> steps_of(PgConnection& connection, const char* statemen
   is_cut = rows.rows() >= most_rows;
   std::vector<Row> found;
   std::map<std::tuple<LayerId, Uuid, std::int64_t>, std::size_t> of_stroke;
-  std::size_t last = 0;  // step of the last row
+  std::size_t last = 0;  // index of the step of the last row
   for (int i = 0; i < rows.rows(); ++i) {
     PgRow columns(rows, i);
     Row row;
@@ -70,14 +70,14 @@ Result<std::vector<Row>> steps_of(PgConnection& connection, const char* statemen
     step.texels += row.step.texels;
     step.area_m2 += row.step.area_m2;
   }
-  // Rows of this step may be missing.
+  // The last step may lack rows that were not read.
   if (is_cut && found.size() > 1) found.erase(found.begin() + static_cast<std::ptrdiff_t>(last));
   return found;
 }
 
-// Leaves out steps that no redo can reach because a step before them is redone first.
+// Removes the steps that no redo can reach because an earlier step is redone first.
 std::vector<Row> redos_in_order(std::vector<Row> rows) {
-  std::map<LayerId, std::int64_t> newest;  // in force after the redos so far
+  std::map<LayerId, std::int64_t> newest;  // newest sequence in force after the previous redos
   std::map<LayerId, bool> ended;
   std::erase_if(rows, [&](const Row& row) {
     bool& has_ended = ended[row.step.layer];
@@ -89,7 +89,7 @@ std::vector<Row> redos_in_order(std::vector<Row> rows) {
   return rows;
 }
 
-// Adds the values, which the record of each batch repeats.
+// Adds the values to the steps. The record of each batch contains the value.
 Result<void> add_values(PgConnection& connection, ModelId model_id, std::vector<UndoStep>& steps) {
   PgArray sequences(oid::kInt8);
   std::map<std::int64_t, UndoStep*> of_sequence;

@@ -7,20 +7,20 @@
 
 namespace strata::store {
 
-// A user's own step that undo or redo would change.
+// A step of the user that undo or redo would change.
 struct UndoStep : TimelineStep {
-  std::optional<double> value;  // nothing: it painted no single value
+  std::optional<double> value;  // nothing if the step did not paint a single value
   bool erases = false;
 };
 struct UndoSteps {
-  std::vector<UndoStep> done;    // in force, newest first: the order of undos
-  std::vector<UndoStep> undone;  // in the order of redos
-  bool more = false;             // there are earlier steps in force
+  std::vector<UndoStep> done;    // steps in force, newest first: the order of undo
+  std::vector<UndoStep> undone;  // undone steps, in the order of redo
+  bool more = false;             // true if there are earlier steps in force
 };
 struct UndoQuery {
-  std::vector<LayerId> layers;        // only edits of these
-  std::vector<LayerId> pending_only;  // of these, only edits that wait for review
-  int limit = 1;                      // of each of the two lists
+  std::vector<LayerId> layers;        // only edits of these layers
+  std::vector<LayerId> pending_only;  // layers of which only edits that wait for review count
+  int limit = 1;                      // limit for each of the two lists
 };
 
 }  // namespace strata::store

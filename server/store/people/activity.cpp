@@ -10,14 +10,14 @@
 namespace strata::store {
 namespace {
 
-// A line about a layer, or in a thread about a layer, is visible to users who see that layer, in
-// the Trash or not, or who saw it when it was erased.
+// A line about a layer, or in a thread about a layer, is visible to users who see that layer or who
+// saw it when it was erased. The layer may be in the Trash.
 constexpr auto kActivityIsSeen = sql(
     "coalesce((SELECT l.visibility FROM all_layers l WHERE l.id = activities.layer_id), activities.visibility) = any($6) "
     "AND (activities.comment_id IS NULL OR (SELECT coalesce(l.visibility, f.visibility) FROM comments c JOIN comments "
     "f ON f.id = coalesce(c.thread_id, c.id) LEFT JOIN all_layers l ON l.id = f.layer_id "
     "WHERE c.id = activities.comment_id) = any($6))");
-// Finds the page first, by indexes alone; then looks up the objects of its lines.
+// Finds the page first, which needs only indexes, and then looks up the objects of its lines.
 consteval auto activity_lines(const auto& condition) {
   return sql("(SELECT * FROM activities WHERE ", condition,
              " AND (time, id) < (timestamptz 'epoch' + $2 * interval '1 microsecond', $3::bigint) "
@@ -35,7 +35,7 @@ consteval auto activity_page(const auto& lines) {
       "LEFT JOIN record_tables t ON t.id = a.table_id LEFT JOIN comments c ON c.id = a.comment_id "
       "ORDER BY a.time DESC, a.id DESC");
 }
-// Lines of the model, and of each table whose records lie on it.
+// Lines about the model, and about each table with records on it.
 constexpr auto kActivityOfModel =
     sql("SELECT * FROM (", activity_lines("model_id = $1"),
         " UNION ALL SELECT of_table.* FROM (SELECT DISTINCT table_id FROM layers "
@@ -44,7 +44,7 @@ constexpr auto kActivityOfModel =
         " of_table) found "
         "ORDER BY time DESC, id DESC LIMIT $5");
 
-constexpr int kTimeColumn = 21;  // of a page: in microseconds, for the place of the next page
+constexpr int kTimeColumn = 21;  // the time in microseconds, for the position of the next page
 // the year 2286
 constexpr ActivityPlace kAfterAll{9'999'999'999'999'999, std::numeric_limits<std::int64_t>::max()};
 

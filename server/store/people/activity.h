@@ -10,55 +10,56 @@
 
 namespace strata::store {
 
-// A line of a project's activity: the actions of one user on one object, each within ten minutes of
-// the previous one.
+// A line in the activity of a project: the actions of one user on one object, each within ten
+// minutes of the previous action.
 struct Activity {
   std::int64_t id = 0;
-  std::chrono::system_clock::time_point time, begun;  // of the last action, and of the first
-  // empty: the server, by its command line
+  std::chrono::system_clock::time_point time, begun;  // times of the last and the first action
+  // empty for actions from the command line of the server
   std::string user;
   // "edit", "layer", "look", "view", "tour", "model", "table", "columns", "records", "comment",
   // "member", "project"
   std::string kind;
-  // of an edit or a table's entry, as in its journal; "created", "changed", "deleted", …
+  // for an edit or an entry of a table: as in the journal; otherwise "created", "changed",
+  // "deleted", …
   std::string op;
-  std::string name;  // present or last name of the object; empty: a comment
-  // Objects that still exist.
+  std::string name;  // present or last name of the object; empty for a comment
+  // The objects, if they still exist.
   std::optional<ModelId> model;
   std::optional<LayerId> layer;
   std::optional<TableId> table;
   std::optional<CommentId> comment;
   std::string model_name;
-  // if the whole line is about this one, which may be deleted
+  // set if the whole line is about this record, which may be deleted
   std::optional<std::int64_t> record;
   std::string text;  // beginning of the comment
-  std::string person, group,
-      // of a membership in the project or, if both are set, of the person in the group; empty: it
-      // ended
-      role;
-  std::int64_t count = 1;  // strokes and other edits; records or columns written; changes
+  // for changes to members: the user, the group, or both for a user in a group; `role` is the role
+  // in the project, or of the user in the group, and empty if the membership ended
+  std::string person, group, role;
+  std::int64_t count = 1;  // number of edits, of written records or columns, or of changes
   std::optional<std::int64_t> texels;  // sum over the edits
   std::optional<double> area_m2;
-  std::vector<std::string> changed;  // columns of the changed object
+  std::vector<std::string> changed;  // changed columns of the object
 };
 
-// The place where a page ends. A line that grows moves to the top, and so from one page to another.
+// The position at which a page ends. A line with a new action moves to the top, and so may move to
+// another page.
 struct ActivityPlace {
-  std::int64_t time_us = 0;  // since 1970
+  std::int64_t time_us = 0;  // microseconds since 1970
   std::int64_t id = 0;
 };
 
 struct ActivityQuery {
-  // Only lines of this model of the project, and of the tables whose records lie on it.
+  // Only lines about this model of the project, and about the tables with records on it.
   std::optional<ModelId> model{};
   std::optional<ActivityPlace> before{};
-  bool with_members = false;  // also changes of roles
+  bool with_members = false;  // also changes to roles
   int limit = 100;
 };
 
 struct ActivityPage {
   std::vector<Activity> lines;        // newest first
-  std::optional<ActivityPlace> next;  // `before` of the page that follows
+  std::optional<ActivityPlace> next;  // `before` of the next page
 };
 
 }  // namespace strata::store

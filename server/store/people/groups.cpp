@@ -7,8 +7,8 @@
 #include "store/pg/sql.h"
 #include "store/store_impl.h"
 
-// A change of a group locks the group first, and then users in the order of their names. Facts that
-// were read about both in between stay true until the commit.
+// A change to a group locks the group first, and then users in the order of their names. Facts that
+// were read about a locked group or user stay true until the commit.
 
 namespace strata::store {
 namespace {
@@ -56,8 +56,8 @@ Result<GroupDetail> load_detail(PgConnection& connection, GroupId id) {
   for (int i = 0; i < projects.rows(); ++i)
     detail.projects.push_back(
         {projects.text(i, 0), projects.text(i, 1), read_role(projects, i, 2)});
-  // Count users who have no role as high from another source: their role in the site, a role in the
-  // project, or another group.
+  // Count the users who have no role of the same rank from another source: from the site, from the
+  // project, or from another group.
   auto losing = STRATA_TRY(connection.query(
       "SELECT count(*) FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1 AND "
       "u.disabled IS NULL AND EXISTS (SELECT 1 FROM project_groups g WHERE g.group_id = $1 AND "
@@ -78,7 +78,7 @@ Result<std::vector<std::string>> people_in(PgConnection& connection, GroupId id)
   return people;
 }
 
-// Checks the name of a new or renamed group: the lock keeps the names and their number until the
+// Checks the name of a new or renamed group. The lock keeps the names and their number until the
 // commit.
 Result<void> check_name(PgConnection& connection, const std::string& name, GroupId own_id) {
   STRATA_TRY(connection.query("LOCK TABLE groups IN SHARE ROW EXCLUSIVE MODE"));
@@ -106,7 +106,7 @@ Result<void> check_spelling(const std::string& name) {
   return check_text(name, "name");
 }
 
-// Returns the users, locked, each once.
+// Locks the users, and returns each user once.
 Result<std::vector<Person>> lock_people(PgConnection& connection,
                                         const std::vector<std::string>& names, const char* field) {
   std::vector<Person> people;
@@ -120,7 +120,7 @@ Result<std::vector<Person>> lock_people(PgConnection& connection,
   return people;
 }
 
-// The group must be locked. Returns true if the user was not in it.
+// Adds the user to the group, which must be locked. Returns true if the user was not in the group.
 Result<bool> put_person(PgConnection& connection, GroupId group_id, PersonId person_id) {
   auto put = STRATA_TRY(connection.query(
       "INSERT INTO group_people (group_id, user_id) VALUES ($1, $2) ON CONFLICT DO NOTHING RETURNING 1",
@@ -232,7 +232,7 @@ Result<Regrouped<GroupDetail>> Groups::change(GroupId id, const GroupChange& cha
     auto put = STRATA_TRY(put_people(connection, id, change.add, "add"));
     auto detail = STRATA_TRY(load_detail(connection, id));
     std::vector<std::string> people;
-    // In a group without roles, no user's rights change.
+    // If the group has no roles, the rights of its users do not change.
     if (!detail.projects.empty()) std::ranges::set_union(taken, put, std::back_inserter(people));
     return Regrouped<GroupDetail>{std::move(detail), std::move(people)};
   });
@@ -243,7 +243,7 @@ Result<std::vector<std::string>> Groups::remove(GroupId id, const std::string& b
     STRATA_TRY(act_as(connection, by));
     STRATA_TRY(lock_group(connection, id));
     auto people = STRATA_TRY(people_in(connection, id));
-    // Delete the roles first: the projects' activity then lists that they end.
+    // Delete the roles first, so that the activity of the projects lists their end.
     for (const char* sql :
          {"DELETE FROM project_groups WHERE group_id = $1", "DELETE FROM groups WHERE id = $1"})
       STRATA_TRY(connection.query(sql, Params().id(id)));

@@ -14,7 +14,7 @@ namespace strata::store {
 
 class Pool;
 
-// Users who get roles in projects together; of the whole site.
+// Users of the site who get roles in projects together.
 struct Group {
   GroupId id = 0;
   std::string name;           // 1 to 100 characters; unique, ignoring case
@@ -28,13 +28,13 @@ struct GroupDetail {
   struct Member {
     std::string user, full_name;
   };
-  std::vector<Member> members;  // by name
+  std::vector<Member> members;  // sorted by name
   struct InProject {
     std::string slug, name;
     Role role = Role::viewer;
   };
-  std::vector<InProject> projects;  // by name
-  std::int64_t losing = 0;          // users who could do less in some project without it
+  std::vector<InProject> projects;  // sorted by name
+  std::int64_t losing = 0;  // number of users who would lose rights in a project without the group
 };
 
 // A group's role in a project.
@@ -43,56 +43,59 @@ struct ProjectGroup {
   Role role = Role::viewer;
 };
 
-// A role that a group gives a user, above their own role in the project.
+// A role that a group gives to a user, above the user's own role in the project.
 struct GivenRole {
   ProjectId project_id = 0;
   Role role = Role::viewer;
   std::string group;
 };
 
-// The change of a group; users by user name.
+// A change to a group. `add` and `remove` are user names.
 struct GroupChange {
   std::optional<std::string> name{};
   std::vector<std::string> add{}, remove{};
 };
 
-// The changed object and the users whose roles changed: their roles must be read again.
+// The changed object, and the users whose roles changed. Their roles must be read again.
 template <class Changed>
 struct Regrouped {
   Changed now;
   std::vector<std::string> people;
 };
 
-// Groups of users. Part of Store: thread-safe and blocking as Store is, with the same errors for
-// missing or unreachable data. `by`: the user named in the projects' activity; empty: no entry.
+// Groups of users. Part of Store, with the same rules for threads and errors. `by` is the user
+// named in the activity of the projects; if it is empty, the activity gets no entry.
 class Groups {
  public:
-  static constexpr std::int64_t kMaxGroups = 200, kMaxPeople = 1000;  // of the site; in a group
+  // limits for groups of the site, and for users in a group
+  static constexpr std::int64_t kMaxGroups = 200, kMaxPeople = 1000;
 
   explicit Groups(Pool& pool) : pool_(pool) {}
 
-  Result<std::vector<Group>> all();  // by name
+  Result<std::vector<Group>> all();  // sorted by name
   Result<GroupDetail> group(GroupId id);
-  // Refused: a name that is empty or too long (invalid) or taken (conflict), an unknown user
-  // (invalid), too many groups or users (conflict).
+  // Returns an `invalid` error for a name that is empty or too long, and for an unknown user.
+  // Returns a `conflict` error for a name that is taken, and for too many groups or users.
   Result<GroupDetail> create(const std::string& name, const std::vector<std::string>& people);
-  // Refused as for `create`. Adding a member or removing a user who is not a member has no effect.
+  // Returns the same errors as `create`. Adding a member, or removing a user who is not a member,
+  // has no effect.
   Result<Regrouped<GroupDetail>> change(GroupId id, const GroupChange& change,
                                         const std::string& by);
   // Removes the group and its roles.
   Result<std::vector<std::string>> remove(GroupId id, const std::string& by);
 
   // --- in projects
-  Result<std::vector<ProjectGroup>> of_project(ProjectId project_id);  // by name
-  // Gives the role (viewer, annotator or curator), which replaces the former one there.
+  Result<std::vector<ProjectGroup>> of_project(ProjectId project_id);  // sorted by name
+  // Gives the role (viewer, annotator or curator), which replaces the former role of the group in
+  // the project.
   Result<Regrouped<ProjectGroup>> put(ProjectId project_id, GroupId id, Role role,
                                       const std::string& by);
-  // not_found: the group has no role in the project.
+  // Removes the role. Returns a `not_found` error if the group has no role in the project.
   Result<std::vector<std::string>> take(ProjectId project_id, GroupId id, const std::string& by);
 
-  // Returns the users with a role in the project, of their own or by a group.
+  // Returns the users with a role in the project, either their own role or one from a group.
   Result<std::vector<PersonId>> people_with_role(ProjectId project_id);
-  // by groups, in the order of the group names
+  // Returns the roles that groups give to the user, in the order of the group names.
   Result<std::vector<GivenRole>> roles_of(const std::string& user);
 
  private:

@@ -14,7 +14,7 @@ constexpr auto kKiosks = sql(
     "k.expires, k.last_seen, k.revoked, k.wants_reload, k.phone FROM kiosks k JOIN tours t ON t.id = k.tour_id "
     "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id ");
 constexpr auto kGoodKiosk = sql("(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))");
-// Older links are deleted when the next one is made; they are not listed any longer.
+// Older links are no longer listed, and are deleted when the next link is made.
 constexpr auto kListedKiosk = sql(
     "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')");
 
@@ -47,7 +47,7 @@ Result<Kiosk> load(PgConnection& connection, KioskId id) {
   return read_kiosk(rows, 0);
 }
 
-// The kiosk after a change that affects only valid links.
+// Returns the kiosk after a change, or a `conflict` error if the link was not valid.
 Result<Kiosk> changed(PgConnection& connection, KioskId id, const PgResult& done) {
   auto kiosk = load(connection, id);
   if (kiosk && done.affected() == 0)
@@ -100,7 +100,7 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
   STRATA_TRY(check_name(name));
   STRATA_TRY(check_texts({{&user, "user"}}));
   return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
-    // Locked, so that the later of two concurrent transactions counts the link of the earlier.
+    // Locked, so that the later of two concurrent transactions counts the link of the earlier one.
     auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
                                             Params().id(tour_id)));
     if (tour.rows() == 0) return no_such("tour", to_string(tour_id));
@@ -175,7 +175,7 @@ Result<Kiosk> Kiosks::ask_reload(KioskId id) {
 Result<Kiosk> Kiosks::allow_phones(KioskId id, bool allowed) {
   const auto phone = allowed ? std::optional(random_token()) : std::nullopt;
   return pool_.write([&](PgConnection& connection) -> Result<Kiosk> {
-    // A code that is on keeps its secret: phones that use it stay connected.
+    // A link that is already on keeps its secret, so phones that use it stay connected.
     auto done = STRATA_TRY(connection.query(
         sql("UPDATE kiosks k SET phone = CASE WHEN $2::text IS NULL THEN NULL ELSE coalesce(k.phone, $2) END "
             "WHERE k.id = $1 AND ",

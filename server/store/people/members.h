@@ -13,19 +13,19 @@ namespace strata::store {
 
 class Pool;
 
-// Roles of users in single projects. Part of Store: its rules for threads and errors hold.
+// Roles of users in single projects. Part of Store, with the same rules for threads and errors.
 class Members {
  public:
   explicit Members(Pool& pool) : pool_(pool) {}
 
-  // Returns users with a role in the project in addition to their role in the site, by name.
+  // Returns the users with a role in the project in addition to their role in the site, by name.
   Result<std::vector<Membership>> of_project(ProjectId project_id);
-  // Gives the role (viewer, annotator or curator), which replaces the former one there. not_found:
-  // the project or the user does not exist. `by`: the user named in the project's activity; empty:
-  // no entry.
+  // Gives the role (viewer, annotator or curator), which replaces the former role of the user in
+  // the project. Returns a `not_found` error if the project or the user does not exist. `by` is the
+  // user named in the activity of the project; if it is empty, the activity gets no entry.
   Result<Membership> put(ProjectId project_id, const std::string& user, Role role,
                          const std::string& by = {});
-  // not_found: the user has no role of their own there.
+  // Returns a `not_found` error if the user has no role of their own in the project.
   Result<void> remove(ProjectId project_id, const std::string& user, const std::string& by = {});
 
  private:

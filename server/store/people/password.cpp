@@ -37,7 +37,7 @@ Result<void> check_password(std::string_view password, std::string_view user,
 
 namespace {
 
-std::counting_semaphore<2> free_slots{2};  // each hash takes 64 MiB and a core
+std::counting_semaphore<2> free_slots{2};  // each hash needs 64 MiB and one core
 
 struct Slot {
   const bool is_had = free_slots.try_acquire_for(std::chrono::seconds(2));

@@ -65,7 +65,7 @@ bool is_ascii(const std::string& text) {
 }
 
 Result<Person> load_person(PgConnection& connection, const std::string& name, bool lock) {
-  // Names are ASCII. Other letters must not match a name through their lower case.
+  // Names are ASCII. Another letter must not match a name because of its lower case.
   if (!is_ascii(name) || !check_text(name, "user")) return no_such("person", name);
   constexpr auto kRead = sql("SELECT ", kPersonColumns,
                              " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL");
@@ -157,7 +157,7 @@ Result<NewToken> open_session(PgConnection& connection, const Person& person,
 
 struct Found {
   Principal principal;
-  bool is_fresh = false;  // its use was recorded a moment ago
+  bool is_fresh = false;  // its use was recorded in the last five minutes
 };
 Result<std::optional<Found>> find_secret(PgConnection& connection, const std::string& secret) {
   auto row = STRATA_TRY(connection.query(
@@ -171,7 +171,8 @@ Result<std::optional<Found>> find_secret(PgConnection& connection, const std::st
   if (row.rows() == 0) return std::optional<Found>();
   const auto persons = parse_role(row.text(0, 1)), own = parse_role(row.text(0, 2));
   const auto kind = parse_kind(row.text(0, 3));
-  if (!persons || !own || !kind) return std::optional<Found>();  // of a later version
+  // the values are from a later version
+  if (!persons || !own || !kind) return std::optional<Found>();
   Roles roles{*persons, {}};
   auto given =
       STRATA_TRY(connection.query("SELECT project_id, role FROM project_roles WHERE user_id = $1",
@@ -331,8 +332,8 @@ Result<void> Accounts::remove(const std::string& name) {
     STRATA_TRY(rename_in_journal(connection, person.name, former));
     STRATA_TRY(rename_in_comments(connection, person.name, former));
     STRATA_TRY(rename_in_activity(connection, person.name, former));
-    // Stored answers for repeated calls may contain the name, as a user name or in a mention. JSON
-    // escapes no character of a name.
+    // Stored responses for repeated requests may contain the name, as a user name or in a mention.
+    // JSON does not escape any character of a name.
     return run(
         connection,
         sql("DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
@@ -473,7 +474,7 @@ Result<std::optional<Principal>> Tokens::find(const std::string& secret) {
       pool_.read([&](PgConnection& connection) { return find_secret(connection, secret); }));
   if (!found) return std::optional<Principal>();
   const Principal& principal = found->principal;
-  // Recording the use is optional: the secret stays valid even if nothing can be written.
+  // Recording the use is optional, because the secret is valid even if nothing can be written.
   if (!found->is_fresh &&
       (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
     (void)pool_.write([&](PgConnection& connection) {
@@ -524,8 +525,8 @@ Result<std::optional<std::string>> Accounts::accept_invitation(
     auto invited = STRATA_TRY(find_secret(connection, invitation));
     if (!is_good(invited)) return std::optional<std::string>();
     auto person = STRATA_TRY(lock_person(connection, invited->principal.user));
-    // Two calls may use the invitation at once, and the user may have been disabled before this
-    // transaction got the lock.
+    // Two calls may use the invitation at the same time, and the user may have been disabled before
+    // this transaction got the lock.
     auto still = STRATA_TRY(find_secret(connection, invitation));
     if (!is_good(still)) return std::optional<std::string>();
     STRATA_TRY(put_password(connection, person.name, hash, {}));

@@ -12,11 +12,10 @@
 namespace strata::store {
 
 inline constexpr std::chrono::hours kInvitationLifetime{24 * 7};
-// valid sessions of a user, and as many tokens for scripts
+// limit for the valid sessions of a user, and for tokens for scripts
 inline constexpr std::size_t kMaxTokens = 100;
 
-// A user with an account. `name` is the name for signing in, ignoring case, and the name in
-// journals.
+// A user with an account. `name` is used to sign in, ignoring case, and in journals.
 struct Person {
   PersonId id = 0;
   std::string name;
@@ -25,11 +24,11 @@ struct Person {
   bool has_password = false;
   bool disabled = false;
   std::chrono::system_clock::time_point created;
-  std::optional<std::chrono::system_clock::time_point> last_seen;  // to some minutes
-  std::vector<std::string> groups;                                 // by name
+  std::optional<std::chrono::system_clock::time_point> last_seen;  // to within some minutes
+  std::vector<std::string> groups;                                 // sorted by name
 };
 
-// The change of a user; empty members stay unchanged.
+// A change to a user. Properties without a value are not changed.
 struct PersonChange {
   std::optional<std::string> full_name;
   std::optional<Role> role;
@@ -37,15 +36,15 @@ struct PersonChange {
 };
 
 enum class TokenKind {
-  session,  // of a browser; has the rights of its user
-  // the same, but limited to its own role, and, if it has a project, to this project
+  session,  // session of a browser; has the rights of its user
+  // has the rights of its user, but limited to its own role, and, if it has a project, to this
+  // project
   script,
   owner_link,  // can be exchanged for sessions until it expires
   invitation,  // can be exchanged for a password and a session, once
 };
 
-// The description of a secret. The secret itself is not stored: the store keeps its SHA-256; a
-// secret has 256 random bits.
+// The description of a secret of 256 random bits. The store keeps only the SHA-256 of the secret.
 struct Token {
   TokenId id = 0;
   TokenKind kind = TokenKind::session;
@@ -72,7 +71,7 @@ struct Principal {
   std::string user;
   Roles roles;
   TokenKind kind = TokenKind::session;
-  TokenId token = 0;  // its id
+  TokenId token = 0;  // id of the token
 };
 
 }  // namespace strata::store

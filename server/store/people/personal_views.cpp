@@ -4,7 +4,7 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 20;  // as in the table
+constexpr std::size_t kMaxBytes = 1 << 20;  // as in the SQL table
 
 }  // namespace
 
@@ -20,8 +20,8 @@ Result<nlohmann::json> PersonalViews::find(const std::string& user, ModelId mode
 Result<void> PersonalViews::keep(const std::string& user, ModelId model_id,
                                  const nlohmann::json& layers) {
   STRATA_TRY(check_json(layers, "layers"));
-  // PostgreSQL writes a space after every comma and colon: half of the limit is enough in every
-  // case.
+  // PostgreSQL writes a space after every comma and colon, so only half of the limit is always
+  // short enough.
   if (layers.dump().size() > kMaxBytes / 2)
     return fail(ErrorCode::too_large, "Settings too large",
                 "The personal settings of one model can be at most 512 KiB large.", "layers");

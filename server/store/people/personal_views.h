@@ -11,17 +11,18 @@ namespace strata::store {
 
 class Pool;
 
-// How single users show the layers of models. Part of Store: its rules for threads and errors hold.
+// The display settings of each user for the layers of models. Part of Store, with the same rules
+// for threads and errors.
 class PersonalViews {
  public:
   explicit PersonalViews(Pool& pool) : pool_(pool) {}
 
-  // Returns the user's display of the layers of a model: `layers` of the protocol's PersonalView,
-  // with layers by id, also deleted ones. Empty: the default display.
+  // Returns the settings of the user for the layers of a model: `layers` of PersonalView in the
+  // protocol, with layers by id, also deleted ones. Returns an empty value for the default display.
   Result<nlohmann::json> find(const std::string& user, ModelId model_id);
-  // Replaces the stored value. too_large: more than 512 KiB.
+  // Replaces the stored value. Returns a `too_large` error for more than 512 KiB.
   Result<void> keep(const std::string& user, ModelId model_id, const nlohmann::json& layers);
-  // Shows this user a layer that is hidden by default.
+  // Makes a layer that is hidden by default visible to this user.
   Result<void> show_layer_to(const std::string& user, ModelId model_id, LayerId layer_id);
 
  private:

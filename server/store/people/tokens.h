@@ -15,34 +15,35 @@ namespace strata::store {
 
 class Pool;
 
-// Sessions, links and tokens for scripts. Part of Store: its rules for threads and errors hold.
+// Sessions, links and tokens for scripts. Part of Store, with the same rules for threads and
+// errors.
 class Tokens {
  public:
   explicit Tokens(Pool& pool) : pool_(pool) {}
 
-  // Makes a token of a user who may sign in (not_found: there is no such user). At the limit, a new
-  // session replaces the oldest one, and a new token for scripts is refused (conflict). With
-  // `hash`: only while that is the user's password (unauthenticated). With `project`, for scripts:
-  // valid in that project only (not_found: it does not exist), as viewer, annotator or curator
-  // (invalid).
+  // Makes a token for a user who may sign in. At the limit, a new session replaces the oldest
+  // session, but a new token for scripts is a `conflict`. With `hash`, returns an `unauthenticated`
+  // error if it is not the hash of the present password. With `project`, a token for scripts is
+  // valid only in that project, as viewer, annotator or curator; another role is `invalid`. Returns
+  // a `not_found` error if the user or the project does not exist.
   Result<NewToken> create(TokenKind kind, const std::string& user, Role role,
                           std::optional<std::chrono::seconds> lifetime,
                           const std::string& label = {},
                           const std::optional<std::string>& hash = {},
                           std::optional<ProjectId> project = {});
-  // Makes the only valid link of this kind of the user: earlier ones become invalid.
+  // Makes a link of this kind for the user. Earlier links of the kind become invalid.
   Result<NewToken> create_link(TokenKind kind, const std::string& user,
                                std::chrono::seconds lifetime);
-  // Nothing: unknown, expired or revoked, or of a user who may not sign in.
+  // Returns nothing if the secret is unknown, expired or revoked, or if its user may not sign in.
   Result<std::optional<Principal>> find(const std::string& secret);
-  // Returns the valid ones, newest first.
+  // Returns the valid tokens of the user, newest first.
   Result<std::vector<Token>> of_user(const std::string& user, TokenKind kind);
-  // the secret of a session
+  // Returns the secret of a new session.
   Result<std::optional<std::string>> redeem_owner_link(const std::string& link,
                                                        std::chrono::seconds lifetime,
                                                        const std::string& label = {});
   Result<void> revoke(const std::string& secret);
-  // not_found: the user has no token of the kind with that id.
+  // Returns a `not_found` error if the user has no token of the kind with that id.
   Result<void> revoke(const std::string& user, TokenKind kind, TokenId id);
   Result<void> revoke_all(const std::string& user, TokenKind kind,
                           std::optional<TokenId> kept_token = {});

@@ -9,7 +9,7 @@
 namespace strata::store {
 namespace {
 
-// Fills the buffer with the next chunk; empty at the end.
+// Returns the next chunk, which is empty at the end.
 using NextChunk = std::function<Result<Bytes>()>;
 
 Result<void> copy_chunks(PgConnection& connection, const Sha256& hash, const NextChunk& next) {
@@ -34,7 +34,7 @@ Result<void> copy_chunks(PgConnection& connection, const Sha256& hash, const Nex
   }
 }
 
-// Returns true when the blob is new and its chunks must be written.
+// Returns true if the blob is new and its chunks must be written.
 Result<bool> claim(PgConnection& connection, const Sha256& hash, std::int64_t bytes) {
   for (;;) {
     auto made =
@@ -56,7 +56,7 @@ Content content_of(Bytes memory) {
 
 namespace {
 
-// Returns the next chunk of a file, empty at its end.
+// Returns the next chunk of a file, which is empty at the end of the file.
 Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer,
                          const std::filesystem::path& file) {
   in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size()));
@@ -68,7 +68,7 @@ Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer,
 
 }  // namespace
 
-// Hashes a file before it is sent: a scan that is stored already is not sent again.
+// Hashes a file before it is sent, so that a scan that is already stored is not sent again.
 Result<Content> content_of(const std::filesystem::path& file,
                            const std::function<bool()>& cancelled) {
   std::ifstream in(file, std::ios::binary);
@@ -167,8 +167,8 @@ Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes) {
   PgArray list(oid::kBytea);
   for (const auto& hash : hashes) list.add(Bytes(hash));
-  // Lock first: of two concurrent deletions, the later one then sees that the model of the earlier
-  // one is deleted.
+  // Lock first. If there are two concurrent deletions, the later one then sees that the model of
+  // the earlier one is deleted.
   auto locked =
       connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE",
                        Params().array(list));

@@ -85,8 +85,8 @@ bool is_transient(std::string_view sqlstate) {
 }
 
 Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimits& limits) {
-  // libpq takes whole seconds, and 2 for 1. Settings in the DSN come later in the list and take
-  // precedence.
+  // libpq takes whole seconds, and uses 2 in place of 1. Settings in the DSN are later in the list
+  // and take precedence.
   const auto patience =
       std::chrono::ceil<std::chrono::seconds>(std::min(limits.answer, kConnectFor));
   const std::string connect_timeout = std::to_string(std::max<std::int64_t>(patience.count(), 2));
@@ -104,8 +104,8 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
   auto set =
       connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
   if (!set) return tl::unexpected(set.error());
-  // Ends a session, and releases its locks, when its client has disconnected. Not every system
-  // supports this.
+  // This setting ends a session, and releases its locks, when its client has disconnected. Not
+  // every system supports it.
   if (PQserverVersion(raw) >= 140000)
     (void)connection.script("SET client_connection_check_interval = '2s'");
   STRATA_TRY(connection.set_limits(limits));
@@ -129,14 +129,15 @@ bool PgConnection::alive() {
 }
 
 void PgConnection::close(std::string reason) {
-  // Shut down first: the closing message must not wait for a database that hangs.
+  // Shut the socket down first, because the closing message must not wait for a database that
+  // hangs.
   shutdown(PQsocket(connection_.get()), SHUT_RDWR);
   connection_.reset();
   closed_because_ = std::move(reason);
 }
 
-// Returns false if nothing was transferred for as long as the limits allow; the connection is then
-// closed.
+// Waits for the socket. Closes the connection and returns false if no byte was transferred within
+// the limits.
 bool PgConnection::wait_for_socket(short events) {
   const auto deadline = std::chrono::steady_clock::now() + limits_.answer;
   for (;;) {
@@ -151,8 +152,8 @@ bool PgConnection::wait_for_socket(short events) {
   }
 }
 
-// Sends everything that is queued. Reads incoming data at the same time, so that the two sides
-// cannot wait for each other.
+// Sends all queued data. Reads incoming data at the same time, so that the two sides cannot wait
+// for each other.
 bool PgConnection::flush() {
   for (;;) {
     const int rest = PQflush(connection_.get());
@@ -162,7 +163,8 @@ bool PgConnection::flush() {
   }
 }
 
-// Returns null at the end of a statement's results, and when the connection was closed.
+// Returns the next result, or null after the last result of a statement or if the connection was
+// closed.
 PGresult* PgConnection::next_result() {
   while (connection_ && PQisBusy(connection_.get())) {
     if (!wait_for_socket(POLLIN)) return nullptr;
@@ -271,7 +273,7 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
     if (!PQsendQueryPrepared(raw, names[i].c_str(), p.count(), p.values(), p.lengths(), p.formats(),
                              1))
       return failed(nullptr);
-    // flush each before the next, so that one copy of the bytes is enough
+    // flush each statement before the next, so that there is only one copy of the bytes
     if (!flush()) return failed(nullptr);
   }
   if (!PQpipelineSync(raw) || !flush()) return failed(nullptr);
@@ -282,7 +284,7 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
     PGresult* result = next_result();
     if (!result) {
       if (PQstatus(connection_.get()) != CONNECTION_OK) return failed(nullptr);
-      continue;  // the end of one statement's results
+      continue;  // the end of the results of one statement
     }
     PgResult owner(result);
     const auto status = PQresultStatus(result);
@@ -320,7 +322,8 @@ Result<void> PgConnection::copy_end() {
 }
 
 void PgConnection::copy_abort(const char* reason) {
-  if (PQputCopyEnd(connection_.get(), reason) == 1) (void)outcome();  // fails, as requested
+  // the COPY fails, as requested
+  if (PQputCopyEnd(connection_.get(), reason) == 1) (void)outcome();
 }
 
 Result<Transaction> Transaction::begin(PgConnection& connection) {
@@ -334,7 +337,7 @@ Result<Transaction> Transaction::begin_reading(PgConnection& connection) {
 }
 
 Transaction::~Transaction() {
-  // the pool closes a broken connection
+  // an error is ignored: the pool closes a broken connection
   if (connection_) (void)connection_->script("ROLLBACK");
 }
 

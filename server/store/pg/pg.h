@@ -30,7 +30,7 @@ constexpr Oid kBool = 16, kBytea = 17, kInt8 = 20, kInt2 = 21, kText = 25, kFloa
               kTimestamptz = 1184, kUuid = 2950, kJsonb = 3802;
 }
 
-// A one-dimensional PostgreSQL array in binary form, for `unnest($1)` and `= any($1)`.
+// A one-dimensional PostgreSQL array in binary format, for `unnest($1)` and `= any($1)`.
 class PgArray {
  public:
   explicit PgArray(Oid element) : element_(element) {}
@@ -60,8 +60,8 @@ class PgArray {
   std::string body_;
 };
 
-// Values of $1, $2, … in binary form. `bytes` are not copied: they must outlive the call that sends
-// them.
+// The values of $1, $2, … in binary format. Values of `bytes` are not copied, and must outlive the
+// call that sends them.
 class Params {
  public:
   Params() = default;
@@ -84,7 +84,7 @@ class Params {
   Params& optional_text(const std::optional<std::string>& value);
   Params& bytes(Bytes value);
   Params& uuid(const Uuid& value);
-  // throws nlohmann::json::type_error on text that is not UTF-8
+  // Throws nlohmann::json::type_error for text that is not UTF-8.
   Params& json(const nlohmann::json& value);
   Params& time(std::optional<Time> value);
   Params& array(const PgArray& value);
@@ -98,14 +98,14 @@ class Params {
  private:
   Params& own(Oid type, std::string value);
   Params& null(Oid type);
-  std::deque<std::string> owned_;  // a deque: its elements never move
+  std::deque<std::string> owned_;  // a deque, because its elements never move
   std::vector<Oid> types_;
   std::vector<const char*> values_;
   std::vector<int> lengths_;
   std::vector<int> formats_;
 };
 
-// Rows in binary form. Each reader expects the matching SQL type.
+// The rows of a result in binary format. Each read function expects the matching SQL type.
 class PgResult {
  public:
   PgResult() = default;
@@ -115,7 +115,7 @@ class PgResult {
   std::int64_t affected() const;
   bool null(int row, int column) const { return PQgetisnull(result_.get(), row, column) != 0; }
   std::int64_t integer(int row, int column) const;  // int2, int4, int8
-  // Returns an id, or an optional one: SQL's null.
+  // Returns an id. If T is an optional id, SQL null gives an empty one.
   template <class T>
   T id(int row, int column) const {
     if constexpr (requires { typename T::value_type; })
@@ -126,7 +126,7 @@ class PgResult {
   double real(int row, int column) const;
   bool boolean(int row, int column) const;
   std::string text(int row, int column) const;
-  Bytes bytes(int row, int column) const;  // valid while the result lives
+  Bytes bytes(int row, int column) const;  // valid while the result exists
   Uuid uuid(int row, int column) const;
   nlohmann::json json(int row, int column) const;
   Time time(int row, int column) const;
@@ -140,24 +140,24 @@ class PgResult {
 };
 
 // One connection, used by one thread at a time. Statements are prepared once per connection. A call
-// that waits longer than the limits closes the connection: its Error is `unavailable` and its
-// sqlstate "08006", as if the server had closed it.
+// that waits longer than the limits closes the connection. It returns an `unavailable` error with
+// the sqlstate "08006", as if the server had closed the connection.
 class PgConnection {
  public:
-  // Makes one attempt of at most 5 seconds. The session writes durably (synchronous_commit on) and
-  // uses UTF-8.
+  // Makes one attempt of at most 5 seconds. Commits of the session are durable (synchronous_commit
+  // on), and its encoding is UTF-8.
   static Result<PgConnection> connect(const std::string& dsn,
                                       const PgLimits& limits = kRequestLimits);
-  // Sets the limits from the next call on; costs a round trip if they change.
+  // Sets the limits for later calls. Needs a round trip if the limits change.
   Result<void> set_limits(const PgLimits& limits);
 
-  // Returns false if the server has closed the connection; costs one system call.
+  // Returns false if the server has closed the connection. Needs one system call.
   bool alive();
-  // SQLSTATE of the last failure; "08006" when the connection broke.
+  // Returns the SQLSTATE of the last failure, or "08006" if the connection broke.
   const std::string& sqlstate() const { return sqlstate_; }
 
-  // Returns true once after a failure because the server chose this session as the victim of a
-  // deadlock.
+  // Returns true, once, if the last failure was a deadlock in which the server chose this session
+  // as the victim.
   bool take_deadlock() { return std::exchange(sqlstate_, {}) == "40P01"; }
 
   Result<void> script(const std::string& sql);  // any number of statements without parameters
@@ -166,24 +166,25 @@ class PgConnection {
   Result<PgResult> query(const SqlText<Length>& sql, const Params& params = {}) {
     return query(sql.c_str(), params);
   }
-  // The same without preparing the statement: for statements that name generated tables, whose
-  // number is unlimited.
+  // Runs a query without preparing the statement. Use it for statements that name generated tables,
+  // because their number is unlimited.
   Result<PgResult> query_once(const std::string& sql, const Params& params = {});
-  // Passes rows as they arrive, one result of one row each, so that memory use stays small. An
-  // error of `on_row` ends the query and closes the connection, since canceling the query could
+  // Passes rows as they arrive, each in a result of one row, so that memory use stays small. An
+  // error from `on_row` ends the query and closes the connection, because canceling the query could
   // wait for the server without limit.
   Result<void> each_row(const char* sql, const Params& params,
                         const std::function<Result<void>(const PgResult&)>& on_row);
 
-  // Sends statements without waiting between them; returns the first failure, and the server skips
-  // the rest.
+  // Sends statements without waiting between them. Returns the first failure; the server skips the
+  // later statements.
   struct Statement {
     const char* sql;
     Params params;
   };
   Result<std::vector<PgResult>> pipeline(const std::deque<Statement>& statements);
 
-  // COPY … FROM STDIN (FORMAT binary): begin, rows of fields, end.
+  // COPY … FROM STDIN (FORMAT binary): copy_begin, then copy_send for rows of fields, then
+  // copy_end.
   Result<void> copy_begin(const char* sql);
   Result<void> copy_send(std::string_view data);
   Result<void> copy_end();
@@ -208,19 +209,20 @@ class PgConnection {
   std::string sqlstate_;
 };
 
-// Runs BEGIN on construction, and ROLLBACK unless committed.
+// Runs BEGIN when it is made, and ROLLBACK when it is destroyed without a commit.
 class Transaction {
  public:
   static Result<Transaction> begin(PgConnection& connection);
-  // Begins a read-only transaction in which all reads see one moment.
+  // Begins a read-only transaction in which all reads see the same snapshot.
   static Result<Transaction> begin_reading(PgConnection& connection);
-  // For a transaction whose BEGIN is sent with a pipeline.
+  // Makes a Transaction whose BEGIN is sent with a pipeline.
   static Transaction adopt(PgConnection& connection) { return Transaction(connection); }
   Transaction(Transaction&& other) noexcept
       : connection_(std::exchange(other.connection_, nullptr)) {}
   Transaction& operator=(Transaction&&) = delete;
   ~Transaction();
-  // If the answer is lost, the Error says that the commit may or may not have happened.
+  // If the response of the server is lost, the error states that the commit may or may not have
+  // happened.
   Result<void> commit();
 
  private:
@@ -228,19 +230,19 @@ class Transaction {
   PgConnection* connection_;
 };
 
-// Pieces of binary COPY.
+// Parts of the data for a binary COPY.
 std::string copy_header();
 void append_field(std::string& row, Bytes bytes);
-void append_int4(std::string& row, std::int32_t value);  // field
+void append_int4(std::string& row, std::int32_t value);  // a field of type int4
 void append_row_start(std::string& row, std::int16_t fields);
 std::string copy_trailer();
 
-// Returns the Error for a failure of PostgreSQL: connection → unavailable, 23xxx → conflict, disk
-// full → storage_full, bad text → `malformed` …
+// Returns the error for a failure of PostgreSQL: `unavailable` for the connection, `conflict` for
+// 23xxx, `storage_full` for a full disk, `malformed` for invalid text, and so on.
 Error problem_of(std::string_view sqlstate, std::string_view message);
 Error unavailable(std::string_view why);
-// Returns true if a later retry can succeed (connection, resources, deadlocks), false if it never
-// can.
+// Returns true if a later retry can succeed (connection, resources, deadlocks), and false if no
+// retry can succeed.
 bool is_transient(std::string_view sqlstate);
 
 // Refuses text that PostgreSQL cannot store: invalid UTF-8 and U+0000.

@@ -8,13 +8,13 @@
 
 namespace strata::store {
 
-// The columns of one row, each read once and in the order of the SELECT. The result must outlive
-// the row.
+// Reads the columns of one row, each once and in the order of the SELECT. The result must outlive
+// the PgRow.
 class PgRow {
  public:
   PgRow(const PgResult& rows, int row) : rows_(rows), row_(row) {}
 
-  // Returns an id, or an optional one: SQL's null.
+  // Returns an id. If T is an optional id, SQL null gives an empty one.
   template <class T>
   T id() {
     return rows_.id<T>(row_, column_++);

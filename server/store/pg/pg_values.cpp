@@ -6,7 +6,8 @@
 namespace strata::store {
 namespace {
 
-constexpr std::int64_t kEpoch2000_us = 946'684'800'000'000;  // PostgreSQL counts from 2000-01-01
+// PostgreSQL counts time from 2000-01-01
+constexpr std::int64_t kEpoch2000_us = 946'684'800'000'000;
 
 template <class T>
 void append_big_endian(std::string& out, T value) {
@@ -74,7 +75,7 @@ std::string PgArray::encode() const {
   append_big_endian(out, static_cast<std::uint32_t>(element_));
   if (count_ > 0) {
     append_big_endian(out, std::int32_t{count_});
-    append_big_endian(out, std::int32_t{1});  // arrays count from 1
+    append_big_endian(out, std::int32_t{1});  // array indices begin at 1
     out += body_;
   }
   return out;
@@ -127,7 +128,7 @@ Params& Params::optional_text(const std::optional<std::string>& value) {
 }
 Params& Params::bytes(Bytes value) {
   types_.push_back(oid::kBytea);
-  // A null pointer would mean NULL, and an empty span may have one.
+  // A null pointer would mean NULL, and an empty span may have a null pointer.
   values_.push_back(value.empty() ? "" : reinterpret_cast<const char*>(value.data()));
   lengths_.push_back(static_cast<int>(value.size()));
   formats_.push_back(1);
@@ -177,7 +178,7 @@ Uuid PgResult::uuid(int row, int column) const {
 }
 nlohmann::json PgResult::json(int row, int column) const {
   if (null(row, column)) return nullptr;
-  // after jsonb's version byte
+  // the text follows the version byte of jsonb
   return nlohmann::json::parse(view_of(bytes(row, column)).substr(1));
 }
 Time PgResult::time(int row, int column) const {

@@ -18,7 +18,7 @@ Result<Pool::Lease> Pool::acquire(const PgLimits& limits) {
   return tl::unexpected(connection.error());
 }
 
-// Returns an idle connection, or else a new one.
+// Returns an idle connection, or a new one if no connection is idle.
 Result<PgConnection> Pool::take(const PgLimits& limits) {
   for (;;) {
     std::unique_lock lock(mutex_);

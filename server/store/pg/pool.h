@@ -9,10 +9,10 @@
 
 namespace strata::store {
 
-// Connections shared by threads. A caller waits for a free one, for at most `slot_for`
-// (unavailable); broken ones are replaced. When the database is unreachable, the pool repeats
-// connecting for `kReconnectFor` (about the time of a restart) before it returns the Error
-// `unavailable`.
+// Connections shared by threads. A caller waits at most `slot_for` for a free connection, and then
+// gets an `unavailable` error. Broken connections are replaced. If the database is unreachable, the
+// pool tries to connect for `kReconnectFor` (about the time of a restart) before it returns an
+// `unavailable` error.
 class Pool {
  public:
   static constexpr std::chrono::milliseconds kReconnectFor{3000};
@@ -40,7 +40,8 @@ class Pool {
   Result<Lease> acquire() { return acquire(limits_); }
   Result<Lease> acquire(const PgLimits& limits);
 
-  // Runs `work(connection)`, and repeats it on a new connection if the old one broke: for reads.
+  // Runs `work(connection)`, which must only read, and repeats it on a new connection if the
+  // connection broke.
   template <class Work>
   auto read(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     for (bool again = true;; again = false) {
@@ -51,7 +52,7 @@ class Pool {
     }
   }
 
-  // Runs `work(connection)` in one transaction, and commits if it succeeds; repeats the whole
+  // Runs `work(connection)` in one transaction, and commits if it succeeds. Repeats the whole
   // transaction after a deadlock.
   template <class Work>
   auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {

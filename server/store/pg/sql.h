@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-// SQL statements assembled at compile time, from pieces that several of them share.
+// SQL statements that are assembled at compile time, from pieces that several statements share.
 namespace strata::store {
 
 template <std::size_t Length>
@@ -12,7 +12,7 @@ struct SqlText {
   std::array<char, Length + 1> text{};
 
   const char* c_str() const& { return text.data(); }
-  const char* c_str() const&& = delete;  // it would be destroyed before it is read
+  const char* c_str() const&& = delete;  // the text would be destroyed before it is read
 };
 
 template <class Piece>

@@ -50,7 +50,8 @@ Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, TableId ta
   return found;
 }
 
-// Returns the column for the files: the requested one, or the first that accepts them all.
+// Returns the column for the files: the requested column, or the first column that accepts all
+// files.
 Result<const Column*> column_for(const Table& table, std::optional<ColumnId> requested,
                                  const std::vector<NewAttachment>& files) {
   const auto is_picture = [](const auto& file) { return is_raster_picture(file.media_type); };
@@ -137,10 +138,11 @@ Result<Attached> Attachments::attach(TableId table_id, std::int64_t key,
   for (const Content& content : contents) by_hash.push_back(&content);
   std::sort(by_hash.begin(), by_hash.end(),
             [](const Content* a, const Content* b) { return a->hash < b->hash; });
-  // Check the request before storing gigabytes; the check is repeated once the table is locked,
-  // because other transactions wait for that lock. The first check is a separate transaction: a
-  // deletion of the table would wait for the rows that it has read, while it waits for the table
-  // that the deletion has locked.
+  // Check the request before gigabytes are stored. The check is repeated when the table is locked.
+  // The table is locked late, because other transactions wait for the lock. The first check is a
+  // separate transaction, because it could otherwise deadlock with a deletion of the table. The
+  // deletion would wait for the rows that the check has read, and the check for the table that the
+  // deletion has locked.
   auto may = pool_.read([&](PgConnection& connection) -> Result<void> {
     auto open = STRATA_TRY(read_table(connection, table_id, who.role));
     if (auto there = record_of(connection, open, key, version); !there) {

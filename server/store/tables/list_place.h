@@ -4,7 +4,7 @@
 
 namespace strata::store {
 
-// The error for an `after` that is no place of the requested list.
+// Returns the error for an `after` that is not a position in the requested list.
 inline tl::unexpected<Error> wrong_place() {
   return fail(
       ErrorCode::invalid, "Invalid position in the list",

@@ -52,12 +52,12 @@ Kind kind_of(const Column& column) {
   }
 }
 
-// Part of a statement. A time has two parts: `text` is its beginning in days since 1970, and `end`
+// A part of a statement. For a time, `text` is its first moment in days since 1970, and `end` is
 // its last moment.
 struct Sql {
   Kind kind = Kind::number;
   std::string text, end;
-  const Column* column = nullptr;  // if the part is a column and nothing else
+  const Column* column = nullptr;  // set if the part is only a column
 };
 
 std::string replaced(std::string text, std::string_view what, const std::string& by) {
@@ -66,8 +66,9 @@ std::string replaced(std::string text, std::string_view what, const std::string&
   return text;
 }
 
-// Returns the SQL of an operator over its operands, which contain no braces: texts and numbers are
-// parameters, and columns are numbers. Each operand is computed once, however often it is used.
+// Returns the SQL of an operator with its operands. Operands contain no braces, because texts and
+// numbers are parameters and columns are named by number. Each operand is computed only once, even
+// if the operator uses it several times.
 std::string of_operands(std::string_view sql, const std::string& a, const std::string& b = {}) {
   const auto is_once = [&](std::string_view name) { return sql.find(name) == sql.rfind(name); };
   if (is_once("{a}") && is_once("{b}"))
@@ -99,7 +100,7 @@ class Writer {
   }
 
  private:
-  // Keeps the first refusal; SQL that is written after it is never used.
+  // Keeps the first error. SQL that is written after an error is never used.
   Sql refuse(const std::string& what, const Expression& at,
              std::string_view reason = mistake::kWrongType,
              std::vector<std::string> suggestions = {}) {
@@ -143,7 +144,7 @@ class Writer {
   }
 
   Sql column(const Expression& e) {
-    // Returns the SQL for a column of the current row, by its name in the database.
+    // Returns the SQL for a column of the current row. The column is named as in the database.
     std::function<std::string(const std::string&)> reach = [](const std::string& name) {
       return "t." + name;
     };
@@ -174,8 +175,8 @@ class Writer {
                   e, mistake::kUnknownColumn, corrected(table, e, step));
   }
 
-  // Returns the whole path with similar columns at that step. A user may have written the name of a
-  // column instead of its slug.
+  // Returns the whole path with each similar column at that step. A user may have written the name
+  // of a column instead of its slug.
   static std::vector<std::string> corrected(const Table& table, const Expression& e,
                                             std::size_t step) {
     std::vector<std::string> names{"key"};
@@ -355,7 +356,7 @@ class Writer {
   }
 
   std::string comparison(const Expression& e, const Operator& row) {
-    // The other side determines how a text is read.
+    // The other operand determines how a text is read.
     const bool turned = e.parts[0].op == Op::text;
     const Expression &first = e.parts[turned ? 1 : 0], &second = e.parts[turned ? 0 : 1];
     const Sql a = operand(first);

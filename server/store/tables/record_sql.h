@@ -9,13 +9,13 @@
 
 namespace strata::store {
 
-// Returns a formula over the visible columns of a table, and over those of the tables that its
-// terms name (query::Names::columns), as SQL over the rows, which the statement calls `t`. External
-// values are parameters, appended to `params`; columns are their ids. Refused (invalid at `field`,
-// with the character): a column that does not exist or has another kind, a text that is not a date,
-// choice or number where one is expected. As in Expression, a result without a finite value is
-// NULL, except for numbers beyond the range of a double: then PostgreSQL ends the statement
-// (SQLSTATE 22003, see unanswerable).
+// Return a formula over columns as SQL over the rows of a table, which the statement calls `t`. The
+// formula may use the visible columns of the table, and those of the tables that its terms name
+// (query::Names::columns). External values are parameters, which are appended to `params`; columns
+// are named by id. Return an `invalid` error at `field`, with the position of the character, for a
+// column that does not exist or has another kind. A text that is not a date, choice or number where
+// one is expected is `invalid`, too. As in Expression, a result without a finite value is NULL. But
+// numbers beyond the range of a double end the statement (SQLSTATE 22003, see unanswerable).
 Result<std::string> condition_sql(const Expression& condition, const OpenTable& open,
                                   PgConnection& connection, Params& params,
                                   const std::string& field);

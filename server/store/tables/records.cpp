@@ -20,7 +20,7 @@ nlohmann::json keys_json(const std::vector<std::int64_t>& keys) {
       keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMaxRowProblems))));
 }
 
-// Writes whole numbers without a fraction, also for columns that may have one.
+// Returns the value as text. Whole numbers have no fraction, even in columns that allow one.
 std::string text_of(const nlohmann::json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_number_float()) return value.dump();
@@ -64,7 +64,7 @@ class Intake {
   }
 
  private:
-  // Returns those of the keys that a record once had: an undo may restore it.
+  // Returns the given keys that a record once had, because an undo may restore that record.
   Result<std::set<std::int64_t>> used_keys(const std::vector<std::int64_t>& keys) {
     PgArray requested(oid::kInt8);
     for (const auto key : keys) requested.add(key);
@@ -152,15 +152,15 @@ Result<TableChange> write_all(PgConnection& connection, TableId table_id,
   TableChange change;
   change.table = open.table;
   change.problems = std::move(intake.problems());
-  // No change: no entry.
+  // Without a change there is no entry.
   if (!change.problems.empty() || edit.records.empty()) return change;
   auto done = STRATA_TRY(apply_edit(connection, open, std::move(edit)));
   for (RowError& problem : done.problems) problem.index = intake.index_of(problem.key);
   return done;
 }
 
-// Returns the rows after a sequence, with `open` as it was then; nothing if that is the present
-// state. Refused: a sequence in the future.
+// Returns the rows after a sequence, and sets `open` to that state. Returns nothing if it is the
+// present state, and an error for a sequence in the future.
 Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection, OpenTable& open,
                                                         std::optional<std::int64_t> at) {
   if (at && *at > open.table.sequence)
@@ -354,7 +354,7 @@ Result<std::vector<std::int64_t>> Records::missing(TableId table_id,
 
 Result<std::int64_t> Tables::sequence_at(TableId table_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    // As for a model: a time that was read, in milliseconds, includes its own edit.
+    // As for a model, a time that was read from an edit, in milliseconds, must include that edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits "
         "WHERE table_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",

@@ -24,47 +24,49 @@ namespace strata::store {
 class Pool;
 
 struct RecordQuery {
-  std::vector<std::pair<std::string, bool>> order;  // column (or `key`), descending
-  std::optional<std::vector<std::int64_t>> keys;    // only these, by key, regardless of the page
-  std::optional<std::int64_t> at;                   // as after that sequence of the table
+  std::vector<std::pair<std::string, bool>> order;  // column (or `key`), and true if descending
+  std::optional<std::vector<std::int64_t>> keys;    // only these records, by key, without paging
+  std::optional<std::int64_t> at;                   // the state after that sequence of the table
   std::int64_t limit = 100, offset = 0;
   std::optional<Expression> filter{};  // only records for which this condition over columns is true
-  // language of the sort order of texts ("de-at"); empty: no particular language
+  // language of the sort order of texts ("de-at"); empty for no particular language
   std::string language{};
-  // Only records that follow this place in the order: a former RecordPage::last. Refused (invalid,
-  // `after`): a place of another order.
+  // Only records that follow this position in the order, which is the RecordPage::last of an
+  // earlier page. A position in another order is an `invalid` error at `after`.
   std::optional<nlohmann::json> after{};
 };
 
 struct RecordPage {
-  Table table;  // with the columns of that time
+  Table table;  // the table, with its columns at that time
   std::vector<Record> records;
   std::int64_t total = 0;
-  // place where the page ends, if more records follow: an array of texts, nulls and whole numbers
+  // position at which the page ends, if more records follow: an array of texts, nulls and whole
+  // numbers
   std::optional<nlohmann::json> last{};
 };
 
-// Rows of tables. Part of Store: its rules for threads and errors hold.
+// Rows of tables. Part of Store, with the same rules for threads and errors.
 class Records {
  public:
   explicit Records(Pool& pool) : pool_(pool) {}
 
   Result<RecordPage> page(TableId table_id, Role seen_by, const RecordQuery& query);
-  // Returns the value of a number or condition over columns for each record where it is known;
-  // after sequence `at` of the table, or now. Refused (invalid at `field`): an expression that does
-  // not fit the columns.
+  // Returns the value of a number or condition over columns for each record where the value is
+  // known. Reads the state after sequence `at` of the table, or the present state. Returns an
+  // `invalid` error at `field` for an expression that does not fit the columns.
   Result<std::vector<KeyNumber>> numbers(TableId table_id, Role seen_by,
                                          const Expression& expression,
                                          std::optional<std::int64_t> at, const std::string& field);
-  // Returns the present value of a column for each record that has one: as canonical text (of a
-  // term, its key). Refused (invalid at `field`): a column that does not exist or holds lists.
+  // Returns the present value of a column for each record that has a value, as canonical text. The
+  // text of a term is its key. Returns an `invalid` error at `field` for a column that does not
+  // exist or has lists as values.
   Result<std::vector<KeyText>> texts(TableId table_id, Role seen_by, const std::string& column,
                                      const std::string& field);
-  // Returns the lines and points that records of a table have on a model, by key; after sequence
-  // `at` of the table, or now.
+  // Returns the lines and points that records of a table have on a model, by key. Reads the state
+  // after sequence `at` of the table, or the present state.
   Result<std::vector<KeyFeature>> features(TableId table_id, Role seen_by, ModelId model_id,
                                            std::optional<std::int64_t> at = {});
-  // All or none: if the change has problems, nothing was written.
+  // Writes all records or none. If the change has problems, nothing was written.
   Result<TableChange> write(TableId table_id, const WriteRecords& request, const std::string& user,
                             const IdempotentResponse<TableChange>& answer = {});
   Result<TableChange> remove(TableId table_id, std::int64_t key,

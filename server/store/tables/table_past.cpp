@@ -12,9 +12,9 @@ namespace {
 
 Cells cells_from(const nlohmann::json& json) { return json.get<Cells>(); }
 
-// Returns the entry for an undo: the user's newest in force. For a redo: the entry that the newest
-// undo disabled, unless a change that the user made after that undo is in force (as for layers,
-// store/journal/edits.cpp).
+// Returns the entry that an undo or redo would change. For an undo, it is the newest entry of the
+// user in force. For a redo, it is the entry that the newest undo disabled, unless a change that
+// the user made after that undo is in force (as for layers, store/journal/edits.cpp).
 Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, TableId table_id,
                                                  const std::string& user, bool redo) {
   auto row = STRATA_TRY(connection.query(
@@ -29,7 +29,8 @@ Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, Table
   return std::optional(row.integer(0, 0));
 }
 
-// Resolves the given cells of records, by key, or of columns, by id, as if the edit were flipped.
+// Returns the values of the given cells as if the edit `flipped` were enabled or disabled. Cells
+// belong to records, by key, or to columns, by id.
 template <class Subject>
 Result<std::map<Subject, Cells>> resolve(PgConnection& connection, TableId table_id,
                                          const char* subject,
@@ -96,7 +97,7 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
                                     std::int64_t sequence) {
   auto rows = STRATA_TRY(load_all_rows(connection, open.table.id, open.all));
   std::map<std::int64_t, Record> then;
-  std::map<std::int64_t, bool> touched;  // by key; true: it existed then
+  std::map<std::int64_t, bool> touched;  // by key; true if the record existed then
   for (Record& row : rows) then[row.key] = std::move(row);
   std::map<ColumnId, Cells> columns;
   STRATA_TRY(connection.each_row(
@@ -207,7 +208,7 @@ Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                                         : records[written.integer(i, 1)];
     const Cells after = cells_from(written.json(i, 2));
     for (const auto& [name, value] : after) names.insert(name);
-    // A record appears or disappears with all its values, also those that other users wrote.
+    // A record appears or disappears with all its values, also with values that other users wrote.
     if (after.contains("exists"))
       for (const Column& column : open.all) names.insert(to_string(column.id));
   }

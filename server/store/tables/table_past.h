@@ -8,7 +8,7 @@
 // Past states of a table, and the computation of undo.
 namespace strata::store {
 
-// Returns the records after a sequence, by key; `open` gets the columns of that time.
+// Returns the records after a sequence, by key. `open` gets the columns of that time.
 Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
                                     std::int64_t sequence);
 
@@ -20,8 +20,8 @@ struct PlannedUndo {
   UndoPlan plan;
   TableEdit edit;
 };
-// Follows the rule of domain/tables/cell_history. `conflict` if the user has nothing to undo or
-// redo.
+// Plans an undo or redo by the rule of domain/tables/cell_history. Returns a `conflict` error if
+// the user has nothing to undo or redo.
 Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                               const std::string& user, bool redo);
 

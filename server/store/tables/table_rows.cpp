@@ -13,7 +13,7 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 2000;  // of an INSERT: at most some MB of JSON for usual rows
+constexpr std::size_t kRowsAtOnce = 2000;  // per INSERT: at most some MB of JSON for usual rows
 
 std::string table_name(TableId table_id) { return "records.t" + to_string(table_id); }
 std::string column_name(const Column& column) { return "c" + to_string(column.id); }
@@ -38,8 +38,8 @@ const char* sql_type(ColumnKind kind) {
   }
 }
 
-// Returns the value as columns hold it: PostgreSQL prints times in a different form, and whole
-// numbers without a decimal point.
+// Returns the value as columns store it, because PostgreSQL prints times in another format, and
+// whole numbers without a decimal point.
 nlohmann::json value_of(const Column& column, const nlohmann::json& stored) {
   if (stored.is_null()) return stored;
   if (column.kind == ColumnKind::numeric) return stored.get<double>();
@@ -64,7 +64,7 @@ std::vector<Record> read_rows(const PgResult& rows, const std::vector<Column>& c
   return records;
 }
 
-// Returns the rows in the form for jsonb_populate_recordset.
+// Returns the rows as JSON for jsonb_populate_recordset.
 nlohmann::json rows_json(const std::vector<Column>& columns, std::span<const Record> rows) {
   nlohmann::json list = nlohmann::json::array();
   for (const Record& row : rows) {
@@ -89,21 +89,22 @@ PgArray array_of(std::span<const std::int64_t> keys) {
   return array;
 }
 
-// One sort criterion of rows as SQL: for a row `t`, and for a value that the end of a page stores
-// as text.
+// One sort criterion of rows as SQL, for a row `t` and for a value that the position of a page
+// stores as text.
 struct SortKey {
-  std::string value;                                               // the stored value
-  std::string here;                                                // compared value of a row
-  std::function<std::string(const std::string& parameter)> there;  // and of a stored value
+  std::string value;  // the stored value
+  std::string here;   // the compared value of a row
+  // the compared value of a stored value
+  std::function<std::string(const std::string& parameter)> there;
   bool descending = false;
 };
 struct SortKeys {
-  std::vector<SortKey> keys;  // the last one is unique
-  std::string joins;          // after FROM
+  std::vector<SortKey> keys;  // the last key is unique
+  std::string joins;          // SQL after FROM
 };
 
-// Texts are compared by this many characters, so that the end of a page stays short enough for a
-// URL.
+// The number of characters by which texts are compared, so that the position of a page is short
+// enough for a URL.
 constexpr int kSortedCharacters = 120;
 
 SortKey plain_key(const std::string& value, const std::string& type, bool descending) {
@@ -177,7 +178,7 @@ std::string order_by(const std::vector<SortKey>& keys) {
   return sql;
 }
 
-// Returns the place of a row: the values of the sort keys as texts, each once.
+// Returns SQL for the position of a row: the values of the sort keys as texts, each once.
 std::string place_of_row(const std::vector<SortKey>& keys) {
   std::string sql;
   for (std::size_t i = 0; i < keys.size(); ++i)
@@ -186,8 +187,8 @@ std::string place_of_row(const std::vector<SortKey>& keys) {
   return "to_jsonb(ARRAY[" + sql + "])";
 }
 
-// Returns the condition that a row follows a place, by the keys in turn; rows without a value
-// follow all rows with one.
+// Returns the condition that a row follows a position, by one key after the other. Rows without a
+// value follow all rows with a value.
 Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohmann::json& place,
                                   Params& params) {
   std::string sql, equal_so_far = "true";
@@ -214,7 +215,8 @@ Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohma
   return "(" + sql + ")";
 }
 
-// Returns the rows as `t`: those of the table, or past rows, which become a parameter.
+// Returns the FROM clause for rows `t`: the rows of the table, or past rows, which become a
+// parameter.
 std::string from_rows(TableId table_id, const std::vector<Column>& columns,
                       const std::optional<std::vector<Record>>& past, Params& params) {
   if (!past) return " FROM " + table_name(table_id) + " t";
@@ -228,7 +230,8 @@ Result<void> run(PgConnection& connection, const std::string& sql) {
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
-// An analyst's query must not block a change of the table (db/migrations/000011).
+// Makes sure that a query of an analyst does not block a change to the table
+// (db/migrations/000011).
 Result<void> make_way(PgConnection& connection, TableId table_id) {
   return run(connection, "SELECT analysis_make_way('" + table_name(table_id) + "')");
 }
@@ -243,7 +246,7 @@ Result<void> make_rows_table(PgConnection& connection, TableId table_id) {
 
 Result<void> drop_rows_table(PgConnection& connection, TableId table_id) {
   STRATA_TRY(make_way(connection, table_id));
-  // with its view (db/migrations/000011)
+  // CASCADE also drops its view (db/migrations/000011)
   return run(connection, "DROP TABLE " + table_name(table_id) + " CASCADE");
 }
 
@@ -307,7 +310,7 @@ Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
                                 joins + only + order_by(keys) + " LIMIT $" +
                                 std::to_string(count - 1) + " OFFSET $" + std::to_string(count),
                             params);
-  // Only the values of the place can fail here: they are external, and they are not texts of a
+  // Only the values of the position can fail here, because they are external and are not texts of a
   // condition.
   if (!rows && part.after && connection.sqlstate().starts_with("22")) return wrong_place();
   if (!rows) return tl::unexpected(rows.error());
@@ -340,7 +343,7 @@ Result<std::string> collation_of(PgConnection& connection, const std::string& la
 Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, TableId table_id,
                                                 Role seen_by, const std::string& collation,
                                                 int depth) {
-  // the title of a table may be a record of another table, and so on, possibly in a cycle
+  // The title column of a table may name records of another table, and so on, possibly in a cycle.
   constexpr int kDeepest = 3;
   auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
   std::vector<RecordOrder> order;

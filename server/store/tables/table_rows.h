@@ -13,26 +13,27 @@
 #include "store/pg/pg.h"
 #include "store/tables/records.h"
 
-// The rows of a project's table: records.t<id> with a column c<id> for each of its columns, also
-// for hidden ones. A period also has c<id>_first and c<id>_last, its days (core/text/edtf), which
-// sort it. Every identifier in these statements is a number that the server chose; values are
-// passed as parameters.
+// The rows of a table of a project: records.t<id> with a column c<id> for each of its columns, also
+// for hidden columns. A period also has c<id>_first and c<id>_last, its first and last day
+// (core/text/edtf), by which it is sorted. Every identifier in these statements is a number that
+// the server chose. Values are passed as parameters.
 namespace strata::store {
 
-// Sorts records by a column or (`column` 0) by key.
+// Sorts records by a column, or by key if `column` is 0.
 struct RecordOrder {
   ColumnId column = 0;
   bool descending = false;
-  // of texts (collation_of); empty: ignoring case
+  // collation of texts (collation_of); if empty, case is ignored
   std::string collation{};
-  std::optional<std::vector<std::int64_t>> keys{};  // of terms: the named records, in order
+  // for terms: the keys of the named records, in order
+  std::optional<std::vector<std::int64_t>> keys{};
 };
 
-// Returns PostgreSQL's collation for a language ("de-at"): for the language, for its base language,
-// or for all languages. Empty: PostgreSQL was built without ICU.
+// Returns the PostgreSQL collation for a language ("de-at"): that of the language, of its base
+// language, or of all languages. Returns an empty text if PostgreSQL was built without ICU.
 Result<std::string> collation_of(PgConnection& connection, const std::string& language);
-// Returns the keys of a table's records in reading order: the tree of a term list, otherwise by
-// title.
+// Returns the keys of the records of a table in reading order: in the order of the tree for a term
+// list, otherwise by title.
 Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, TableId table_id,
                                                 Role seen_by, const std::string& collation,
                                                 int depth = 0);
@@ -40,34 +41,35 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, TableI
 Result<void> make_rows_table(PgConnection& connection, TableId table_id);
 Result<void> drop_rows_table(PgConnection& connection, TableId table_id);
 Result<void> add_rows_column(PgConnection& connection, TableId table_id, const Column& column);
-// The index that keeps a column unique; dropping a missing index has no effect.
+// Make or drop the index that keeps a column unique. Dropping a missing index has no effect.
 Result<void> make_unique_index(PgConnection& connection, TableId table_id, const Column& column);
 Result<void> drop_unique_index(PgConnection& connection, TableId table_id, const Column& column);
 
-// `columns`: the columns to read.
+// Loads the rows with these keys. `columns` are the columns to read.
 Result<std::vector<Record>> load_rows(PgConnection& connection, TableId table_id,
                                       const std::vector<Column>& columns,
                                       std::span<const std::int64_t> keys);
 Result<std::vector<Record>> load_all_rows(PgConnection& connection, TableId table_id,
                                           const std::vector<Column>& columns);
-// A part of the rows, sorted. `where`: a condition over a row `t` (record_sql), empty for all,
-// whose parameters are the first of `params`. `past`: rows of another time, read in place of the
-// table's rows.
+// A part of the sorted rows.
 struct RowsPage {
   std::vector<Record> rows;
-  std::int64_t total = 0;                // of the rows where the condition is true
+  std::int64_t total = 0;                // number of rows where the condition is true
   std::optional<nlohmann::json> last{};  // RecordPage::last
 };
 struct RowsPart {
   std::int64_t limit = 100, offset = 0;
   std::optional<nlohmann::json> after{};  // RecordQuery::after
 };
+// Returns a part of the rows. `where` is a condition over a row `t` (record_sql), or empty for all
+// rows; its parameters are the first of `params`. `past` are rows of another time, which replace
+// the rows of the table.
 Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
                            const std::vector<Column>& columns,
                            const std::optional<std::vector<Record>>& past, const std::string& where,
                            Params params, std::span<const RecordOrder> order, const RowsPart& part);
-// Returns the numbers of an expression (record_sql) by key, where they are known; truths are 1 or
-// 0.
+// Returns the values of an expression (record_sql) by key, for the records where they are known. A
+// condition gives 1 or 0.
 Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, TableId table_id,
                                             const std::vector<Column>& columns,
                                             const std::optional<std::vector<Record>>& past,
@@ -78,23 +80,23 @@ Result<void> delete_rows(PgConnection& connection, TableId table_id,
 Result<void> insert_rows(PgConnection& connection, TableId table_id,
                          const std::vector<Column>& columns, std::span<const Record> rows);
 
-// Of `rows`, which are to be inserted: one whose value of the column already exists, in the table
-// or in an earlier row.
+// One of the rows to insert, if its value of the column already exists in the table or in an
+// earlier row.
 struct Taken {
   std::size_t row = 0;
   std::int64_t by_key = 0;
-  bool by_sent = false;  // in one of `rows`
+  bool by_sent = false;  // the other value is in one of the rows to insert
 };
 Result<std::optional<Taken>> taken_value(PgConnection& connection, TableId table_id,
                                          const Column& column, std::span<const Record> rows);
-// Returns two records with the same value, if there are any.
+// Returns two records with the same value of the column, if there are any.
 Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection& connection,
                                                                    TableId table_id,
                                                                    const Column& column);
-// Returns those of the keys, ascending, that no record has.
+// Returns the given keys that no record has, ascending.
 Result<std::vector<std::int64_t>> missing_rows(PgConnection& connection, TableId table_id,
                                                std::span<const std::int64_t> keys);
-// Returns a record whose term or relation `column` names one of the keys, and that key.
+// Returns a record that names one of the keys in `column`, a term or relation, and that key.
 Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(
     PgConnection& connection, TableId table_id, const Column& column,
     std::span<const std::int64_t> keys);

@@ -111,8 +111,8 @@ class Writer {
   }
 
  private:
-  // Changes the column definitions. Removed columns are hidden first, so that an added one may use
-  // their slug.
+  // Changes the column definitions. Removed columns are hidden first, so that an added column may
+  // use their slug.
   Result<void> change_columns() {
     for (auto& [id, after] : edit_.columns)
       before_columns_[id] = written_part(cells_of(*column_by_id(open_, id)), after);
@@ -204,8 +204,8 @@ class Writer {
     return {};
   }
 
-  // The caller checks new values, but values of the past fit the columns of the past, so they are
-  // checked again.
+  // The caller checks new values. Past values fit the columns of their time, so they are checked
+  // again against the present columns.
   void check_record(const Record& record) {
     const Cells& after = edit_.records.at(record.key);
     for (const Column& column : open_.table.columns) {
@@ -224,7 +224,7 @@ class Writer {
     }
   }
 
-  // Terms and relations must name existing records.
+  // Checks that terms and relations name existing records.
   Result<void> check_targets(const Column& column, std::span<const Record> rows) {
     std::set<std::int64_t> named;
     for (const Record& row : rows)
@@ -250,7 +250,7 @@ class Writer {
     return {};
   }
 
-  // Cells may list only attachments of the table, and picture columns only pictures.
+  // Checks that cells list only attachments of the table, and picture columns only pictures.
   Result<void> check_attached(const Column& column, std::span<const Record> rows) {
     std::set<std::int64_t> listed;
     for (const Record& row : rows)
@@ -286,8 +286,8 @@ class Writer {
     return {};
   }
 
-  // Written lines and points must lie on models of the project. Existing ones may lie on a deleted
-  // model, and undo may restore them.
+  // Checks that written lines and points are on models of the project. Existing lines and points
+  // may be on a deleted model, and undo may restore them.
   Result<void> check_marked(const Column& column, std::span<const Record> rows) {
     if (edit_.checks_values) return {};
     auto models = STRATA_TRY(connection_.query("SELECT id FROM models WHERE project_id = $1",
@@ -312,7 +312,7 @@ class Writer {
     return {};
   }
 
-  // A deleted record must not be named by another one.
+  // Checks that no other record names a deleted record.
   Result<void> check_named() {
     if (change_.deleted.empty()) return {};
     auto rows = STRATA_TRY(connection_.query(
@@ -337,7 +337,7 @@ class Writer {
     return {};
   }
 
-  // All records must satisfy a new column, or one with stricter rules.
+  // Checks that all records satisfy a new column, or a column with stricter rules.
   Result<void> keep_columns() {
     for (const auto& [id, after] : edit_.columns) {
       const Column& column = *column_by_id(open_, id);
@@ -412,8 +412,7 @@ class Writer {
             .integer(open_.table.version));
     if (!counted || !term_columns(open_.table))
       return counted ? Result<void>{} : tl::unexpected(counted.error());
-    // Layers that take their colors from the terms change, too (domain/tables/term_list,
-    // takes_term_colors).
+    // Layers with the colors of the terms change, too (domain/tables/term_list, takes_term_colors).
     auto colored = connection_.query(
         "UPDATE layers SET version = version + 1 WHERE table_id = $1 AND palette ->> 'mode' = 'categorical' AND "
         "palette -> 'points' = '[]' AND coalesce(palette ->> 'column', '') = ''",
@@ -556,7 +555,7 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
                   "There is no record " + std::to_string(missing->front()) + ".", "default");
   }
   const std::string requested = make_slug(column.slug.empty() ? column.name : column.slug);
-  // Reserved names in a list of records.
+  // These names are reserved in a list of records.
   std::set<std::string> used{"key", "version", "area-m2"};
   for (const Column& other : open.table.columns)
     if (other.id != column.id) used.insert(other.slug);

@@ -18,7 +18,8 @@ Result<Table> table_of(PgConnection& connection, TableId id, Role seen_by = Role
   return std::move(open.table);
 }
 
-// Refuses a column that the table does not show, and (stale) a version that is not the table's.
+// Returns a visible column. Returns an error if the table has no such column, and a `stale` error
+// for a version other than that of the table.
 Result<const Column*> shown_column(const OpenTable& open, ColumnId column_id,
                                    std::optional<std::int64_t> version) {
   if (version && *version != open.table.version) return stale("table");
@@ -32,8 +33,8 @@ Result<TableChange> refused_by_records(Result<TableChange> change) {
   return change;
 }
 
-// Moves the values of a column to a new one that replaces it; the entry lists the records whose
-// values are lost.
+// Moves the values of a column to a new column that replaces it. The entry lists the records that
+// lose values.
 Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Column& old,
                            Column column, const std::string& user) {
   auto made = STRATA_TRY(insert_column(connection, open, std::move(column)));
@@ -74,7 +75,7 @@ Result<std::vector<Table>> Tables::of_project(ProjectId project_id, Role seen_by
     std::vector<Table> tables;
     for (int i = 0; i < rows.rows(); ++i) {
       auto table = table_of(connection, rows.id<TableId>(i, 0), seen_by);
-      // deleted since the list was read
+      // the table was deleted after the list was read
       if (!table && table.error().code == ErrorCode::not_found) continue;
       if (!table) return tl::unexpected(table.error());
       tables.push_back(std::move(*table));
@@ -104,8 +105,8 @@ Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>
   STRATA_TRY(check_text(table.description, "description"));
   STRATA_TRY(check_labels(table.labels));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Table> {
-    // As for every other change: no other transaction may change the rows while the analysts' view
-    // of the new name is made.
+    // Lock the table, as for every other change. No other transaction may change the rows while the
+    // view for analysts is made with the new name.
     auto open = STRATA_TRY(lock_table(connection, table.id));
     if (table.title_column && table.title_column != open.table.title_column) {
       const auto title = std::ranges::find(open.table.columns, *table.title_column, &Column::id);
@@ -140,8 +141,8 @@ Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>
 Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
   auto gone = change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     STRATA_TRY(lock_table(connection, id));
-    // Erase layers that were erased from the Trash but whose content still exists: they must not
-    // keep the table.
+    // Erase the layers that were erased from the Trash but still have content, because the table
+    // cannot be deleted while they exist.
     auto layers = STRATA_TRY(connection.query(
         "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.table_id = $1 AND (l.erasing OR m.erasing)",
         Params().id(id)));
@@ -164,15 +165,15 @@ Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
                   "This table is still used by " + users.text(0, 0) +
                       ". Delete that layer or column first.");
     STRATA_TRY(drop_rows_table(connection, id));
-    // Its own columns may have it as their target.
+    // Columns of the table may have the table itself as their target.
     auto columns =
         connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().id(id));
     if (!columns) return tl::unexpected(columns.error());
     auto table = connection.query("DELETE FROM record_tables WHERE id = $1", Params().id(id));
     return table ? Result<void>{} : tl::unexpected(table.error());
   });
-  // After the transaction, since a transaction that attaches files holds a blob while it waits for
-  // the tables. If this fails, the next start repeats it.
+  // Done after the transaction, because a transaction that attaches files locks a blob while it
+  // waits for the tables. If it fails, the next start repeats it.
   if (gone) (void)Attachments(pool_).drop_orphans();
   return gone;
 }
@@ -187,7 +188,7 @@ Result<std::vector<Layer>> Layers::of_table(TableId table_id, Role seen_by) {
   for (int i = 0; i < refs.rows(); ++i) {
     auto found = find(refs.id<ModelId>(i, 0), std::to_string(refs.integer(i, 1)), seen_by);
     if (!found && found.error().code == ErrorCode::not_found)
-      continue;  // deleted since the list was read, or not visible
+      continue;  // the layer was deleted after the list was read, or is not visible
     if (!found) return tl::unexpected(found.error());
     layers.push_back(std::move(*found));
   }

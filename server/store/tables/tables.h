@@ -19,12 +19,12 @@ namespace strata::store {
 
 class Pool;
 
-// Several tables and the terms of term lists among them, all or none: if one of the changes has
-// problems, nothing was made. conflict: the project has a table of that name. Terms are the first
-// entry of their table's journal.
+// A table to create, with its terms if it is a term list. The terms are the first entry in the
+// journal of the table.
 struct NewTable {
   Table table;
-  // of columns that name one of the tables before it: column → table, by their places
+  // for columns that refer to an earlier table of the list: index of the column → index of the
+  // table
   std::map<std::size_t, std::size_t> targets{};
   std::optional<TermList> terms{};
 };
@@ -34,57 +34,62 @@ struct TableHistory {
   std::int64_t total = 0;
 };
 
-// Tables of a project with their columns, by id or slug. Changes of columns and records are entries
-// of the table's journal, each by one user. Results contain the columns that the role sees; other
-// columns do not appear, neither by name nor in the past. A TableChange has all columns. Part of
-// Store: its rules for threads and errors hold.
+// Tables of a project with their columns, by id or slug. Changes to columns and records are entries
+// in the journal of the table, each by one user. Results contain only the columns that the role
+// sees. The other columns do not appear, neither by name nor in the past. A TableChange has all
+// columns. Part of Store, with the same rules for threads and errors.
 class Tables {
  public:
   explicit Tables(Pool& pool) : pool_(pool) {}
 
-  Result<std::vector<Table>> of_project(ProjectId project_id, Role seen_by);  // by name
+  Result<std::vector<Table>> of_project(ProjectId project_id, Role seen_by);  // sorted by name
   Result<Table> find(const std::string& ref, Role seen_by);
-  // with its columns
+  // creates the table with its columns
   Result<Table> create(const Table& table, const IdempotentResponse<Table>& answer = {});
-  // name, labels, description
+  // changes name, labels and description
   Result<Table> update(const Table& table, const IdempotentResponse<Table>& answer = {});
-  // refused (conflict) while another object names it
+  // returns a `conflict` error while another object refers to the table
   Result<void> remove(TableId id, const IdempotentResponse<>& answer = {});
+  // Creates all tables or none: if one of the changes has problems, no table was created. Returns a
+  // `conflict` error if the project has a table of the same name.
   Result<std::vector<TableChange>> create_several(
       const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
       const std::string& op, const IdempotentResponse<std::vector<TableChange>>& answer = {});
-  // Imports terms into a term list (conflict: the table is not one) as one entry of its journal:
-  // terms whose URI or code exists change that record, the others are new, and properties that the
-  // text lacks stay. All or none; problems name the term by its place.
+  // Imports all terms or none into a term list, as one entry of its journal. Returns a `conflict`
+  // error if the table is not a term list. A term whose URI or code exists changes that record;
+  // other terms are new. Properties that the text does not have are kept. Problems name the term by
+  // its index.
   Result<TableChange> import_terms(TableId table_id, const TermList& list, bool dry_run,
                                    const std::string& user,
                                    const IdempotentResponse<TableChange>& answer = {});
-  // If the kind or target changes, a new column replaces the old one and takes the values that it
-  // can hold: `record` of the change contains the counts (`converted`, `lost`, `lost_keys`).
   Result<TableChange> create_column(TableId table_id, const Column& column, const std::string& user,
                                     const IdempotentResponse<TableChange>& answer = {});
+  // If the kind or target changes, a new column replaces the old one and takes the values that it
+  // can store. `record` of the change contains the counts (`converted`, `lost`, `lost_keys`).
   Result<TableChange> update_column(TableId table_id, const Column& column,
                                     std::optional<std::int64_t> version, const std::string& user,
                                     const IdempotentResponse<TableChange>& answer = {});
-  // Sets the visibility of the column, now and in the past: this is no entry of the journal, so
-  // that undo makes nothing visible again. If version equals. Refused (invalid): a column that a
-  // term list needs, or a required column that users who write records would not see.
+  // Sets the visibility of the column, now and in the past, if `version` is the present version.
+  // The change is not an entry of the journal, so undo cannot make a column visible again. Returns
+  // an `invalid` error for a column that a term list needs, and for a required column that users
+  // who write records would not see.
   Result<Table> show_column(TableId table_id, ColumnId column_id, Visibility visibility,
                             std::int64_t version, const IdempotentResponse<Table>& answer = {});
   Result<TableChange> drop_column(TableId table_id, ColumnId column_id,
                                   std::optional<std::int64_t> version, const std::string& user,
                                   const IdempotentResponse<TableChange>& answer = {});
-  // Returns the sequence of the last change until a time, as `sequence_at`.
+  // Returns the sequence of the last change up to a time, as Journal::sequence_at.
   Result<std::int64_t> sequence_at(TableId table_id, const std::string& utc);
-  // The same until an edit of a model was made.
+  // Returns the sequence of the last change up to the time of an edit of a model.
   Result<std::int64_t> sequence_when(TableId table_id, ModelId model_id, std::int64_t sequence);
-  // Leaves out changes of cells that the role does not see, and their descriptions in the entries.
-  // Newest first; `before`: only those with lower sequences.
+  // Returns the entries of the journal, newest first. Leaves out changes to cells that the role
+  // does not see, and their descriptions in the entries. `before` selects only entries with lower
+  // sequences.
   Result<TableHistory> history(TableId table_id, Role seen_by, std::optional<std::int64_t> key,
                                int limit, int offset, std::optional<std::int64_t> before = {});
-  // Plans to undo the user's newest entry in force, or to redo the one that was undone last;
-  // `conflict` if no such entry exists. Undo is refused (stale) if the table changed since the
-  // plan.
+  // Plans to undo the newest entry of the user in force, or to redo the entry that was undone last.
+  // Returns a `conflict` error if no such entry exists. `undo` returns a `stale` error if the table
+  // has changed since the plan.
   Result<UndoPlan> plan_undo(TableId table_id, const std::string& user, bool redo);
   Result<TableChange> undo(TableId table_id, const std::string& user, bool redo,
                            std::int64_t planned_at,

@@ -15,7 +15,7 @@ nlohmann::json text_or_null(const std::string& text) {
   return text.empty() ? nlohmann::json() : nlohmann::json(text);
 }
 
-// Imports terms into a term list: finds the record of each term, and makes cells of the changes.
+// Imports terms into a term list: finds the record of each term, and converts the changes to cells.
 class TermIntake {
  public:
   TermIntake(PgConnection& connection, OpenTable& open, const TermList& list)
@@ -44,9 +44,10 @@ class TermIntake {
   }
 
  private:
-  // Adds columns that the text has and the list lacks, in the same entry as the terms.
+  // Adds the columns that are in the text but not in the list, in the same entry as the terms.
   Result<void> add_columns() {
-    // Written columns are found among all columns: new ones are hidden until the edit shows them.
+    // New columns are hidden until the edit shows them. They are also added to `open_.all`, where
+    // written columns are searched.
     for (const Column& column : open_.table.columns) columns_[column.slug] = column;
     for (const std::string& slug : list_.columns) {
       if (columns_.contains(slug)) continue;
@@ -62,7 +63,7 @@ class TermIntake {
     return {};
   }
 
-  // Finds the record of each term: by URI, otherwise by code, otherwise a new record.
+  // Finds the record of each term, by URI or else by code. Without one, the term gets a new record.
   Result<void> find_keys() {
     auto rows = STRATA_TRY(load_all_rows(connection_, open_.table.id, open_.all));
     for (Record& row : rows) {
@@ -99,8 +100,8 @@ class TermIntake {
         add_problem(i, {ErrorCode::invalid, "Duplicate URI",
                         "Two terms have this URI: " + term.uri.substr(0, 300) + ".", "uri"});
     }
-    // From here on, codes and URIs have their new meaning: a term may take a code that another one
-    // gives up.
+    // After this, codes and URIs refer to the changed records, because a term may get the code that
+    // another term loses.
     for (const auto& [key, index] : index_of_) {
       const auto held = now_.find(key);
       if (held == now_.end()) continue;
@@ -157,13 +158,14 @@ class TermIntake {
                     "Neither the list nor the file has a term \"" + term.parent + "\".", "parent");
       return nlohmann::json(parent->second);
     }
-    // A vocabulary may be part of another one, whose terms are not in the list.
+    // A vocabulary may be part of another vocabulary with terms that are not in the list.
     const auto parent =
         term.parent_uri.empty() ? key_of_uri_.end() : key_of_uri_.find(term.parent_uri);
     return parent == key_of_uri_.end() ? nlohmann::json() : nlohmann::json(parent->second);
   }
 
-  // Refuses a term below itself, also through terms that are already in the list.
+  // Refuses a term that is below itself in the tree, also through terms that are already in the
+  // list.
   void refuse_circles() {
     const ColumnId column = columns_.at("parent").id;
     Relation relation;
@@ -217,12 +219,12 @@ class TermIntake {
   std::map<std::string, Column> columns_;  // by slug
   std::map<std::int64_t, Record> now_;
   std::map<std::string, std::int64_t> key_of_code_, key_of_uri_;
-  std::vector<std::int64_t> keys_;                // of the terms
-  std::map<std::int64_t, std::size_t> index_of_;  // index of the record's term
+  std::vector<std::int64_t> keys_;                // keys of the terms
+  std::map<std::int64_t, std::size_t> index_of_;  // index of the term of the record
   std::vector<RowError> problems_;
 };
 
-// Returns the table with its terms, or (`problems`) why they cannot be in it.
+// Returns the table with its terms, or the reasons why it cannot contain them (`problems`).
 Result<TableChange> insert_with_terms(PgConnection& connection, Table table, const TermList* terms,
                                       const std::string& user, const std::string& op) {
   auto taken = STRATA_TRY(connection.query(
@@ -254,7 +256,7 @@ Result<std::vector<TableChange>> Tables::create_several(
     for (const NewTable& new_table : tables) {
       Table table = new_table.table;
       STRATA_TRY(check_text(table.name, "name"));
-      // The earlier tables, by their places; they have ids now.
+      // The targets are indices of earlier tables, which have ids now.
       for (const auto& [column, place] : new_table.targets)
         table.columns.at(column).target = made.at(place).table.id;
       auto change = STRATA_TRY(insert_with_terms(
@@ -294,7 +296,8 @@ Result<TableChange> Tables::import_terms(TableId table_id, const TermList& list,
 }
 
 Result<std::optional<Palette>> term_palette_of(PgConnection& connection, TableId table_id) {
-  // All users who see the layer see its palette.
+  // Only columns that are visible to all roles, because all users who see the layer see its
+  // palette.
   auto open = STRATA_TRY(read_table(connection, table_id, least_role(Visibility::everyone)));
   const auto columns = term_columns(open.table);
   if (!columns) return std::optional<Palette>();
