@@ -8,8 +8,8 @@
 
 namespace strata::app {
 
-// The colors of a model's vertices with these layers, from bottom to top, above the visible surface
-// images. `memory` is reserved for the colors as long as they exist. `compose_vertices` refuses a
+// The vertex colors of a model: the visible surface images, and over them the layers in their order
+// from bottom to top. `memory` is reserved for the colors as long as they exist. `compose_vertices` refuses a
 // palette that uses a column invisible to the role (422), and an image that exceeds the memory
 // limit (503). Blocks.
 struct ComposedVertices {

@@ -126,8 +126,7 @@ Result<MapValues> polygon_values(const MapOptions& options, const MapFiles& file
                 "Send either `value` or `attribute`, but not both.", "value");
   if (!choice.names.empty() && choice.attribute.empty())
     return fail(ErrorCode::invalid, "Parameter missing",
-                "`names` requires `attribute`, because it contains names for the numbers in that "
-                "attribute.",
+                "`names` contains names for the numbers in an attribute. Send `attribute` too.",
                 "names");
   choice.value = options.value.value_or(0);
   const auto features = STRATA_TRY(features_of(files, target.room.model()));

@@ -14,7 +14,8 @@ namespace strata {
 struct Tool {
   ToolId id = 0;
   std::string name;
-  // Unique among the tools that are not deleted. Not all digits, and not `disc` or `square`.
+  // Unique among the tools that are not deleted. Must not consist only of digits, and must not
+  // be `disc` or `square`.
   std::string slug;
   bool deleted = false;
   std::int64_t version = 1;

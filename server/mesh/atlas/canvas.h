@@ -40,8 +40,8 @@ class Canvas {
   int longest_free(int y);
 
   const int width_, height_, gap_, word_count_, stride_;
-  // Bit x of a row at level j is set if any of the texels x … x + 2^j - 1 is occupied. Rows have
-  // extra words that count as free texels for reads beyond the end.
+  // Bit x of a row at level j is set if any of the texels x … x + 2^j - 1 is occupied. Each
+  // row ends with extra words, so reads beyond its end return free texels.
   std::vector<std::vector<Word>> levels_;
   // For each row, the longest run of free texels between the margins. It is measured on demand. A
   // value less than 0 means not measured yet.

@@ -17,8 +17,8 @@ namespace strata::render {
 // Around the part of the floor that the shadow covers.
 FrameRequest::Box box_of(const mesh::ContactShadow& shadow);
 
-// Darkens the background of a frame by the model's shadow on the floor. Where the frame shows
-// surface, it stays as it is. Sets all state it needs, and resets scissor, depth test and blending.
+// Darkens the background of a frame by the model's shadow on the floor. Pixels that
+// show the surface do not change. Sets all state it needs, and resets scissor, depth test and blending.
 class ContactShadowPass {
  public:
   static Result<ContactShadowPass> create(const std::filesystem::path& shader_dir);

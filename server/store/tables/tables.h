@@ -78,7 +78,7 @@ class Tables {
   Result<TableChange> drop_column(TableId table_id, ColumnId column_id,
                                   std::optional<std::int64_t> version, const std::string& user,
                                   const IdempotentResponse<TableChange>& answer = {});
-  // Returns the sequence of the last change up to a time, as Journal::sequence_at.
+  // Returns the sequence of the last change up to a time, like Journal::sequence_at.
   Result<std::int64_t> sequence_at(TableId table_id, const std::string& utc);
   // Returns the sequence of the last change up to the time of an edit of a model.
   Result<std::int64_t> sequence_when(TableId table_id, ModelId model_id, std::int64_t sequence);

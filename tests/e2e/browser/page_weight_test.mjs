@@ -1,5 +1,5 @@
-// The bytes that a browser loads before it first shows a page, with the larger encoding (gzip,
-// which browsers also accept over plain http).
+// The number of bytes that a browser loads before it first shows a page. They are counted with
+// gzip, which is larger than Brotli, because browsers accept only gzip over plain HTTP.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";

@@ -257,7 +257,7 @@ export const laterTexts = {
     perimeter: "Perimeter of the polygon",
     area_hint: "Area of the flat polygon through the points, not of the surface inside it.",
     off_plane: (length: string) =>
-      `The points are up to ${length} from the plane. The area is that of their projection.`,
+      `The points are up to ${length} away from the plane. The area is that of the outline projected onto the plane.`,
     gaps: (n: number) =>
       `The line leaves the surface ${n === 1 ? "once" : `${formatCount(n)} times`}. Gaps are not counted.`,
     busy: "…",

@@ -62,7 +62,7 @@ export function onTheme(listener: () => void): () => void {
   return () => listeners.delete(listener);
 }
 
-/** Returns the theme's background of the model. Null means the server's default. */
+/** Returns the background that the theme defines for the model. Null means the server's default. */
 export function stageBackground(): Background | null {
   const style = getComputedStyle(document.documentElement);
   const [top, bottom] = [

@@ -119,7 +119,7 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "`into` paints on a layer. This requires the role annotator.", "into");
+                "To paint on a layer with `into`, you need the role annotator.", "into");
   if (!body.where || body.within || body.at || body.changed)
     return fail(ErrorCode::invalid, "Cannot paint this area",
                 "`into` paints where a condition is true now. Send `where` without `within`, "

@@ -402,13 +402,14 @@ export class StrataColorDialog extends LitElement {
 
   private show(palette: Palette): void {
     this._palette = palette;
-    this.session.layers.setPalette(this.layer, palette);
+    this.session.layers.previewPalette(this.layer, palette);
   }
 
   // ── saving and closing ─────────────────────────────────────────────────────────────────────────
 
   private async keep(forEveryone: boolean): Promise<void> {
     const { layer, _palette: palette } = this;
+    if (!forEveryone && palette) this.session.layers.setPalette(layer, palette);
     if (forEveryone && palette) {
       this._working = true;
       try {

@@ -26,7 +26,7 @@ export const kSurfaceNames = [
 const kEverywhere = 4; // the number of first names that also work in conditions over stored layers
 
 export interface Name extends Suggestion {
-  /** A name for users. The default is the text itself. */
+  /** The name that users see. The default is the text itself. */
   label?: string;
   /** The value of a class. After a comparison with the layer, only the value is inserted. */
   value?: number;

@@ -25,6 +25,8 @@ export class LayerList {
   private _own = new Map<number, LayerShown>(); // the stored settings
   private _atView = false;
   private readonly _keeper: PersonalViewKeeper;
+  /** Palettes that a dialog shows until the user chooses. They are not stored as a default. */
+  private readonly _previewed = new Map<number, Palette>();
   /** Records that are highlighted temporarily. They take precedence over those of a view. */
   private readonly _highlights = new Map<number, Highlight>();
 
@@ -82,8 +84,14 @@ export class LayerList {
   setOpacity(layer: Layer, opacity: number): void {
     this.override([layer], { opacity });
   }
+  /** Shows a palette until the next call of setPalette. */
+  previewPalette(layer: Layer, palette: Palette): void {
+    this.setPalette(layer, palette);
+    this._previewed.set(layer.id, palette);
+  }
   /** Null stands for the layer's own palette. */
   setPalette(layer: Layer, palette: Palette | null): void {
+    this._previewed.delete(layer.id);
     for (const shown of [this._overrides, this._own]) {
       const { palette: _, ...rest } = shown.get(layer.id) ?? {};
       shown.set(layer.id, palette ? { ...rest, palette } : rest);
@@ -152,7 +160,7 @@ export class LayerList {
         this.opacity(layer),
         this.palette(layer),
       ];
-      const recolored = !samePalette(palette, layer.palette);
+      const recolored = !this._previewed.has(layer.id) && !samePalette(palette, layer.palette);
       const order = this.order(layer);
       if (
         visible === layer.visible &&
@@ -164,6 +172,10 @@ export class LayerList {
       await this.change(layer, { visible, opacity, order, ...(recolored ? { palette } : {}) });
     }
     this.resetOverrides();
+    for (const [id, palette] of [...this._previewed]) {
+      const layer = this.find(id);
+      if (layer) this.previewPalette(layer, palette);
+    }
   }
 
   // ── shared state ───────────────────────────────────────────────────────────────────────────────
