@@ -3,68 +3,68 @@
 /** Point or direction in space. */
 export type Point3 = [number, number, number];
 
-/** Pixel of a camera's window, or a texture coordinate. */
+/** Pixel in the window of a camera, or texture coordinate. */
 export type Point2 = [number, number];
 
-/** 4 × 4 matrix. Sixteen numbers, column-major. */
+/** 4 × 4 matrix. Sixteen numbers in column-major order. */
 export type Matrix = number[];
 
-/** Plane in space. [a, b, c, d]: space where a x + b y + c z + d is below 0 is cut away. World coordinates. */
+/** Plane in space. Four numbers [a, b, c, d]. The plane cuts away all points for which a x + b y + c z + d is below 0, in world coordinates. */
 export type Plane = [number, number, number, number];
 
-/** Planes that cut the model open. A box has six. Parts that are cut away are not visible, cannot be picked and cannot be painted. Where the inside of the solid would be visible, the cut is drawn closed. */
+/** Planes that cut the model open. A box consists of six planes. Parts that are cut away are not visible, and cannot be picked or painted. Where a cut would show the inside of the solid, the cut is drawn as a closed face. */
 export type Section = Plane[];
 
-/** Pointer path. Pixels of the camera's window. Consecutive points are joined; one point is a dab. */
+/** Pointer path. Pixels in the window of the camera. Consecutive points are joined. A path with only one point is a dab. */
 export type Path = Point2[];
 
-/** Kind of problem. A stable reference on this server. Let programs decide by it; `/problems` describes each. */
+/** Kind of problem. A stable URI reference, relative to the server. Programs should check this member. The page `/problems` describes all kinds. */
 export type ProblemType = "/problems#malformed" | "/problems#unauthenticated" | "/problems#forbidden" | "/problems#not_found" | "/problems#method_not_allowed" | "/problems#not_acceptable" | "/problems#too_slow" | "/problems#conflict" | "/problems#superseded" | "/problems#gone" | "/problems#stale" | "/problems#too_large" | "/problems#unsupported" | "/problems#range_not_satisfied" | "/problems#misdirected" | "/problems#invalid" | "/problems#upgrade_required" | "/problems#version_required" | "/problems#too_many_requests" | "/problems#head_too_large" | "/problems#cancelled" | "/problems#internal" | "/problems#not_implemented" | "/problems#bad_gateway" | "/problems#busy" | "/problems#unavailable" | "/problems#timed_out" | "/problems#gpu_lost" | "/problems#out_of_memory" | "/problems#storage_full";
 
-/** Kind of mistake in a condition or formula. Stable, as `type`. New ones may be added. */
+/** Kind of mistake in a condition or formula. Existing values do not change, but new values can be added. */
 export type ProblemReason = "syntax" | "expects_condition" | "expects_number" | "unknown_layer" | "unknown_column" | "unknown_function" | "unknown_choice" | "unit" | "wrong_type" | "computed_layers_only" | "too_large";
 
-/** #rrggbb, sRGB. */
+/** sRGB color as #rrggbb. */
 export type BackgroundColor = string;
 
-/** Background of a picture. A gradient from top to bottom. */
+/** Background of an image. A color gradient from top to bottom. */
 export interface Background {
   top: BackgroundColor;
   bottom: BackgroundColor;
 }
 
-/** Share of the brush radius at each point. One for each point of the path: the pressure of a pen. Absent: the whole radius. */
+/** Fraction of the brush radius at each point. One number for each point of the path, for example from the pressure of a pen. Default: the full radius at all points. */
 export type Widths = number[];
 
 /** Table by id or slug. */
 export type TableRef = number | string;
 
-/** Names by language. Keys are language tags (BCP 47): es, pt-BR. */
+/** Names by language. Keys are language tags (BCP 47), such as es or pt-BR. */
 export type Labels = Record<string, string>;
 
-/** Descriptions by language. Keys are language tags (BCP 47): es, pt-BR. */
+/** Descriptions by language. Keys are language tags (BCP 47), such as es or pt-BR. */
 export type Descriptions = Record<string, string>;
 
 /** Kind of column. */
 export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation" | "picture" | "document" | "line" | "point";
 
-/** Value of a record in a column. Strings: texts, dates (2024-02-29), timestamps (RFC 3339, returned in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses. A term is a key of its target table, and a relation a list of keys. Pictures and documents are lists of ids of attachments. Lines and points are lists of marks. Null: no value. */
+/** Value of a record in a column. Strings contain texts, dates (2024-02-29), timestamps (RFC 3339, returned in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses. A term is a key of its target table. A relation is a list of keys. Pictures and documents are lists of attachment ids. Lines and points are lists of marks. Null means no value. */
 export type CellValue = string | number | boolean | number[] | null | Mark[];
 
-/** Place of a line or point. */
+/** Position of a point, or of a vertex of a line. */
 export type MarkPlace = [number, number, number];
 
-/** Line or point of a record on a model. A line has two places or more, a point has one. World coordinates in the model's unit. A cell has at most 10 000 places. */
+/** Line or point of a record on a model. A line has at least two positions, and a point has one. Positions are world coordinates in the model's unit. A cell can contain at most 10 000 positions. */
 export interface Mark {
   /** Id of the model. */
   model: number;
   coordinates: MarkPlace[];
 }
 
-/** Values by column. By the slug of the column, or its id. */
+/** Values by column. Keys are the slugs or ids of columns. */
 export type CellValues = Record<string, CellValue>;
 
-/** Who can see it, among those who can see the project. public: all; team: annotators and above; private: curators and above. For all others it does not exist. */
+/** Who can see an item, among the users who can see the project. public: all of these users. team: annotators and above. private: curators and above. For all other users, the item does not exist. */
 export type Visibility = "public" | "team" | "private";
 
 /** Column of a table. */
@@ -80,7 +80,7 @@ export interface Column {
   default?: CellValue;
   comment: string;
   choices?: string[];
-  /** Id of the table. */
+  /** Id of the table whose records the column refers to. */
   target?: number;
   minimum?: number;
   maximum?: number;
@@ -88,89 +88,89 @@ export interface Column {
   visibility: Visibility;
 }
 
-/** Table of a project. Layers of records store the keys of its records. */
+/** Table of a project. Layers of records store the keys of the records in this table. */
 export interface Table {
   id: number;
   /** Id of the project. */
   project: number;
   name: string;
   slug: string;
-  /** A term list has three columns: `code`, a required and unique text; `label`, a text; and `parent`, a term of the table itself. */
+  /** A term list has at least three columns: `code` (a required and unique text), `label` (a text) and `parent` (a term of the same table). */
   kind: "records" | "terms";
   labels: Labels;
   description: string;
   columns: Column[];
-  /** Id of the column with the titles of records. It cannot hold a list or a boolean. Absent: the first required and unique text column, otherwise one that is either, otherwise any text column. */
+  /** Id of the column that contains the titles of records. It cannot be a column of lists or booleans. If absent, the server uses the first text column that is required and unique. If no such column exists, it uses one that is required or unique, or else any text column. */
   title_column?: number;
   /** Number of records. */
   records: number;
-  /** Sequence of the last change of columns or records. */
+  /** Sequence of the last change to columns or records. */
   sequence: number;
 }
 
 /** Record of a table. */
 export interface TableRecord {
-  /** Key of the record, as texels hold it. */
+  /** Key of the record, which texels store. */
   key: number;
-  /** The table's sequence at the last change of the record. */
+  /** Sequence of the table at the last change to the record. */
   version: number;
-  /** By the slug of the column. */
+  /** Keys are the slugs of columns. */
   values: CellValues;
-  /** Under a layer: the area of the record on the layer. */
+  /** In lists of a layer, the area of the record on the layer. */
   area_m2?: number;
-  /** If the table has columns of lines: the length of the record's lines; under a layer, of those on its model. */
+  /** Total length of the record's lines, if the table has line columns. In lists of a layer, only lines on the model of the layer are included. */
   length_m?: number;
-  /** If the table has columns of points: the number of the record's points; under a layer, of those on its model. */
+  /** Number of the record's points, if the table has point columns. In lists of a layer, only points on the model of the layer are included. */
   point_count?: number;
 }
 
-/** Color of a person. Color of the account, the same everywhere and always. White letters are legible on it. */
+/** Color of a user. The color of the account, which never changes. White text is legible on this color. */
 export type PersonColor = string;
 
-/** State of a thread. */
+/** State of a comment thread. */
 export type CommentState = "open" | "resolved";
 
-/** Person who resolved a thread. */
+/** User who resolved a thread. */
 export interface CommentResolution {
   user: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
 }
 
-/** Comment on a model. The first comment of a thread has place and state; replies have `thread`. */
+/** Comment on a model. The first comment of a thread contains the position and the state. Replies contain `thread`. */
 export interface Comment {
   id: number;
   /** Id of the model. */
   model: number;
-  /** For a reply: id of the thread's first comment. */
+  /** In a reply, the id of the first comment of the thread. */
   thread?: number;
-  /** On the surface; world coordinates. */
+  /** Position on the surface, in world coordinates. */
   position?: Point3;
   normal?: Point3;
-  /** Id of the layer that the comment is about, while the layer exists. */
+  /** Id of the layer that the comment is about. Absent if the layer no longer exists. */
   layer?: number;
-  /** With `record`: id of its table. */
+  /** With `record`, the id of its table. */
   table?: number;
-  /** Key of the record that the comment is about, while its table exists. */
+  /** Key of the record that the comment is about. Absent if its table no longer exists. */
   record?: number;
   state?: CommentState;
   resolved?: CommentResolution;
-  /** Plain text; empty if the comment was deleted. */
+  /** Plain text. Empty if the comment was deleted. */
   text: string;
   user: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
-  /** Time of the last change of the text. */
+  /** Time of the last change to the text. */
   edited?: string;
-  /** The comment was deleted, and stays for its replies. */
+  /** true: the comment was deleted, but stays because it has replies. */
   deleted: boolean;
   version: number;
 }
@@ -178,47 +178,47 @@ export interface Comment {
 /** Layer by id or slug. */
 export type LayerRef = number | string;
 
-/** UUID. Canonical text form: 8-4-4-4-12 hexadecimal digits. */
+/** UUID. Canonical text format: 8-4-4-4-12 hexadecimal digits. */
 export type Uuid = string;
 
-/** Camera. OpenGL clip space and world coordinates; perspective or orthographic. Pixels of other members are those of width × height. */
+/** Camera. The camera follows the OpenGL conventions for world coordinates and clip space. The projection can be perspective or orthographic. Pixels in other members refer to a window of width × height pixels. */
 export interface Camera {
-  /** From world to eye coordinates. */
+  /** Matrix from world to eye coordinates. */
   view: Matrix;
-  /** From eye to clip coordinates. */
+  /** Matrix from eye to clip coordinates. */
   projection: Matrix;
   width: number;
   height: number;
   section?: Section;
 }
 
-/** Brush shape. `disc`, `square`, or a brush shape of the site by id or slug. A path sweeps it without steps. */
+/** Brush shape. `disc`, `square`, or the id or slug of a brush shape of the site. The brush moves continuously along a path. */
 export type ToolShape = number | string;
 
-/** Brush shape of the site. A raster of 256 × 256 cells over the square of side 2 · radius. It never changes. */
+/** Brush shape of the site. A raster of 256 × 256 cells that covers a square with a side of 2 · radius. It never changes. */
 export interface Tool {
   id: number;
   name: string;
   slug: string;
-  /** The shape is no longer listed. It is kept because edits may have been made with it. */
+  /** true: the shape was deleted and is no longer listed. The server keeps it because existing edits can refer to it. */
   deleted: boolean;
 }
 
-/** Fixed depth bias. How far behind the visible surface a texel can be and still be painted, in window depth: 0 at the near plane, 1 at the far plane. Absent: it follows the model's size and the slope of the surface. */
+/** Fixed depth bias. Maximum distance of a painted texel behind the visible surface, in window depth (0 at the near plane, 1 at the far plane). By default, the server derives it from the size of the model and the slope of the surface. */
 export type DepthBias = number;
 
-/** Largest angle at which a surface is painted. Degrees between the direction to the eye and the normal of the surface, in the texel's pixel of the camera's window. Surfaces at a larger angle are left out. Not with `through`. Absent: no limit. */
+/** Maximum angle at which a surface is painted. Angle in degrees between the direction to the eye and the surface normal, at the pixel of the texel. Surfaces at a larger angle are not painted. Cannot be combined with `through`. Default: no limit. */
 export type SlantLimit = number;
 
-/** Stroke. Sweeps the brush along a path that a camera sees. Needs a value, unless it erases. */
+/** Stroke. Moves the brush along a path in the window of a camera. The stroke must contain a value, unless it erases. */
 export interface EditStroke {
   op: "stroke";
-  /** In the layer's type; ignored for erasing. Default: 0. */
+  /** Value of the layer's type. Ignored if the edit erases. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
   camera: Camera;
-  /** Radius in window pixels. */
+  /** Radius in pixels of the window. */
   radius_px?: number;
   /** Radius in millimeters on the object. */
   radius_mm?: number;
@@ -226,13 +226,13 @@ export interface EditStroke {
   shape?: ToolShape;
   path: Path;
   widths?: Widths;
-  /** Also paint hidden surfaces. Default: false. */
+  /** true: also paint hidden surfaces. Default: false. */
   through?: boolean;
   depth_bias?: DepthBias;
   max_angle_deg?: SlantLimit;
 }
 
-/** Place on the surface. The surface at a pixel of a view, or the surface point nearest to a point in space. */
+/** Point on the surface. The point of the surface at a pixel of a view, or the point of the surface that is nearest to a point in space. */
 export interface SurfacePlace {
   point?: Point3;
   camera?: Camera;
@@ -240,78 +240,78 @@ export interface SurfacePlace {
   y?: number;
 }
 
-/** Fill. Gives a value to a part of the surface. `where`: every texel where the expression is true; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: the surface that is connected with the place and has the same value, or also has no value. */
+/** Fill. Sets a part of the surface to a value. `where`: all texels where the expression is true (`true` fills the whole surface). `island`: the connected piece of the surface at a point. `connected`: the surface that is connected to a point and has the same value as this point, or no value if the point has none. Seams of the atlas do not limit a fill. */
 export interface EditFill {
   op: "fill";
-  /** In the layer's type; ignored for erasing. Default: 0. */
+  /** Value of the layer's type. Ignored if the edit erases. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
   mode: "where" | "island" | "connected";
-  /** With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not valid(cracks)`. */
+  /** With mode `where`, a condition over the layers of the model, such as `moisture > 0.3 and not valid(cracks)`. */
   where?: string;
-  /** With the other modes: the place where the fill begins. */
+  /** With the other modes, the point where the fill begins. */
   at?: SurfacePlace;
 }
 
-/** Outline of an area. Pixels of the camera's window; the last point is joined to the first. If the outline crosses itself, areas that it surrounds twice are outside. */
+/** Outline of an area. Pixels in the window of the camera. The last point is joined to the first. If the outline crosses itself, areas that it encloses twice are outside. */
 export type Outline = Point2[];
 
-/** How an outline changes the selection of the outlines before it. */
+/** How an outline is combined with the outlines before it. */
 export type Combination = "add" | "subtract" | "intersect";
 
-/** Further outline of a selection. In the window of its own camera. */
+/** Further outline of a selection. An outline in the window of its own camera. */
 export interface OutlineStep {
   combine: Combination;
   camera: Camera;
   path: Outline;
-  /** Also include hidden surfaces. Default: false. */
+  /** true: also include hidden surfaces. Default: false. */
   through?: boolean;
 }
 
-/** Polygon or lasso. Paints the area inside an outline that a camera sees. Needs a value, unless it erases. */
+/** Polygon or lasso. Paints the surface inside an outline in the window of a camera. The edit must contain a value, unless it erases. */
 export interface EditPolygon {
   op: "polygon";
-  /** In the layer's type; ignored for erasing. Default: 0. */
+  /** Value of the layer's type. Ignored if the edit erases. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
   camera: Camera;
   path: Outline;
-  /** Also paint hidden surfaces. Default: false. */
+  /** true: also paint hidden surfaces. Default: false. */
   through?: boolean;
-  /** Further outlines, combined with the first one in their order. All outlines together have at most 16384 points. */
+  /** Further outlines, which are combined with the first one in the given order. All outlines together can have at most 16384 points. */
   steps?: OutlineStep[];
 }
 
-/** Edit. The same object over HTTP and the WebSocket. */
+/** Edit. HTTP and the WebSocket use the same object. */
 export type Edit = EditStroke | EditFill | EditPolygon;
 
 /** Control point of a palette. */
 export interface PalettePoint {
   at: number;
-  /** #rrggbb or #rrggbbaa, sRGB. */
+  /** sRGB color as #rrggbb or #rrggbbaa. */
   color: string;
   label?: string;
-  /** With a `column` without numbers, in a categorical palette: the value of the point as text; for a term, its key. `at` then only orders the points. */
+  /** In a categorical palette for a `column` without numbers, the value of the point as text. For a term, this is its key. `at` then sets only the order of the points. */
   value?: string;
-  /** How the color is drawn; step and categorical palettes only. Default: "solid". */
+  /** Pattern in which the color is drawn. Only for step and categorical palettes. Default: "solid". */
   pattern?: "solid" | "hatch" | "dots" | "outline";
-  /** For hatch and dots: degrees on the picture; 0 is to the right, 90 is up. Default: 45. */
+  /** For hatch and dots, the angle on the image in degrees. 0 means to the right, and 90 means up. Default: 45. */
   angle?: number;
-  /** Distance between lines or dots, at the distance of the model's middle (exact in an orthographic view). 0: some pixels, as in the legend. Default: 0. */
+  /** Distance between lines or dots in millimeters, at the distance of the model's center. It is exact in an orthographic view. 0: a fixed distance in pixels, as in the legend. Default: 0. */
   spacing_mm?: number;
 }
 
-/** Palette. Turns values into colors. `points` ascend by `at`; a linear or step palette has at least one. `min` and `max` default to the outer points. */
+/** Palette. Assigns colors to values. `points` must be in ascending order of `at`. A linear or step palette must have at least one point. By default, `min` and `max` are the values of the first and last point. */
 export interface Palette {
   mode: "linear" | "step" | "categorical";
   min?: number;
   max?: number;
   points?: PalettePoint[];
-  /** Layers of records: the column that gives the colors. Absent: the key. */
+  /** For layers of records, the column whose values set the colors. Default: the key sets the color. */
   column?: string;
-  /** Categorical palettes: the color of values that no point lists. Absent: a color made from the value. With a `column`, also the color of records without a value there. Absent: gray. */
+  /** For categorical palettes, the color of values that are not in `points`. By default, the server derives a color from each value. With a `column`, this is also the color of records without a value in the column (default: gray). */
   others?: string;
 }
 
@@ -321,19 +321,19 @@ export type ValueType = "u8" | "u16" | "u32" | "i8" | "i16" | "i32" | "f16" | "f
 /** Kind of layer. */
 export type LayerKind = "numeric" | "database";
 
-/** Decision of a curator about edits. accept: the edits stay. reject: the edits are removed, also from below later paint. reopen: accepted or rejected edits wait again. */
+/** Decision of a curator about edits. accept: the edits stay. reject: the edits are removed, even under later paint. reopen: accepted or rejected edits wait for review again. */
 export type ReviewDecision = "accept" | "reject" | "reopen";
 
-/** Reason of a decision, for the authors. */
+/** Reason for a decision, for the authors. */
 export type ReviewReason = string;
 
-/** Texels a side. */
+/** Number of texels per side. */
 export type Resolution = 2048 | 4096 | 8192 | 16384;
 
-/** When a computed layer follows its inputs. manual: on request. automatic: within seconds after a change of something that the layer reads. */
+/** When a computed layer is updated. manual: on request. automatic: within seconds after a change to the data that the layer reads. */
 export type Recompute = "manual" | "automatic";
 
-/** How the colors of a layer are combined with what is below them. normal: they cover it; multiply: they filter it, so it only becomes darker; screen: it only becomes lighter. With multiply and screen, colors differ from those of the legend. */
+/** How the colors of a layer are combined with the colors below. normal: the layer covers the colors below. multiply: the result is never lighter than the colors below. screen: the result is never darker than the colors below. With multiply and screen, the colors differ from those in the legend. */
 export type LayerBlend = "normal" | "multiply" | "screen";
 
 /** Layer. */
@@ -353,36 +353,36 @@ export interface Layer {
   descriptions: Descriptions;
   palette: Palette;
   opacity: number;
-  /** Absent: normal. */
+  /** Default: normal. */
   blend?: LayerBlend;
   visible: boolean;
-  /** Nobody below curator can change the texels of the layer (403). */
+  /** true: users below the curator role cannot change the texels of the layer (403). */
   locked: boolean;
-  /** Edits of annotators are provisional, and marked in pictures, until a curator accepts or rejects them. */
+  /** true: edits by annotators are provisional until a curator accepts or rejects them. Images mark provisional edits. */
   review: boolean;
   visibility: Visibility;
-  /** Drawn in ascending order: higher is on top. */
+  /** Layers are drawn in ascending order: the layer with the highest number is on top. */
   order: number;
-  /** Heading under which the page lists the layer. Absent: none. */
+  /** Heading under which the web page lists the layer. Absent if the layer has no heading. */
   group?: string;
-  /** Layers of records: id of the project's table whose keys the texels hold. */
+  /** For layers of records, the id of the table whose keys the texels store. */
   table?: number;
-  /** How the server computed the values. Absent: they were painted or sent. While the layer is locked and not edited by hand, nobody can change its texels (403). */
+  /** How the server computed the values. Absent if the layer is not computed. While a computed layer is locked and has not been edited by hand, nobody can change its texels (403). */
   computed?: "expression" | "shape";
-  /** With `computed`: the layer was unlocked since, so its values may differ from the computed ones. */
+  /** With `computed`, true if the layer has been unlocked for editing by hand. Its values can then differ from the computed ones. */
   edited_by_hand?: boolean;
-  /** Layers computed from an expression: the formula over other layers, their records and the surface. */
+  /** For layers that are computed from an expression, the formula over other layers, their records and the surface. */
   expression?: string;
   recompute?: Recompute;
-  /** Layers computed from an expression: slugs of the layers that the expression reads. */
+  /** For layers that are computed from an expression, the slugs of the layers that the expression reads. */
   inputs?: string[];
-  /** Layers computed from an expression: something that the layer reads has changed since it was computed. */
+  /** For layers that are computed from an expression, true if data that the expression reads has changed since the computation. */
   stale?: boolean;
   /** Sequence of the last edit of the layer. */
   sequence: number;
 }
 
-/** Surface image of a model. A picture in the model's texture coordinates: the colors of the scan, or others such as UV light or infrared. */
+/** Surface image of a model. An image in the texture coordinates of the model. It shows the colors of the scan, or other data such as UV light or infrared. */
 export interface Look {
   id: number;
   name: string;
@@ -394,16 +394,16 @@ export interface Look {
   bytes: number;
   sha256: string;
   opacity: number;
-  /** Whether the surface image is visible at first. */
+  /** Whether the surface image is visible by default. */
   visible: boolean;
-  /** Blended in ascending order: higher is on top. */
+  /** Surface images are blended in ascending order: the image with the highest number is on top. */
   order: number;
 }
 
-/** Records that a view highlights. For a layer of records. The texels of these records keep their colors. Those of other records become gray, or with `isolate` are not drawn. */
+/** Records that a view highlights. Only for layers of records. The texels of these records keep their colors. The texels of all other records are gray or, with `isolate`, are not drawn. */
 export interface Highlight {
   keys?: number[];
-  /** A condition over the columns of the layer's table (OGC CQL2 text). It follows changes of the records. */
+  /** A condition over the columns of the layer's table (OGC CQL2 Text). If records change, the server evaluates it again. */
   filter?: string;
   /** Default: false. */
   isolate?: boolean;
@@ -411,7 +411,7 @@ export interface Highlight {
 
 /** Surface image in a view. */
 export interface LookShown {
-  /** Id or slug. */
+  /** Id or slug of the surface image. */
   look: LayerRef;
   /** Default: 1. */
   opacity?: number;
@@ -420,58 +420,58 @@ export interface LookShown {
 /** Kind of light. */
 export type LightMode = "museum" | "headlight" | "raking" | "unlit";
 
-/** Light of a view. museum: three soft lights. headlight: from the eye. raking: from one side, which shows relief. unlit: the colors without light. */
+/** Light in a view. museum: three soft lights. headlight: light from the eye. raking: light from one side, which makes relief visible. unlit: colors without lighting. */
 export interface Light {
   mode: LightMode;
-  /** Raking light: the direction to the light, in the axes of the eye (x right, y up, z towards the viewer). */
+  /** For raking light, the direction to the light in eye coordinates (x to the right, y up, z towards the viewer). */
   direction?: Point3;
-  /** Makes the surface brighter or darker, in EV: 1 is twice the light. Layers keep the colors of their legends. Default: 0. */
+  /** Exposure of the surface in EV: an increase of 1 doubles the light. The exposure does not change the colors of layers. Default: 0. */
   exposure?: number;
-  /** Raking light: the share of the light that comes from the eye instead, so that shadows show detail. Default: 0. */
+  /** For raking light, the share of the light that comes from the eye. This light makes details in shadows visible. Default: 0. */
   fill?: number;
-  /** Raking light: the opacity of all layers is multiplied by it, so that relief stays visible. Default: 1. */
+  /** For raking light, the factor by which the opacity of all layers is multiplied. A small factor keeps relief visible. Default: 1. */
   layer_opacity?: number;
 }
 
-/** How a view shows a layer. Absent members have the layer's own defaults. */
+/** Settings of a layer in a view. Members that are absent have the default values of the layer. */
 export interface LayerOverride {
   layer: LayerRef;
   visible?: boolean;
   opacity?: number;
   palette?: Palette;
-  /** Drawn in ascending order, as `order` of the layers. */
+  /** Layers are drawn in ascending order, as for `order` of a layer. */
   order?: number;
   highlight?: Highlight;
 }
 
-/** How a user shows the layers of a model. Layers that it does not name have their defaults. It contains only layers that the user can see. */
+/** Display settings of a user for the layers of a model. Layers that are not listed have their default settings. The list contains only layers that the user can see. */
 export interface PersonalView {
-  /** Without `highlight`. */
+  /** The settings of each layer, without `highlight`. */
   layers: LayerOverride[];
 }
 
-/** Saved view of a model. The camera, and how layers, surface images and light are shown. Deleted layers and surface images are left out. */
+/** Saved view of a model. A view stores the camera and the display settings of layers, surface images and light. It omits deleted layers and surface images. */
 export interface View {
   id: number;
-  /** Stays the same if the view gets another name. */
+  /** The slug does not change if the view is renamed. */
   slug: string;
   name: string;
   /** Plain text. */
   text: string;
   camera: Camera;
-  /** By id. Layers that are not listed have their defaults. */
+  /** Layers are identified by id. Layers that are not listed have their default settings. */
   layers: LayerOverride[];
-  /** By id. Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
+  /** The visible surface images by id, from bottom to top. If absent, the view shows the surface images that are visible by default. */
   looks?: LookShown[];
   light: Light;
-  /** Creator of the view. */
+  /** User who created the view. */
   user: string;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
   version: number;
 }
 
-/** Language of a tour. BCP 47: a language, and subtags that narrow it down. */
+/** Language of a tour. A language tag (BCP 47): a language, optionally with subtags. */
 export type TourLanguage = string;
 
 /** Transition to a stop. */
@@ -480,38 +480,38 @@ export type TourTransition = "cut" | "move";
 /** Short text by language. Keys are languages of the tour. */
 export type TourWords = Record<string, string>;
 
-/** Text by language. Plain text; keys are languages of the tour. */
+/** Text by language. Plain text. Keys are languages of the tour. */
 export type TourText = Record<string, string>;
 
 /** Column on the card of a record. */
 export interface TourColumn {
-  /** Its slug; in requests also its id. */
+  /** Slug of the column. Requests can also contain its id. */
   column: string;
-  /** Names of the column on the card. Absent: as in the table. */
+  /** Names of the column on the card. Default: the names in the table. */
   labels?: TourWords;
 }
 
 /** Records of a table at a stop. */
 export interface TourRecords {
-  /** Its slug; in requests also its id. */
+  /** Slug of the table. Requests can also contain its id. */
   table: string;
-  /** In this order. Some records may have been deleted since. */
+  /** Keys of the records, in the order in which they are shown. Some of these records can have been deleted in the meantime. */
   keys: number[];
-  /** In this order, for any record of the table that visitors open at this stop. */
+  /** Columns on the cards of all records of this table that visitors open at this stop, in the order in which they are shown. */
   columns: TourColumn[];
 }
 
-/** Caption by language. Plain text; keys are languages of the tour. */
+/** Caption by language. Plain text. Keys are languages of the tour. */
 export type TourCaption = Record<string, string>;
 
-/** Subtitles of a video by language. Ids of WebVTT files of the tour; keys are languages of the tour. */
+/** Subtitles of a video by language. Ids of WebVTT files of the tour. Keys are languages of the tour. */
 export type TourSubtitles = Record<string, number>;
 
-/** Picture, sound or video at a stop. */
+/** Image, sound or video at a stop. */
 export interface TourMedium {
   /** Id of a file of the tour. */
   file: number;
-  /** For people who cannot see or hear it. */
+  /** A description for visitors who cannot see the image or hear the sound. */
   alt?: TourWords;
   caption?: TourCaption;
   subtitles?: TourSubtitles;
@@ -520,38 +520,38 @@ export interface TourMedium {
 /** Kind of a file of a tour. */
 export type TourFileKind = "picture" | "sound" | "video" | "subtitles";
 
-/** File of a tour. Its content never changes. */
+/** File of a tour. The content of a file never changes. */
 export interface TourFile {
   id: number;
   name: string;
   kind: TourFileKind;
-  /** Determined from the content. */
+  /** The server determines the media type from the content. */
   media_type: string;
   bytes: number;
-  /** Of pictures, in pixels. */
+  /** Width of images in pixels. */
   width?: number;
   height?: number;
 }
 
-/** Light or dark pages. `dark` is for dark rooms. */
+/** Light or dark design. `dark` is intended for dark rooms. */
 export type TourMode = "light" | "dark";
 
 /** Font of headings. */
 export type TourFont = "serif" | "sans";
 
-/** Design of the kiosks that show a tour. The text has a contrast of at least 4.5:1 with the background, and the accent color one of at least 3:1 (WCAG 2.2). */
+/** Design of the kiosks that show a tour. The contrast between text and background must be at least 4.5:1, and the contrast between accent color and background at least 3:1 (WCAG 2.2). */
 export interface TourTheme {
-  /** Absent: `light`. */
+  /** Default: `light`. */
   mode?: TourMode;
-  /** Color of buttons. Absent: that of the mode. */
+  /** Color of buttons. Default: the accent color of the mode. */
   accent?: BackgroundColor;
-  /** Color of the page and around the object. Absent: that of the mode. */
+  /** Color of the page and of the area around the object. Default: the background color of the mode. */
   background?: BackgroundColor;
-  /** Absent: `serif`. */
+  /** Default: `serif`. */
   font?: TourFont;
-  /** Id of a picture of the tour. Absent: no logo. */
+  /** Id of an image of the tour. Default: no logo. */
   logo?: number;
-  /** Name of the museum, for people who cannot see the logo. */
+  /** Name of the museum, for visitors who cannot see the logo. */
   logo_alt?: string;
 }
 
@@ -564,50 +564,50 @@ export interface TourClassName {
 
 /** Names of the classes of a layer in the languages of a tour. */
 export interface TourClasses {
-  /** Its slug; in requests also its id. */
+  /** Slug of the layer. Requests can also contain its id. */
   layer: string;
-  /** Each value once. */
+  /** Each value can occur only once. */
   classes: TourClassName[];
 }
 
 /** Stop of a tour. */
 export interface TourStop {
-  /** Slug of the saved view. Absent: the view was deleted, and the tour skips the stop. */
+  /** Slug of the saved view. Absent if the view was deleted. The tour then skips the stop. */
   view?: string;
   title: TourWords;
   text: TourText;
   attract_s: number;
   transition: TourTransition;
   transition_s: number;
-  /** Slugs of the layers to swipe between, in their order. */
+  /** Slugs of the layers between which visitors can swipe, in their order. */
   layers: string[];
   records: TourRecords[];
-  /** Pictures, sounds and videos, in their order. Absent: none. */
+  /** Images, sounds and videos, in their order. Absent if the stop has no such files. */
   media?: TourMedium[];
 }
 
-/** Tour of a model. Saved views in an order, with texts for each. Layers, tables and columns are left out if they were deleted or if the caller cannot see them. */
+/** Tour of a model. A sequence of saved views with texts. The tour omits layers, tables and columns that were deleted or that the caller cannot see. */
 export interface Tour {
   id: number;
-  /** Stays the same if the tour gets another name. */
+  /** The slug does not change if the tour is renamed. */
   slug: string;
   name: string;
-  /** Plain text: the subject of the tour, for people who choose one. */
+  /** The subject of the tour as plain text, which helps people to choose a tour. */
   text: string;
-  /** The first one is the default language. */
+  /** The first language is the default language. */
   languages: TourLanguage[];
-  /** Seconds after the last touch until the tour restarts and plays by itself. */
+  /** Seconds without touches after which the tour restarts and plays automatically. */
   idle_s: number;
   stops: TourStop[];
-  /** Absent: the default design. */
+  /** Default: the standard design. */
   theme?: TourTheme;
-  /** Other names of classes. Absent: none. */
+  /** Names of classes that differ from those in the legend. Absent if there are no such names. */
   classes?: TourClasses[];
-  /** The files that the stops and the design use. Absent: none. */
+  /** Files that the stops and the design use. Absent if they use no files. */
   files?: TourFile[];
-  /** Creator of the tour; empty for kiosks. */
+  /** User who created the tour. Empty if the caller is a kiosk. */
   user: string;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
   version: number;
 }
@@ -615,49 +615,49 @@ export interface Tour {
 /** Unit of length. */
 export type Unit = "mm" | "cm" | "m";
 
-/** Why a unit or an up direction is proposed. `given`: the import request states it. `format`: glTF is in meters with +Y up. `comment`: a comment of the file states it. `coordinates`: they are those of a map. `size`: scanned objects usually have this size. `shape`: the object would stand this way. */
+/** Reason for a proposed unit or up direction. `given`: the import request sets it. `format`: glTF files use meters and +Y as the up direction. `comment`: a comment in the file states it. `coordinates`: the coordinates are map coordinates. `size`: the object has the usual size of scanned objects. `shape`: the object can stand stably in this position. */
 export type ScaleReason = "given" | "format" | "comment" | "coordinates" | "size" | "shape";
 
-/** Up direction. An axis of the model, or its opposite. */
+/** Up direction. An axis of the model, or its opposite direction. */
 export type Axis = "x" | "y" | "z" | "-x" | "-y" | "-z";
 
-/** Unit and up direction proposed for a scan. Made at import; models that were imported before proposals existed have none. It does not change with `unit` and `up`. */
+/** Unit and up direction proposed for a scan. The import creates the proposal. Models that were imported by older versions do not have a proposal. Changes to `unit` and `up` do not change it. */
 export interface ScaleProposal {
   unit: Unit;
   unit_reason: ScaleReason;
   unit_confidence: number;
-  /** The comment of the file that names the unit. */
+  /** The comment in the file that states the unit. */
   unit_comment?: string;
   up: Axis;
   up_reason: ScaleReason;
   up_confidence: number;
-  /** The comment of the file that names the up direction. */
+  /** The comment in the file that states the up direction. */
   up_comment?: string;
 }
 
-/** Box. */
+/** Axis-aligned box. */
 export interface Bounds {
   min: Point3;
   max: Point3;
 }
 
-/** Why part of the texture stays unused. */
+/** Reason why a part of the texture is not used. */
 export interface AtlasLimit {
-  /** long_triangles: the longest triangle sets the scale of all. many_charts: the gutters around charts need the space. hollow_charts: charts leave their own boxes empty. file_coordinates: the scan's own coordinates were kept. */
+  /** long_triangles: the longest triangle limits the scale of all charts. many_charts: the gutters around the charts take up space. hollow_charts: the charts do not fill their bounding boxes. file_coordinates: the texture coordinates come from the scan. */
   code: "long_triangles" | "many_charts" | "hollow_charts" | "file_coordinates";
   text: string;
 }
 
-/** Surface of a texel. */
+/** Surface area of a texel. */
 export interface TexelSize {
   resolution: number;
   area_mean_m2: number;
   area_max_m2: number;
 }
 
-/** How the surface is packed into the texture. */
+/** Layout of the surface in the texture. */
 export interface Atlas {
-  /** Whether the scan's own texture coordinates were kept. */
+  /** Whether the texture coordinates come from the scan or were created by the import. */
   source: "file" | "made";
   lowest_resolution: number;
   charts: number;
@@ -665,30 +665,30 @@ export interface Atlas {
   overlap: number;
   stretch_mean: number;
   stretch_p99: number;
-  /** Surface of the texel with the largest area, at `lowest_resolution`. */
+  /** Surface area of the largest texel, at `lowest_resolution`. */
   texel_area_max_m2: number;
-  /** Precision of layers by their resolution, the lowest first. Unknown for models imported before it was measured. */
+  /** Texel sizes for each resolution of layers, in ascending order of resolution. Absent for models that were imported by older versions. */
   texel_sizes?: TexelSize[];
-  /** Why less than 60 % of the texels are used. Empty if more are used. */
+  /** Reasons why less than 60 % of the texels are used. Empty if at least 60 % are used. */
   limits?: AtlasLimit[];
 }
 
-/** Repair at import. */
+/** Repair during the import. */
 export interface Repair {
   what: string;
   count: number;
 }
 
-/** Open edges: loops of edges of one triangle only. The rims of holes and of objects that were scanned in part. A closed surface has 0 loops. Models imported before the measurement existed do not have this member. */
+/** Open edges: loops of edges that belong to only one triangle. The rims of holes and of partly scanned surfaces. A closed surface has 0 loops. Models that were imported by older versions do not have this member. */
 export interface OpenEdges {
   loops: number;
-  /** Length of all loops together. */
+  /** Total length of all loops. */
   length_m: number;
-  /** Lengths of single loops, longest first. */
+  /** Lengths of the individual loops, the longest first. */
   longest_m: number[];
 }
 
-/** Uploaded file, kept unchanged. */
+/** Uploaded file, which is stored unchanged. */
 export interface SourceFile {
   name: string;
   sha256: string;
@@ -703,16 +703,16 @@ export interface Model {
   /** Slug of the project. */
   project: string;
   unit: Unit;
-  /** The file named no unit, and nobody has stated one. */
+  /** true: the file stated no unit, and no user has set one. */
   unit_assumed: boolean;
-  /** A person has confirmed the size. */
+  /** true: a user has confirmed the size of the model. */
   scale_verified: boolean;
   up: Axis;
   proposal?: ScaleProposal;
   north: string;
-  /** EPSG:n, or empty. */
+  /** Coordinate system as EPSG:n, or empty. */
   crs: string;
-  /** World position that the renderer uses as its zero. */
+  /** World position that the renderer uses as its zero point. */
   origin: Point3;
   triangles: number;
   vertices: number;
@@ -733,73 +733,73 @@ export interface Model {
   processing: string;
   rights_uri: string;
   credit: string;
-  /** Lowest role that can get the scan's files, the pictures of its surface images and its mesh. */
+  /** Lowest role that can download the files of the scan, the surface images in full size and the mesh. */
   source_download: "viewer" | "annotator" | "curator";
-  /** Sequence of the last change of the model. */
+  /** Sequence of the last edit of the model. */
   sequence: number;
 }
 
 /** Value of a layer at a point. */
 export interface SurfaceValue {
   valid: boolean;
-  /** Absent if the texel is not valid. */
+  /** Absent if the texel has no value. */
   value?: number;
 }
 
-/** Values by the layers' slugs. */
+/** Values by the slugs of layers. */
 export type SurfaceValues = Record<string, SurfaceValue>;
 
-/** Role. In ascending order. A guest can see only the projects in which the guest has a role. */
+/** Role. The roles in ascending order. Guests can see only the projects in which they have a role. */
 export type Role = "guest" | "viewer" | "annotator" | "curator" | "administrator" | "owner";
 
-/** First message. */
+/** First message from the client. */
 export interface Hello {
   op: "hello";
-  /** Name and version of the program. Default: "". */
+  /** Name and version of the client program. Default: "". */
   client?: string;
-  /** Device pixels for each CSS pixel. Default: 1. */
+  /** Number of device pixels per CSS pixel. Default: 1. */
   dpr?: number;
-  /** Codecs of frames that the client can draw, best first: jpeg, png. Absent: jpeg and png. Unknown names are ignored. */
+  /** Frame codecs that the client supports, in order of preference: jpeg, png. Unknown names are ignored. Default: jpeg and png. */
   accept?: string[];
 }
 
-/** Newest camera of a view. Only the newest counts; frames repeat its `seq`. */
+/** Newest camera of a view. The server renders only the newest camera. Frames contain its `seq`. */
 export interface CameraUpdate {
   op: "camera";
   /** Default: 0. */
   view_id?: number;
-  /** Ascending number that the client chooses. */
+  /** A number that the client chooses. It must increase with each message. */
   seq: number;
   view: Matrix;
   projection: Matrix;
   width: number;
   height: number;
   section?: Section;
-  /** More cameras follow at once: speed is more important than quality. Default: false. */
+  /** true: the camera is moving, and more cameras will follow. The server then prefers speed to quality. Default: false. */
   moving?: boolean;
 }
 
-/** Settings of a view for this participant. Replaces all earlier settings of the view. Layers that are not listed have their defaults. */
+/** Display settings of a view for this participant. Replaces all earlier settings of the view. Layers that are not listed have their default settings. */
 export interface LayersUpdate {
   op: "layers";
   /** Default: 0. */
   view_id?: number;
   layers: LayerOverride[];
-  /** Exactly these, from bottom to top, over the colors of the vertices. Absent: the surface images that are visible by default. */
+  /** The visible surface images from bottom to top, above the vertex colors. Default: the surface images that are visible by default. */
   looks?: LookShown[];
-  /** Absent: museum. */
+  /** Default: the light mode museum. */
   light?: Light;
-  /** Absent: light gray. */
+  /** Default: light gray. */
   background?: Background;
-  /** Sequence of a durable edit: the view shows the layers as they were after it, until the next message without `at`. While view 0 shows such a state, the server refuses strokes and other edits of this connection (409). Absent: always the newest state. */
+  /** Sequence of a durable edit. The view shows the state of the layers after this edit until the client sends this message without `at`. While view 0 shows an earlier state, the server refuses strokes and other edits of this connection (409). Default: the view always shows the newest state. */
   at?: number;
 }
 
-/** Start of a stroke. Sets the layer, the value, the camera and the brush. Needs a value, unless it erases, and one radius. */
+/** Start of a stroke. Sets the layer, the value, the camera and the brush. The message must contain one radius. It must also contain a value, unless the stroke erases. */
 export interface StrokeBegin {
   op: "stroke.begin";
   id: string;
-  /** Name of the stroke in the messages that follow. */
+  /** Id of the stroke in the subsequent messages. */
   stroke: string;
   layer: LayerRef;
   /** Default: 0. */
@@ -817,12 +817,12 @@ export interface StrokeBegin {
   max_angle_deg?: SlantLimit;
 }
 
-/** Next batch of a stroke's points. The brush is swept from the last point of the previous batch. */
+/** Next batch of points of a stroke. The brush moves from the last point of the previous batch to the first point of this one. */
 export interface StrokeExtend {
   op: "stroke.extend";
   id: string;
   stroke: string;
-  /** Number of the batch: 0, 1, 2… */
+  /** Number of the batch: 0, 1, 2, … */
   n: number;
   path: Path;
   widths?: Widths;
@@ -835,7 +835,7 @@ export interface StrokeEnd {
   stroke: string;
 }
 
-/** A whole edit. */
+/** A complete edit. */
 export interface EditRequest {
   op: "edit";
   id: string;
@@ -850,58 +850,58 @@ export interface Undo {
   layer: LayerRef;
 }
 
-/** Redo the edit that the caller undid last. */
+/** Redo the edit that the caller last undid. */
 export interface Redo {
   op: "redo";
   id: string;
   layer: LayerRef;
 }
 
-/** Start or end of editing a record. Shows the other participants that this person edits the record (`record.editors`). The version of the record protects its data. Editing ends with the connection. If somebody else edits the record, nothing changes, unless this message takes it over. */
+/** The user starts or stops editing a record. Informs the other participants that this user is editing the record (`record.editors`). This is not a lock: the version of the record protects its data. Editing ends when the connection is closed. If another user is already editing the record, the message has no effect, unless `take_over` is true. */
 export interface RecordEdit {
   op: "record.edit";
-  /** Returned as `ref` of a problem. */
+  /** If an error occurs, the server returns this id as `ref` of the problem. */
   id?: string;
-  /** Id of a table of the model's project. */
+  /** Id of a table in the model's project. */
   table: number;
   key: number;
   editing: boolean;
-  /** Take the record over from the person who edits it. Default: false. */
+  /** true: take over the record from the user who is editing it. Default: false. */
   take_over?: boolean;
 }
 
-/** A frame was drawn. Sent when the last rectangle of a frame is on the screen. The server may then send another frame. */
+/** The client has shown a frame. The client sends this message when the last rectangle of a frame is on the screen. The server can then send another frame. */
 export interface Ack {
   op: "ack";
   /** Default: 0. */
   view_id?: number;
-  /** Frame number of the frame header. */
+  /** Number of the frame, from the frame header. */
   frame: number;
 }
 
-/** Presence of this participant. Replaces the earlier presence: an absent member no longer applies. The server refuses the message as a whole. */
+/** Presence of this participant. Replaces the earlier presence of this participant. If a member is absent, its earlier value no longer applies. If one member is invalid, the server refuses the whole message. */
 export interface PresenceUpdate {
   op: "presence";
   /** Default: 0. */
   view_id?: number;
-  /** Pixel of the view's newest camera. Null or absent: the pointer is elsewhere. */
+  /** Position of the pointer, as a pixel of the newest camera of the view. Null or absent if the pointer is outside the view. */
   pointer?: Point2 | null;
-  /** Radius of the brush at the pointer, in world coordinates. Absent: another tool. */
+  /** Radius of the brush at the pointer, in world coordinates. Absent if another tool is active. */
   radius?: number;
-  /** Invites the others to follow this participant. Default: false. */
+  /** true: this participant invites the other participants to follow. Default: false. */
   leading?: boolean;
-  /** Session of the participant that this one follows. Its camera then comes with `presence`. 404: the session is not here. 409: that participant follows this one, directly or through others. */
+  /** Session of the participant that this participant follows. `presence` messages then contain the camera of that participant. 404: the session does not exist. 409: that participant follows this one, directly or through other participants. */
   follow?: string | null;
 }
 
 /** Values at a pixel. */
 export interface Pick {
   op: "pick";
-  /** Returned in `picked`. */
+  /** The server returns this id in `picked`. */
   id?: string;
   /** Default: 0. */
   view_id?: number;
-  /** Absent: the view's newest camera. */
+  /** Default: the newest camera of the view. */
   camera?: Camera;
   x: number;
   y: number;
@@ -910,24 +910,24 @@ export interface Pick {
 /** Last saved batch of an unfinished stroke. */
 export interface StrokeProgress {
   stroke: string;
-  /** -1: nothing of it is saved. */
+  /** Number of the batch. -1: no batch of the stroke has been saved. */
   n: number;
 }
 
 /** Limits of the connection. */
 export interface Limits {
   message_bytes: number;
-  /** Points in one message. */
+  /** Maximum number of points in one message. */
   path_points: number;
-  /** Pixels a side of a picture. */
+  /** Maximum width and height of a frame in pixels. */
   view_size: number;
   views: number;
-  /** Frames that the server sends before it waits for an ack. */
+  /** Number of frames that the server sends before it waits for an `ack` message. */
   frames_in_flight: number;
   messages_per_second: number;
 }
 
-/** Answer to the first message. */
+/** Response to the first message. */
 export interface Welcome {
   op: "welcome";
   session: string;
@@ -935,16 +935,16 @@ export interface Welcome {
   role: Role;
   model: Model;
   layers: Layer[];
-  /** In their order. */
+  /** Sorted by `order`. */
   looks: Look[];
-  /** How this user shows the layers, as kept on the server. Absent: nothing is kept, or this is a kiosk. */
+  /** The display settings of this user for the layers, as stored on the server. Absent if the server has no stored settings or if the client is a kiosk. */
   personal_view?: PersonalView;
   limits: Limits;
-  /** Unfinished strokes of this user, so that the client sends the missing batches again. */
+  /** Unfinished strokes of this user. The client should send the missing batches again. */
   strokes: StrokeProgress[];
 }
 
-/** An edit is done and visible, but not durable yet. `stroke` and `n` name a batch of a stroke, `id` any other message. */
+/** An edit is applied and visible, but not durable yet. `stroke` and `n` identify a batch of a stroke. `id` identifies any other message. */
 export interface Applied {
   op: "applied";
   id?: string;
@@ -957,7 +957,7 @@ export interface Applied {
   provisional?: boolean;
 }
 
-/** An edit is durable. `stroke` and `n` name a batch of a stroke, `id` any other message. */
+/** An edit is durable. `stroke` and `n` identify a batch of a stroke. `id` identifies any other message. */
 export interface Saved {
   op: "saved";
   id?: string;
@@ -970,12 +970,12 @@ export interface Saved {
   provisional?: boolean;
 }
 
-/** Edits that could not be saved and were taken back. */
+/** Edits that could not be saved and were removed. */
 export interface Unsaved {
   op: "unsaved";
   /** Ids of the messages. */
   ids: string[];
-  /** Reason. */
+  /** Reason of the failure. */
   detail?: string;
 }
 
@@ -987,7 +987,7 @@ export interface Reviewed {
   reason?: ReviewReason;
 }
 
-/** A layer was created, changed, deleted or edited. `layer` is present for created and changed. For edited, `sequence` is present, with `provisional` if the edit waits for review, and `review` if it decides about others. */
+/** A layer was created, changed, deleted or edited. `layer` is present if the layer was created or changed. If it was edited, `sequence` is present. `provisional` is also present if the edit waits for review, and `review` if the edit is a decision about other edits. */
 export interface LayerEvent {
   op: "layer";
   event: "created" | "changed" | "deleted" | "edited";
@@ -999,7 +999,7 @@ export interface LayerEvent {
   review?: Reviewed;
 }
 
-/** A surface image was created, changed or deleted. `look` is present for created and changed. */
+/** A surface image was created, changed or deleted. `look` is present if the surface image was created or changed. */
 export interface LookEvent {
   op: "look";
   event: "created" | "changed" | "deleted";
@@ -1007,7 +1007,7 @@ export interface LookEvent {
   look?: Look;
 }
 
-/** A brush shape was created, renamed or deleted. `tool` is present for created and changed. */
+/** A brush shape was created, renamed or deleted. `tool` is present if the brush shape was created or renamed. */
 export interface ToolEvent {
   op: "tool";
   event: "created" | "changed" | "deleted";
@@ -1015,14 +1015,14 @@ export interface ToolEvent {
   tool?: Tool;
 }
 
-/** The model's metadata changed, or it was deleted. `model` is present for changed. */
+/** The metadata of the model changed, or the model was deleted. `model` is present if the metadata changed. */
 export interface ModelEvent {
   op: "model";
   event: "changed" | "deleted";
   model?: Model;
 }
 
-/** A record was created, changed or deleted. For tables of the model's project. `record` is present unless the record was deleted. */
+/** A record was created, changed or deleted. The server sends this message for all tables of the model's project. `record` is present unless the record was deleted. */
 export interface RecordEvent {
   op: "record";
   event: "created" | "changed" | "deleted";
@@ -1033,7 +1033,7 @@ export interface RecordEvent {
   user?: string;
 }
 
-/** Person who edits a record. `session` and `user` are both absent if nobody edits the record now. */
+/** User who is editing a record. `session` and `user` are absent if nobody is editing the record now. */
 export interface RecordEditor {
   /** Id of the table. */
   table: number;
@@ -1042,13 +1042,13 @@ export interface RecordEditor {
   user?: string;
 }
 
-/** People who edit records. For the tables of the project. A new participant gets all editors, if there are any. Then all participants get each change. Not stored. */
+/** Users who are editing records. The message contains editors of records in all tables of the project. A new participant receives all current editors, if there are any. After that, all participants receive each change. The server does not store the editors. */
 export interface RecordEditors {
   op: "record.editors";
   records: RecordEditor[];
 }
 
-/** A table was created, changed or deleted. For tables of the model's project. Changed: its names or columns, or so many records at once that clients should read them again. `table` is present unless the table was deleted. */
+/** A table was created, changed or deleted. The server sends this message for all tables of the model's project. A table counts as changed if its names or columns changed, or if many records changed at once. Clients should then read the records again. `table` is present unless the table was deleted. */
 export interface TableEvent {
   op: "table";
   event: "created" | "changed" | "deleted";
@@ -1057,7 +1057,7 @@ export interface TableEvent {
   user?: string;
 }
 
-/** A comment was created, changed or deleted. For comments on the model. `comment` is present unless the comment was deleted. A deleted comment that stays for its replies counts as changed. */
+/** A comment was created, changed or deleted. The server sends this message for comments on the model. `comment` is present unless the comment was deleted. A deleted comment that stays because it has replies counts as changed. */
 export interface CommentEvent {
   op: "comment";
   event: "created" | "changed" | "deleted";
@@ -1066,7 +1066,7 @@ export interface CommentEvent {
   user?: string;
 }
 
-/** A saved view was created, changed or deleted. For views of the model. Clients that list views read the view again. */
+/** A saved view was created, changed or deleted. The server sends this message for saved views of the model. Clients that show a list of views should read the view again. */
 export interface ViewEvent {
   op: "view";
   event: "created" | "changed" | "deleted";
@@ -1075,7 +1075,7 @@ export interface ViewEvent {
   user?: string;
 }
 
-/** A snapshot was created, changed or deleted. For snapshots of the model. Clients that list snapshots read the snapshot again. */
+/** A snapshot was created, changed or deleted. The server sends this message for snapshots of the model. Clients that show a list of snapshots should read the snapshot again. */
 export interface SnapshotEvent {
   op: "snapshot";
   event: "created" | "changed" | "deleted";
@@ -1084,36 +1084,36 @@ export interface SnapshotEvent {
   user?: string;
 }
 
-/** Place where a pointer touches the surface. World coordinates. */
+/** Point where a pointer is on the surface. Position in world coordinates. */
 export interface PresencePointer {
   position: Point3;
-  /** Radius of the brush. Absent: another tool. */
+  /** Radius of the brush. Absent if another tool is active. */
   radius?: number;
 }
 
-/** One participant. A person can be present several times, with the same color. */
+/** Participant. A user with several connections appears several times, with the same color. */
 export interface PresenceUser {
   session: string;
   name: string;
-  /** Full name at the start of the connection. Absent: the person gave none. */
+  /** Full name of the user when the connection was opened. Absent if the user has not entered a full name. */
   full_name?: string;
   color: PersonColor;
   pointer?: PresencePointer;
-  /** Invites the others to follow this participant. Default: false. */
+  /** true: this participant invites the other participants to follow. Default: false. */
   leading?: boolean;
-  /** Session of the participant that this one follows. */
+  /** Session of the participant that this participant follows. */
   following?: string;
   /** Newest camera of view 0, without its section. Present only for the participant that the receiver follows. */
   camera?: Camera;
 }
 
-/** Participants of the model. Everybody with the model open, including the receiver. Not stored. The more people are present, the less often the server sends it. */
+/** Participants of the model. All participants who have the model open, including the receiver. The server does not store this list. The more participants there are, the less often the server sends this message. */
 export interface Presence {
   op: "presence";
   users: PresenceUser[];
 }
 
-/** Values at the pixel. Next to the model, only `hit` and `id` are present. */
+/** Values at the pixel. If the pixel does not show the model, only `hit` and `id` are present. */
 export interface Picked {
   op: "picked";
   id?: string;
@@ -1121,12 +1121,12 @@ export interface Picked {
   position?: Point3;
   normal?: Point3;
   uv?: Point2;
-  /** Distance from the camera's near plane. */
+  /** Distance from the near plane of the camera. */
   distance?: number;
   values?: SurfaceValues;
 }
 
-/** Something was refused or failed. The members of RFC 9457, and `ref`, the id of the message. */
+/** A message was refused, or an operation failed. Contains the members of RFC 9457, and the id of the message as `ref`. */
 export interface ProblemMessage {
   op: "problem";
   ref?: string;
@@ -1134,41 +1134,41 @@ export interface ProblemMessage {
   title: string;
   status: number;
   detail: string;
-  /** Path of the wrong member in the message: camera.view[3]. */
+  /** Path of the invalid member in the message, such as camera.view[3]. */
   field?: string;
-  /** If the member is a condition or formula: the number of characters (Unicode code points) before the mistake. */
+  /** If the member is a condition or formula, the number of characters (Unicode code points) before the mistake. */
   offset?: number;
-  /** With `offset`: the number of wrong characters, if it is known. */
+  /** With `offset`, the number of incorrect characters, if the server can determine it. */
   length?: number;
-  /** With `offset` and `length`: texts that would correct the wrong characters, the most likely one first. */
+  /** With `offset` and `length`, texts that can replace the incorrect characters, the most likely one first. */
   suggestions?: string[];
   reason?: ProblemReason;
 }
 
-/** Problem of a row. */
+/** Error in a row. */
 export interface RowProblem {
-  /** Line of the text where the row begins. 0: the text has no lines. */
+  /** Line of the text in which the row begins. 0 if the text has no lines. */
   line: number;
-  /** Code of the term, for terms. */
+  /** For terms, the code of the term. */
   code?: string;
-  /** Name of the column in the head of the text. */
+  /** Name of the column in the header of the text. */
   column?: string;
   title: string;
   detail: string;
 }
 
-/** Result of writing many records. If there are problems, nothing was written. */
+/** Result of an import of records. If there are problems, the server has written nothing. */
 export interface RecordsReport {
   rows: number;
   created: number;
   changed: number;
   unchanged: number;
   dry_run: boolean;
-  /** Sequence of the entry in the table's journal. 0: nothing was written. */
+  /** Sequence of the entry in the table's journal. 0 if nothing was written. */
   sequence: number;
-  /** For SKOS: further broader terms, and further labels of the same language, for which a list has no place. */
+  /** For SKOS, the number of additional broader terms, and of additional labels in the same language, which a term list cannot contain. */
   left_out?: number;
-  /** For terms: the list with the terms. */
+  /** For terms, the term list. */
   table?: Table;
   problems: RowProblem[];
 }
@@ -1176,34 +1176,34 @@ export interface RecordsReport {
 /** Problem (RFC 9457). */
 export interface Problem {
   type?: ProblemType;
-  /** For people; the words may change. */
+  /** A short text for people. Its wording can change. */
   title: string;
   status: number;
-  /** Describes this case, and what to do. */
+  /** A text for people that describes the error and explains what to do. */
   detail: string;
-  /** Path of the wrong member: camera.view[3]. */
+  /** Path of the invalid member, such as camera.view[3]. */
   field?: string;
-  /** If the member is a condition or formula: the number of characters (Unicode code points) before the mistake. */
+  /** If the member is a condition or formula, the number of characters (Unicode code points) before the mistake. */
   offset?: number;
-  /** With `offset`: the number of wrong characters, if it is known. */
+  /** With `offset`, the number of incorrect characters, if the server can determine it. */
   length?: number;
-  /** With `offset` and `length`: texts that would correct the wrong characters, the most likely one first. */
+  /** With `offset` and `length`, texts that can replace the incorrect characters, the most likely one first. */
   suggestions?: string[];
   reason?: ProblemReason;
   instance?: string;
-  /** For many records at once: what is wrong with which line. */
+  /** The errors in each line, if the request contains many records. */
   rows?: RecordsReport;
 }
 
-/** Sign-in. By user name and password, or by the secret of an owner link. */
+/** Sign-in. With a user name and password, or with the secret of an owner link. */
 export interface Login {
-  /** Upper and lower case count the same. */
+  /** The user name is not case-sensitive. */
   user?: string;
   password?: string;
   token?: string;
 }
 
-/** The signed-in user. */
+/** Signed-in user. */
 export interface Me {
   user: string;
   full_name: string;
@@ -1212,28 +1212,28 @@ export interface Me {
   has_password: boolean;
 }
 
-/** New password. If the user has a password, `current` is required. Ends all other sessions. */
+/** New password. `current` is required if the user already has a password. The change ends all other sessions of the user. */
 export interface PasswordChange {
   current?: string;
-  /** At least ten characters, and not the user name. */
+  /** The password must have at least ten characters and must differ from the user name. */
   password: string;
 }
 
-/** Changes of your own account. */
+/** Changes to your own account. */
 export interface MePatch {
   full_name: string;
 }
 
-/** A browser in which a user is signed in. */
+/** Browser in which a user is signed in. */
 export interface SignInSession {
   id: number;
   created: string;
   expires: string;
-  /** Accurate to a few minutes. */
+  /** Accurate to within a few minutes. */
   last_used?: string;
-  /** Name that the browser sends. */
+  /** Name that the browser sends in `User-Agent`. */
   agent: string;
-  /** This session sent the request. */
+  /** true: this session sent the request. */
   current: boolean;
 }
 
@@ -1243,14 +1243,14 @@ export interface SignInSessionList {
   total: number;
 }
 
-/** A token for scripts. It can do what both its role and its user's role allow. */
+/** Token for scripts. A token has only the rights that both its own role and the role of its user include. */
 export interface ScriptToken {
   id: number;
   name: string;
   role: Role;
   created: string;
   expires?: string;
-  /** Accurate to a few minutes. */
+  /** Accurate to within a few minutes. */
   last_used?: string;
   /** Slug of the only project in which the token is valid. */
   project?: string;
@@ -1267,26 +1267,26 @@ export interface ScriptTokenCreate {
   /** Purpose of the token. */
   name: string;
   role?: Role;
-  /** Days until the token expires. Default: 365. */
+  /** Number of days until the token expires. Default: 365. */
   days?: number;
-  /** Slug or id of the only project in which the token is valid, as viewer, annotator or curator. Absent: in all projects of its user. */
+  /** Slug or id of the only project in which the token is valid. The role must then be viewer, annotator or curator. Default: the token is valid in all projects of its user. */
   project?: string;
 }
 
-/** A new token with its secret, which is shown only now. */
+/** New token with its secret, which cannot be retrieved later. */
 export interface ScriptTokenMade {
-  /** For `Authorization: Bearer`. */
+  /** The value for the header `Authorization: Bearer`. */
   secret: string;
   token: ScriptToken;
 }
 
-/** Whether a person can sign in. Invited: the person has not set a password yet. */
+/** State of a user account. `invited`: the user has not set a password yet. */
 export type PersonState = "invited" | "active" | "disabled";
 
-/** Name of a group. Unique; upper and lower case count the same. */
+/** Name of a group. The name must be unique and is not case-sensitive. */
 export type GroupName = string;
 
-/** A person with an account. */
+/** User account. */
 export interface Person {
   id: number;
   user: string;
@@ -1295,13 +1295,13 @@ export interface Person {
   role: Role;
   state: PersonState;
   created: string;
-  /** Accurate to a few minutes. */
+  /** Accurate to within a few minutes. */
   last_seen?: string;
-  /** Groups of the person, sorted by name. */
+  /** Groups of the user, sorted by name. */
   groups: GroupName[];
 }
 
-/** People. */
+/** Users. */
 export interface PersonList {
   users: Person[];
   total: number;
@@ -1310,41 +1310,41 @@ export interface PersonList {
 /** Id of a group. */
 export type GroupId = number;
 
-/** New account. */
+/** New user account. */
 export interface PersonCreate {
-  /** For signing in, and in the history. Unique; upper and lower case count the same. */
+  /** The user name for sign-in and in the history. It must be unique and is not case-sensitive. */
   user: string;
   full_name?: string;
   role?: Role;
-  /** Groups of the person from the start. */
+  /** Groups to which the user is added. */
   groups?: GroupId[];
 }
 
-/** Changes of an account. */
+/** Changes to a user account. */
 export interface PersonPatch {
   full_name?: string;
   role?: Role;
-  /** Ends all sessions of the user, and prevents signing in. */
+  /** true: ends all sessions of the user and prevents further sign-in. */
   disabled?: boolean;
 }
 
-/** A link with which a person sets a password. The link is shown only now, and works once. */
+/** Link with which a user can set a password. The link can be used only once, and cannot be retrieved later. */
 export interface Invitation {
-  /** Path of the link, after the address of the server. */
+  /** Path of the link, to append to the address of the server. */
   path: string;
   expires: string;
   user: Person;
 }
 
-/** An invitation, to get its user. */
+/** Request for the user of an invitation. */
 export interface InvitationShow {
   invitation: string;
 }
 
-/** An invitation and the new password. */
+/** Invitation and new password. */
 export interface InvitationAccept {
   invitation: string;
-  /** At least ten characters, and not the user name. */
+  /** The password must have at least ten characters and must differ from the user name. */
   password: string;
   full_name?: string;
 }
@@ -1355,18 +1355,18 @@ export interface Project {
   name: string;
   slug: string;
   description: string;
-  /** Changes and deletions of resources with a version must name the version in If-Match (428). */
+  /** true: requests that change or delete resources with a version must contain this version in If-Match (428). */
   require_if_match?: boolean;
-  /** In lists: role of the caller in the project. */
+  /** In lists, the role of the caller in the project. */
   role?: Role;
-  /** In lists: groups that give the caller this role in the project. Absent: it is the caller's own role there, or the role in all projects. */
+  /** In lists, the groups through which the caller has this role. Absent if it is the caller's own role in the project or the caller's role in all projects. */
   groups?: GroupName[];
 }
 
-/** Role in one project. In addition to the role in all projects; the higher one applies. */
+/** Role in one project. This role applies in addition to the user's role in all projects. The higher of the two roles applies. */
 export type ProjectRole = "viewer" | "annotator" | "curator";
 
-/** A person with a role in a project. */
+/** User with a role in a project. */
 export interface Member {
   user: string;
   full_name: string;
@@ -1374,20 +1374,20 @@ export interface Member {
   role: ProjectRole;
 }
 
-/** A group with a role in a project. */
+/** Group with a role in a project. */
 export interface MemberGroup {
   id: GroupId;
   name: GroupName;
-  /** Number of people in the group. */
+  /** Number of users in the group. */
   people: number;
   role: ProjectRole;
 }
 
-/** Members of a project. `total` counts the people. */
+/** Members of a project. `total` is the number of users. */
 export interface MemberList {
-  /** People with a role of their own. */
+  /** Users who have their own role in the project. */
   members: Member[];
-  /** All groups, on every page. */
+  /** All groups. Every page contains them. */
   groups: MemberGroup[];
   total: number;
 }
@@ -1397,11 +1397,11 @@ export interface MemberPut {
   role: ProjectRole;
 }
 
-/** A group of people. */
+/** Group of users. */
 export interface Group {
   id: GroupId;
   name: GroupName;
-  /** Number of people in the group. */
+  /** Number of users in the group. */
   people: number;
   /** Number of projects in which the group has a role. */
   projects: number;
@@ -1413,13 +1413,13 @@ export interface GroupList {
   total: number;
 }
 
-/** A person in a group. */
+/** User in a group. */
 export interface GroupMember {
   user: string;
   full_name: string;
 }
 
-/** A project in which a group has a role. */
+/** Project in which a group has a role. */
 export interface GroupProject {
   /** Slug of the project. */
   project: string;
@@ -1427,7 +1427,7 @@ export interface GroupProject {
   role: ProjectRole;
 }
 
-/** A group with its people and its roles. */
+/** Group with its users and roles. */
 export interface GroupDetail {
   id: GroupId;
   name: GroupName;
@@ -1435,11 +1435,11 @@ export interface GroupDetail {
   members: GroupMember[];
   /** Sorted by name. */
   projects: GroupProject[];
-  /** Number of people who would lose access to a project or get a lower role there if the group was deleted. */
+  /** Number of users who would lose access to a project or have a lower role in it if the group was deleted. */
   losing: number;
 }
 
-/** User name of a person. */
+/** User name. */
 export type GroupPerson = string;
 
 /** New group. */
@@ -1448,70 +1448,70 @@ export interface GroupCreate {
   members?: GroupPerson[];
 }
 
-/** Changes of a group. */
+/** Changes to a group. */
 export interface GroupPatch {
   name?: GroupName;
-  /** People to add to the group. People who are in it already stay. */
+  /** Users to add to the group. Users who are already in the group stay in it. */
   add?: GroupPerson[];
-  /** People to remove from the group. People who are not in it are ignored. */
+  /** Users to remove from the group. Users who are not in the group are ignored. */
   remove?: GroupPerson[];
 }
 
-/** A person who can see the project. */
+/** User who can see the project. */
 export interface ProjectPerson {
   user: string;
   full_name: string;
   color: PersonColor;
 }
 
-/** People who can see the project. */
+/** Users who can see the project. */
 export interface ProjectPersonList {
   people: ProjectPerson[];
   total: number;
 }
 
-/** Kind of the changed thing. */
+/** Kind of the changed item. */
 export type ActivityKind = "edit" | "layer" | "look" | "view" | "tour" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project" | "snapshot";
 
 /** Changed property. */
 export type ChangedProperty = string;
 
-/** Actions of one person on one thing, at most ten minutes apart. */
+/** Actions of one user on one item, at intervals of at most ten minutes. */
 export interface Activity {
   id: number;
   /** Time of the last action. */
   time: string;
   /** Time of the first action. */
   begun: string;
-  /** Absent: the server itself, by its command line. */
+  /** Absent if the change was made with the command line of the server. */
   user?: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
   kind: ActivityKind;
-  /** For edits, records and columns: the operation as in their history. For layers, surface images, views, tours, models, tables and the project: created, changed or deleted; for layers and models also restored. For comments: written, replied, resolved or reopened. For members: added, changed or removed. */
+  /** For edits, records and columns, the operation as in their history. For layers, surface images, views, tours, models, tables and the project: created, changed or deleted. For layers and models, also restored. For comments: written, replied, resolved or reopened. For members: added, changed or removed. */
   op: string;
   /** Current or last name of the layer, surface image, view, tour, model, table or project. */
   name?: string;
-  /** This and the other ids are present while the thing exists. */
+  /** This id and the other ids are present only while the item exists. */
   model?: number;
   model_name?: string;
   layer?: number;
   table?: number;
-  /** Key of the record, if all actions were on this record. The record may be deleted. */
+  /** Key of the record, if all actions changed only this record. The record can be deleted in the meantime. */
   record?: number;
   comment?: number;
-  /** Beginning of the comment. */
+  /** Beginning of the text of the comment. */
   text?: string;
-  /** Person whose role in the project changed. With `group`: person who was added to the group or removed from it. */
+  /** User whose role in the project changed. With `group`, the user who was added to the group or removed from it. */
   person?: string;
-  /** Group with the role in the project, with its name of that moment. */
+  /** Group whose role in the project changed, with the name that it had at that time. */
   group?: GroupName;
   role?: ProjectRole;
-  /** Number of strokes and other edits, of written records or columns, or of changes. */
+  /** Number of strokes and other edits, of changed records or columns, or of other changes. */
   count: number;
-  /** Texels that edits changed, counted once for each edit. */
+  /** Number of texels that the edits changed. A texel counts once for each edit that changed it. */
   texels?: number;
   area_m2?: number;
   changed?: ChangedProperty[];
@@ -1520,39 +1520,39 @@ export interface Activity {
 /** Activity of a project, newest first. */
 export interface ActivityList {
   activity: Activity[];
-  /** `before` of the next page. Absent: this is the last page. */
+  /** The value for `before` to get the next page. Absent on the last page. */
   next?: string;
 }
 
 /** Kind of a deleted item. */
 export type BinKind = "layer" | "model" | "record";
 
-/** Kind and id of a deleted item; for a record, the id of its table and its key. */
+/** Kind and id of a deleted item, or for a record the id of its table and its key. */
 export type BinEntryId = string;
 
-/** A deleted item that can be restored. */
+/** Deleted item that can be restored. */
 export interface BinEntry {
   id: BinEntryId;
   kind: BinKind;
-  /** Name of the layer or model. For a record: its first text, or its key. */
+  /** Name of the layer or model. For a record, its first text, or its key. */
   name: string;
-  /** For a layer: its model. */
+  /** For a layer, the id of its model. */
   model?: number;
   model_name?: string;
-  /** For a record: its table. */
+  /** For a record, the id of its table. */
   table?: number;
   table_name?: string;
-  /** Person who deleted it. Absent: the server itself. */
+  /** User who deleted the item. Absent if the server deleted it. */
   user?: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
   /** Time of the deletion. */
   deleted: string;
-  /** Time when the item leaves the trash. A layer or model is then erased. The values of a record stay in the history of its table. */
+  /** Time when the item is removed from the trash. A layer or model is then erased. The values of a record stay in the history of its table. */
   erased: string;
-  /** Approximate bytes of its files and history. Absent: few. */
+  /** Approximate size of the item's files and history in bytes. Absent if the size is small. */
   bytes?: number;
 }
 
@@ -1560,23 +1560,23 @@ export interface BinEntry {
 export interface BinList {
   entries: BinEntry[];
   total: number;
-  /** Days that items stay in the trash. 0: they are erased at once. */
+  /** Number of days that items stay in the trash. 0: items are erased at once. */
   days: number;
 }
 
-/** A restored item. */
+/** Restored item. */
 export interface BinRestored {
   kind: BinKind;
-  /** Former id of the layer or model, or key of the record. */
+  /** Id of the layer or model, or key of the record. */
   restored: number;
   name: string;
-  /** Short name of the layer or model. */
+  /** Slug of the layer or model. */
   slug?: string;
-  /** Former short name, if something else has it now. */
+  /** Slug before the deletion, if another item uses it now. */
   former_slug?: string;
-  /** For a layer: its model. */
+  /** For a layer, the id of its model. */
   model?: number;
-  /** For a record: its table. */
+  /** For a record, the id of its table. */
   table?: number;
 }
 
@@ -1589,7 +1589,7 @@ export interface ProjectList {
 /** New project. */
 export interface ProjectCreate {
   name: string;
-  /** Absent: made from the name. Never all digits. */
+  /** Default: derived from the name. A slug cannot consist only of digits. */
   slug?: string;
   /** Default: "". */
   description?: string;
@@ -1599,7 +1599,7 @@ export interface ProjectCreate {
 export interface ProjectPatch {
   name?: string;
   description?: string;
-  /** As in Project. Curators can change it, too. */
+  /** The same setting as in Project. Curators can also change it. */
   require_if_match?: boolean;
 }
 
@@ -1609,14 +1609,14 @@ export interface ModelList {
   total: number;
 }
 
-/** Changes to a model's metadata. No change affects paint. Stating the unit clears `unit_assumed`. */
+/** Changes to a model's metadata. The changes do not affect the painted values. Setting the unit clears `unit_assumed`. */
 export interface ModelPatch {
   name?: string;
   unit?: Unit;
   scale_verified?: boolean;
   up?: Axis;
   north?: string;
-  /** EPSG:n, or empty. */
+  /** Coordinate system as EPSG:n, or empty. */
   crs?: string;
   default_resolution?: Resolution;
   inventory_number?: string;
@@ -1628,29 +1628,29 @@ export interface ModelPatch {
   processing?: string;
   rights_uri?: string;
   credit?: string;
-  /** Lowest role that can get the scan's files, the pictures of its surface images and its mesh. */
+  /** Lowest role that can download the files of the scan, the surface images in full size and the mesh. */
   source_download?: "viewer" | "annotator" | "curator";
 }
 
-/** File that a job made. For the user who started the job, at `/jobs/{job}/file`. The server keeps only the newest files. */
+/** File that a job created. The user who started the job can get the file from `/jobs/{job}/file`. The server keeps only the newest files. */
 export interface JobFile {
   name: string;
   media_type: string;
   bytes: number;
 }
 
-/** One layer of a transfer. */
+/** Layer in a transfer. */
 export interface TransferredLayer {
   /** Id of the original layer. */
   from: number;
   /** Id of the new layer. */
   layer: number;
   name?: string;
-  /** Painted surface of the original layer. */
+  /** Painted area of the original layer. */
   source_m2: number;
-  /** Painted surface of the new layer. */
+  /** Painted area of the new layer. */
   transferred_m2: number;
-  /** The part of `source_m2` that has no counterpart within the tolerance. */
+  /** The part of `source_m2` for which this model has no surface within the tolerance. */
   lost_m2: number;
 }
 
@@ -1658,30 +1658,30 @@ export interface TransferredLayer {
 export interface TransferReport {
   /** Id of the model with the original layers. */
   from: number;
-  /** Surface of the model with the new layers. */
+  /** Surface area of the model with the new layers. */
   area_m2: number;
-  /** The part of `area_m2` that has a counterpart within the tolerance. */
+  /** The part of `area_m2` for which the other model has a surface within the tolerance. */
   matched_m2: number;
   layers: TransferredLayer[];
-  /** Lines and points of records that are now also on this model. */
+  /** Number of lines and points of records that were copied to this model. */
   marks?: number;
-  /** Lines and points of the other model that have no counterpart within the tolerance, completely or in part. */
+  /** Number of lines and points of the other model that could not be copied completely, because this model has no surface within the tolerance. */
   lost_marks?: number;
 }
 
-/** Job: work that takes longer than an answer. */
+/** Job: a task that runs in the background. */
 export interface Job {
   id: number;
   state: "queued" | "running" | "done" | "failed" | "cancelled";
   progress: number;
-  /** The current step, for people. */
+  /** Description of the current step, for people. */
   message: string;
   problem?: Problem;
-  /** Id of the model, when the job is finished. */
+  /** Id of the model, if the job is finished. */
   model?: number;
-  /** Ids of the layers that the job made on the model. */
+  /** Ids of the layers that the job created on the model. */
   layers?: number[];
-  /** Id of the surface image that the job made on the model. */
+  /** Id of the surface image that the job created on the model. */
   look?: number;
   report?: TransferReport;
   file?: JobFile;
@@ -1689,13 +1689,13 @@ export interface Job {
 
 /** Transfer of layers from another version of the same scan. */
 export interface Transfer {
-  /** Id or slug of the model with the original layers. The coordinates of both models must be of one system. */
+  /** Id or slug of the model with the original layers. Both models must use the same coordinate system. */
   from: string;
-  /** A place stays empty if the other model has no surface within this distance. */
+  /** Maximum distance in millimeters. Points stay empty if the other model has no surface within this distance. */
   tolerance_mm: number;
-  /** Largest angle between the surfaces in degrees. It keeps the two sides of a thin wall apart. Default: 60. */
+  /** Maximum angle between the two surfaces in degrees. It prevents transfers between the two sides of a thin wall. Default: 60. */
   max_angle?: number;
-  /** Ids or slugs. Absent: all. */
+  /** Ids or slugs of the layers. Default: all layers. */
   layers?: string[];
 }
 
@@ -1711,18 +1711,18 @@ export interface LayerList {
   total: number;
 }
 
-/** Color that covers a part of a picture. */
+/** Color that covers a part of an image. */
 export interface MapColor {
   color: string;
   share: number;
-  /** The color covers most of the border. */
+  /** true: the color covers most of the border of the image. */
   background: boolean;
 }
 
 /** Attribute of a map's polygons. */
 export interface MapColumn {
   name: string;
-  /** Type of the value that every polygon has. mixed: the attribute cannot be painted. */
+  /** Type of the values, which is the same for all polygons. `mixed`: the types differ, and the attribute cannot be painted. */
   type: "number" | "text" | "mixed";
   samples: string[];
 }
@@ -1731,24 +1731,24 @@ export interface MapColumn {
 export interface MapContents {
   kind: "polygons" | "picture";
   format: "geojson" | "shapefile" | "picture" | "tiff";
-  /** Coordinate system, if the file names it. */
+  /** Coordinate system, if the file names one. */
   crs?: string;
-  /** In the plane: least x and y, greatest x and y. Absent: the file does not contain its place. */
+  /** Bounds in the plane of the map: minimum x and y, maximum x and y. Absent if the file does not contain its position. */
   bounds?: [number, number, number, number];
   polygons?: number;
   columns?: MapColumn[];
-  /** In pixels. */
+  /** Width in pixels. */
   width?: number;
   height?: number;
-  /** The six numbers, in the order of a world file's lines. */
+  /** The six numbers of the world file, in the order of its lines. */
   world?: number[];
-  /** Number of bands whose numbers can be painted. Absent: none. */
+  /** Number of bands whose numbers can be painted. Absent if the file has no such bands. */
   bands?: number;
   type?: ValueType;
   nodata?: number;
-  /** The file can be used as a picture. */
+  /** true: the file can be used as an image. */
   has_colors?: boolean;
-  /** Its bands are colors. */
+  /** true: the bands of the file contain colors. */
   is_rgb?: boolean;
   colors?: MapColor[];
 }
@@ -1756,53 +1756,53 @@ export interface MapContents {
 /** New column. */
 export interface ColumnCreate {
   name: string;
-  /** Absent: made from the name. Never all digits. */
+  /** Default: derived from the name. A slug cannot consist only of digits. */
   slug?: string;
   labels?: Labels;
   /** Default: "text". */
   kind?: ColumnKind;
-  /** Numbers: unit of the values. Default: "". */
+  /** For columns of numbers, the unit of the values. Default: "". */
   unit?: string;
   /** Default: false. */
   required?: boolean;
   /** Default: false. */
   unique?: boolean;
-  /** Value of new records that give none. Null: no value. */
+  /** Value of new records that do not set one. Null means no value. */
   default?: CellValue;
   /** Default: "". */
   comment?: string;
-  /** Enumerations: possible values. */
+  /** For enumerations, the possible values. */
   choices?: string[];
-  /** Terms and relations: table of the project whose records they name. */
+  /** For terms and relations, the table of the project whose records they refer to. */
   target?: TableRef;
   minimum?: number | null;
   maximum?: number | null;
-  /** Absent: public. */
+  /** Default: public. */
   visibility?: Visibility;
 }
 
-/** Changes to a column. With another kind or target, a new column replaces this one and gets the values that it can hold. */
+/** Changes to a column. If the kind or target changes, a new column replaces this one. It contains the values that the server could convert. */
 export interface ColumnPatch {
   name?: string;
   slug?: string;
   labels?: Labels;
   kind?: ColumnKind;
-  /** Numbers: unit of the values. */
+  /** For columns of numbers, the unit of the values. */
   unit?: string;
   required?: boolean;
   unique?: boolean;
-  /** Value of new records that give none. Null: no value. */
+  /** Value of new records that do not set one. Null means no value. */
   default?: CellValue;
   comment?: string;
-  /** Enumerations: possible values. */
+  /** For enumerations, the possible values. */
   choices?: string[];
-  /** Terms and relations: table of the project whose records they name. */
+  /** For terms and relations, the table of the project whose records they refer to. */
   target?: TableRef;
   minimum?: number | null;
   maximum?: number | null;
-  /** In ascending order from left to right. */
+  /** Columns are sorted in ascending order, from left to right. */
   order?: number;
-  /** Only without other members. The change also applies to the past. It is not an entry of the table's journal, so undo cannot show the column again. */
+  /** Can only be changed in a separate request, without other members. The change also applies to earlier states. It is not an entry in the table's journal, so undo cannot reverse it. */
   visibility?: Visibility;
 }
 
@@ -1812,40 +1812,40 @@ export interface ColumnList {
   total: number;
 }
 
-/** A column after a change. */
+/** Column after a change. */
 export interface ColumnChanged {
   column: Column;
   sequence: number;
-  /** For another kind: number of converted values. */
+  /** If the kind changed, the number of converted values. */
   converted?: number;
-  /** Number of values that could not be converted. Undo brings them back. */
+  /** Number of values that could not be converted. Undo restores these values. */
   lost?: number;
-  /** The first records with such values. */
+  /** Keys of the first records with such values. */
   lost_keys?: number[];
 }
 
-/** File of a record. */
+/** File that is attached to a record. */
 export interface Attachment {
   id: number;
   /** Id of the table. */
   table: number;
   name: string;
-  /** Detected by the bytes of the file, not by the type that the sender states. */
+  /** The server detects the media type from the bytes of the file, and ignores the type that the sender states. */
   media_type: string;
   bytes: number;
   sha256: string;
-  /** Width of JPEG and PNG pictures, as their rows are stored. */
+  /** Width of JPEG and PNG images in pixels, as stored in the file (without Exif rotation). */
   width?: number;
   height?: number;
   user: string;
   time: string;
-  /** The person who attached the file can always see it. */
+  /** The user who attached the file can always see it. */
   visibility: Visibility;
-  /** In the list of a record: slug of the column. */
+  /** In the list of a record's files, the slug of the column. */
   column?: string;
 }
 
-/** Changes to a file of a record. */
+/** Changes to an attached file. */
 export interface AttachmentPatch {
   visibility: Visibility;
 }
@@ -1863,25 +1863,25 @@ export interface Attached {
   record: TableRecord;
 }
 
-/** Names of files, and how they name their records. */
+/** File names, and the pattern by which they identify records. */
 export interface AttachmentMatch {
-  /** A {word} matches one or more characters. The word with the name of the column names the record. */
+  /** A placeholder {word} matches one or more characters. The placeholder with the name of the column identifies the record. */
   pattern: string;
   /** Slug or id of a column, or `key`. */
   column: string;
   names: string[];
 }
 
-/** Name of a file, with its record. */
+/** File name and matching record. */
 export interface MatchedName {
   name: string;
   key?: number;
   words?: Record<string, string>;
-  /** The name does not match the pattern; no record, or more than one, has the value; the record has a file with this name; or the request contains the name twice. */
+  /** Reason why there is no match: the name does not match the pattern, or not exactly one record has the value. Other reasons: the record already has a file with this name, or the request contains the name twice. */
   reason?: "pattern" | "record" | "several" | "attached" | "twice";
 }
 
-/** Records of files. */
+/** Records that match file names. */
 export interface AttachmentMatches {
   matched: MatchedName[];
   unmatched: MatchedName[];
@@ -1898,7 +1898,7 @@ export interface TableList {
 /** New table. */
 export interface TableCreate {
   name: string;
-  /** Absent: made from the name. Never all digits. */
+  /** Default: derived from the name. A slug cannot consist only of digits. */
   slug?: string;
   labels?: Labels;
   /** Default: "". */
@@ -1911,7 +1911,7 @@ export interface TablePatch {
   name?: string;
   labels?: Labels;
   description?: string;
-  /** Id or slug of the column with the titles of records. Empty: the best one by rule. */
+  /** Id or slug of the column that contains the titles of records. If empty, the server chooses a column (see Table). */
   title_column?: string;
 }
 
@@ -1923,46 +1923,46 @@ export interface RecordList {
 
 /** New record. */
 export interface RecordInput {
-  /** Absent: the next free key. The server never gives the key of a deleted record again. */
+  /** Default: the next free key. The server never reuses the key of a deleted record. */
   key?: number;
   values?: CellValues;
 }
 
-/** One new record, or several. Either `records`, of which all or none are created, or `key` and `values` of one record. */
+/** One or several new records. Contains either `records`, or `key` and `values` of a single record. The server creates all of the records or none. */
 export interface RecordsCreate {
   key?: number;
   values?: CellValues;
   records?: RecordInput[];
 }
 
-/** Changes to a record. Columns that are not named do not change. */
+/** Changes to a record. Columns that are not listed do not change. */
 export interface RecordPatch {
-  /** Version of the record as it was read, as in If-Match. */
+  /** Version of the record when it was read, as for If-Match. */
   version?: number;
   values: CellValues;
 }
 
-/** Term in its place in a list. */
+/** Term with its position in a term list. */
 export interface ListedTerm {
-  /** Key of the record, as texels hold it. */
+  /** Key of the record, which texels store. */
   key: number;
   code: string;
-  /** Key of the parent term. Absent at the top. */
+  /** Key of the parent term. Absent for terms without a parent. */
   parent?: number;
-  /** Name in the requested language, if the term has one in it. */
+  /** Name in the requested language, if the term has one. */
   name: string;
   /** Label without a language. */
   label: string;
-  /** By language, in lower case. */
+  /** Labels by language. The language tags are in lower case. */
   labels: Record<string, string>;
   depth: number;
-  /** Number of terms with this term as their parent. */
+  /** Number of terms whose parent is this term. */
   below: number;
-  /** The term matches the search. Otherwise it is only above such a term. */
+  /** true: the term matches the search. false: only a term below it matches. */
   match: boolean;
   definition: string;
   uri: string;
-  /** Color in layers that use the colors of the terms: its own, or a shade of the parent's. */
+  /** Color in layers that use the colors of the terms: the color of the term, or a shade of the parent's color. */
   color: string;
   pattern: string;
 }
@@ -1978,7 +1978,7 @@ export interface TemplateTerm {
   code: string;
   /** Code of the parent term. */
   parent?: string;
-  /** In English. */
+  /** Label in English. */
   label: string;
   labels?: Labels;
   /** Default: "". */
@@ -1987,16 +1987,16 @@ export interface TemplateTerm {
   pattern?: "solid" | "hatch" | "dots" | "outline";
 }
 
-/** Table of a template. It has terms, columns, or both. Columns of a term list come after those that every list has. */
+/** Table of a template. The table has terms, columns or both. The columns of a term list follow the columns that every term list has. */
 export interface TemplateTable {
   name: string;
-  /** Name of the table in columns and layers of the template. */
+  /** Name by which columns and layers of the template refer to the table. */
   slug: string;
   labels?: Labels;
   /** Default: "". */
   description?: string;
   terms?: TemplateTerm[];
-  /** Their targets are earlier tables of the template, or the table itself. */
+  /** The targets of the columns are earlier tables of the template, or the table itself. */
   columns?: ColumnCreate[];
 }
 
@@ -2009,15 +2009,15 @@ export interface TemplateLayer {
   type: "u8" | "u16" | "u32";
 }
 
-/** Group of a template's layers. */
+/** Group of layers in a template. */
 export interface TemplateGroup {
   name: string;
   labels?: Labels;
 }
 
-/** Template: tables and layers that are made together. */
+/** Template: tables and layers that are created together. */
 export interface Template {
-  /** Name of the template's file. */
+  /** Name of the file of the template. */
   slug?: string;
   name: string;
   labels?: Labels;
@@ -2036,19 +2036,19 @@ export interface TemplateList {
 
 /** Use of a template. */
 export interface TemplateUse {
-  /** Id or slug of a model of the project that gets the layers. Absent: only tables are created. */
+  /** Id or slug of the model of the project on which the layers are created. If absent, only tables are created. */
   model?: string;
-  /** Language of the names, if the template has it. Otherwise English. */
+  /** Language of the names. If the template does not contain this language, the names are in English. */
   language?: string;
 }
 
-/** Tables and layers made from a template. */
+/** Tables and layers that were created from a template. */
 export interface TemplateMade {
   tables: Table[];
   layers: Layer[];
 }
 
-/** Changes of a table by undo or redo. */
+/** Changes to a table by undo or redo. */
 export interface TableChanged {
   sequence: number;
   /** Keys of records that were created. */
@@ -2058,30 +2058,30 @@ export interface TableChanged {
   columns_changed: boolean;
 }
 
-/** Cells before or after a change. For a record: `exists`, and values by column id. For a column: `hidden`, and its properties. */
+/** Cells before or after a change. For a record: `exists`, and the values by column id. For a column: `hidden`, and the properties of the column. */
 export type ChangedCells = Record<string, string | number | boolean | null | (number | string)[] | Mark[] | Record<string, string>>;
 
-/** Change of one record or column. */
+/** Change to one record or column. */
 export interface TableCellChange {
   /** Key of the record. */
   record?: number;
-  /** Id of the column, if the change is on a column. */
+  /** Id of the column, if a column changed. */
   column?: number;
   before: ChangedCells;
   after: ChangedCells;
 }
 
-/** One entry of a table's history. */
+/** Entry in the history of a table. */
 export interface TableEdit {
   sequence: number;
   user: string;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
   op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "attach" | "detach" | "restore" | "undo" | "redo";
-  /** False while the entry is undone. */
+  /** false while the entry is undone. */
   in_force: boolean;
   changes: TableCellChange[];
-  /** `changes` contains at most the first hundred. */
+  /** Number of all changes. `changes` contains at most the first hundred. */
   total_changes: number;
 }
 
@@ -2101,7 +2101,7 @@ export interface LayerArea {
 /** Area of one key on one model. */
 export interface ModelArea {
   model: number;
-  /** Sum of its layers. */
+  /** Sum of the areas on all layers. */
   area_m2: number;
   layers: LayerArea[];
 }
@@ -2109,9 +2109,9 @@ export interface ModelArea {
 /** Area of one key. */
 export interface KeyArea {
   key: number;
-  /** Sum of all models. */
+  /** Sum of the areas on all models. */
   area_m2: number;
-  /** False: the record was deleted, and undo or an earlier state brought back paint with its key. */
+  /** false: the record was deleted, but an undo or a restore has restored paint with its key. */
   has_record: boolean;
   models: ModelArea[];
 }
@@ -2124,33 +2124,33 @@ export interface TableAreas {
 
 /** Total quantities. */
 export interface QuantitySum {
-  /** Connected areas, across the seams of the atlas. */
+  /** Number of connected areas. Seams of the atlas do not divide them. */
   pieces: number;
-  /** If the table has columns of lines: their length. */
+  /** Total length of the lines, if the table has line columns. */
   length_m?: number;
-  /** If the table has columns of points: their number. */
+  /** Number of points, if the table has point columns. */
   point_count?: number;
   texels: number;
   area_m2: number;
-  /** For layers: share of the model's surface. */
+  /** For layers, the share of the model's surface. */
   share?: number;
 }
 
-/** Quantities of a class. `key` for layers of records; `value` if each value is a class; `from` and `to` for ranges. A range without one of them is open there. */
+/** Quantities of a class. For layers of records, `key` identifies the class. If each value is a class, `value` identifies it. For ranges, `from` and `to` are the limits. If one of them is absent, the range is open at that end. */
 export interface LayerQuantity {
-  /** Name of the record or label in the legend, otherwise the number or the range. */
+  /** Name of the record, or label in the legend, or else the number or the range. */
   class: string;
   key?: number;
-  /** With `key`: whether the record exists. */
+  /** With `key`, whether the record exists. */
   has_record?: boolean;
   value?: number;
   from?: number;
   to?: number;
-  /** Connected areas, across the seams of the atlas. */
+  /** Number of connected areas. Seams of the atlas do not divide them. */
   pieces: number;
-  /** If the table has columns of lines: their length. */
+  /** Total length of the lines, if the table has line columns. */
   length_m?: number;
-  /** If the table has columns of points: their number. */
+  /** Number of points, if the table has point columns. */
   point_count?: number;
   texels: number;
   area_m2: number;
@@ -2164,7 +2164,7 @@ export interface LayerQuantities {
   /** Number of classes. */
   total: number;
   sum: QuantitySum;
-  /** Surface of the whole model. */
+  /** Surface area of the whole model. */
   surface_m2: number;
 }
 
@@ -2172,7 +2172,7 @@ export interface LayerQuantities {
 export interface QuantityOnLayer {
   model: number;
   layer: number;
-  /** Connected areas, across the seams of the atlas. */
+  /** Number of connected areas. Seams of the atlas do not divide them. */
   pieces: number;
   texels: number;
   area_m2: number;
@@ -2184,11 +2184,11 @@ export interface TableQuantity {
   class: string;
   key: number;
   has_record: boolean;
-  /** Connected areas, across the seams of the atlas. */
+  /** Number of connected areas. Seams of the atlas do not divide them. */
   pieces: number;
-  /** If the table has columns of lines: their length. */
+  /** Total length of the lines, if the table has line columns. */
   length_m?: number;
-  /** If the table has columns of points: their number. */
+  /** Number of points, if the table has point columns. */
   point_count?: number;
   texels: number;
   area_m2: number;
@@ -2203,35 +2203,35 @@ export interface TableQuantities {
   sum: QuantitySum;
 }
 
-/** Values computed from the model's shape. The answer is a job; the layer exists when the job is finished. If unit, palette or description are absent, they follow from the recipe. */
+/** Values that are computed from the shape of the model. The response is a job. The layer exists when the job is finished. If unit, palette or description are absent, the server derives them from the recipe. */
 export interface ShapeRecipe {
   kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "vertex_property";
-  /** Curvatures and roughness: radius of the neighborhood. Absent: four edges of the mesh. */
+  /** For curvature and roughness, the radius of the neighborhood. Default: the length of four edges of the mesh. */
   radius_mm?: number;
-  /** Ambient occlusion and model distance: largest distance of the search. Absent: a quarter of the model's diagonal for ambient occlusion, a tenth for model distance. */
+  /** For ambient occlusion and model distance, the maximum search distance. Default: a quarter of the model's diagonal for ambient occlusion, and a tenth for model distance. */
   distance_mm?: number;
-  /** Ambient occlusion: rays for each point. Absent: 64. */
+  /** For ambient occlusion, the number of rays for each point. Default: 64. */
   rays?: number;
-  /** Height: the world coordinate, instead of the height above the lowest point. Default: false. */
+  /** For height, true: use the world coordinate instead of the height above the lowest point. Default: false. */
   absolute?: boolean;
-  /** Model distance: id or slug of the other model. */
+  /** For model distance, the id or slug of the other model. */
   model?: string;
-  /** Vertex property: its name in the PLY, such as quality. */
+  /** For a vertex property, its name in the PLY file, such as quality. */
   property?: string;
-  /** Vertex property: the source file. Required if several files have the property. */
+  /** For a vertex property, the source file. Required if several files contain the property. */
   source?: string;
 }
 
 /** New layer. */
 export interface LayerCreate {
   name: string;
-  /** Absent: made from the name. Never all digits. */
+  /** Default: derived from the name. A slug cannot consist only of digits. */
   slug?: string;
   /** Default: "numeric". */
   kind?: LayerKind;
-  /** Absent: u8. For computed layers f32, except u8 for a condition. */
+  /** Default: u8. For computed layers, the default is f32, or u8 for a condition. */
   type?: ValueType;
-  /** Absent: the model's default. */
+  /** Default: the default resolution of the model. */
   resolution?: Resolution;
   /** Default: "". */
   unit?: string;
@@ -2240,35 +2240,35 @@ export interface LayerCreate {
   /** Names of the layer in other languages. */
   labels?: Labels;
   descriptions?: Descriptions;
-  /** Heading under which the page lists the layer. The server removes blanks at its ends. Empty: none. */
+  /** Heading under which the web page lists the layer. The server removes spaces at the beginning and end. Empty means no heading. */
   group?: string;
   palette?: Palette;
   /** Default: 1. */
   opacity?: number;
-  /** Absent: normal. */
+  /** Default: normal. */
   blend?: LayerBlend;
-  /** Absent: true. For computed layers false, because they must not cover the view of others; the creator sees the layer at once. */
+  /** Default: true. For computed layers, the default is false, so that they do not cover the other layers for other users. The creator sees the layer at once. */
   visible?: boolean;
-  /** Nobody below curator can change the texels of the layer. Absent: false. A computed layer is always locked when it is created (422 for false). */
+  /** true: users below the curator role cannot change the texels of the layer. Default: false. A new computed layer is always locked (422 for false). */
   locked?: boolean;
-  /** Edits of annotators wait for a review by a curator. Default: false. */
+  /** true: edits by annotators wait for a review by a curator. Default: false. */
   review?: boolean;
-  /** Absent: public. Everybody who can see the layer must be able to see the layers and columns that it reads and that color it. */
+  /** Default: public. Everybody who can see the layer must also be able to see the layers and columns that it reads or that color it. */
   visibility?: Visibility;
-  /** Absent: on top. A computed layer is below all others. */
+  /** Default: above all other layers. For computed layers, the default is below all other layers. */
   order?: number;
-  /** Layers of records: the project's table whose keys the texels hold. Absent: a new table with the layer's name. */
+  /** For layers of records, the table of the project whose keys the texels store. By default, the server creates a new table with the name of the layer. */
   table?: TableRef;
-  /** Layers of records without `table`: columns of the new table. Absent: one text column, Name. */
+  /** For layers of records without `table`, the columns of the new table. Default: one text column, Name. */
   columns?: ColumnCreate[];
   compute?: ShapeRecipe;
-  /** For a computed layer: a number, or a condition (1 where it is true, not painted elsewhere). It can use layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
+  /** For a computed layer, a formula or a condition. A condition results in the value 1 where it is true and no value elsewhere. The expression can use layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
   expression?: string;
-  /** With `expression`. Absent: manual. */
+  /** Only with `expression`. Default: manual. */
   recompute?: Recompute;
 }
 
-/** How the content of a layer was computed. A shape recipe with its defaults filled in, or a transfer (`kind` is transfer). */
+/** How the content of a layer was computed. A shape recipe that includes its default values, or a transfer (`kind` is transfer). */
 export interface Recipe {
   kind: string;
   radius_mm?: number;
@@ -2283,13 +2283,13 @@ export interface Recipe {
   source?: string;
 }
 
-/** A property and its file. */
+/** Vertex property with its file. */
 export interface VertexPropertyName {
   source: string;
   property: string;
 }
 
-/** Numbers of the source files' vertices. */
+/** Numeric vertex properties of the source files. */
 export interface VertexPropertyList {
   properties: VertexPropertyName[];
   total: number;
@@ -2301,13 +2301,13 @@ export interface LookList {
   total: number;
 }
 
-/** Comments of a model, in the order of ids. */
+/** Comments of a model, sorted by id. */
 export interface CommentList {
   comments: Comment[];
   total: number;
 }
 
-/** Replies of a thread, in the order of ids. */
+/** Replies in a thread, sorted by id. */
 export interface ReplyList {
   replies: Comment[];
   total: number;
@@ -2317,29 +2317,29 @@ export interface ReplyList {
 export interface CommentCreate {
   /** Plain text. */
   text: string;
-  /** World coordinates. The server uses the nearest place of the surface, within 5 % of the model's diagonal. */
+  /** Position in world coordinates. The server uses the nearest point on the surface. The distance to this point can be at most 5 % of the model's diagonal. */
   position: Point3;
   /** The layer that the comment is about. */
   layer?: LayerRef;
-  /** The record that the comment is about: a key of the layer, which must be a layer of records. */
+  /** Key of the record that the comment is about. `layer` must then be a layer of records. */
   record?: number;
 }
 
-/** Reply in a thread. */
+/** Reply in a comment thread. */
 export interface ReplyCreate {
   /** Plain text. */
   text: string;
 }
 
-/** New text of a comment, or new state of a thread. */
+/** New text of a comment or new state of a thread. */
 export interface CommentPatch {
-  /** Text of your own comment. */
+  /** New text. You can change only your own comments. */
   text?: string;
-  /** State of the thread, on its first comment. */
+  /** New state of the thread. Only for the first comment of the thread. */
   state?: CommentState;
 }
 
-/** Saved views of a model, in the order of their creation. */
+/** Saved views of a model, sorted by time of creation. */
 export interface ViewList {
   views: View[];
   total: number;
@@ -2350,28 +2350,28 @@ export interface ViewCreate {
   name: string;
   /** Plain text. */
   text?: string;
-  /** With its section. */
+  /** Camera with its section. */
   camera: Camera;
-  /** Layers that are not listed have their defaults. */
+  /** Layers that are not listed have their default settings. */
   layers?: LayerOverride[];
-  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
+  /** The visible surface images from bottom to top. Default: the surface images that are visible by default. */
   looks?: LookShown[];
-  /** Absent: museum. */
+  /** Default: the light mode museum. */
   light?: Light;
 }
 
-/** Changes to a saved view. The content changes as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults. */
+/** Changes to a saved view. The content can only be replaced as a whole. If the request contains `camera`, then `layers`, `looks` and `light` get their default values if they are absent. */
 export interface ViewPatch {
   name?: string;
   /** Plain text. */
   text?: string;
-  /** With its section. */
+  /** Camera with its section. */
   camera?: Camera;
-  /** Layers that are not listed have their defaults. */
+  /** Layers that are not listed have their default settings. */
   layers?: LayerOverride[];
-  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
+  /** The visible surface images from bottom to top. Default: the surface images that are visible by default. */
   looks?: LookShown[];
-  /** Absent: museum. */
+  /** Default: the light mode museum. */
   light?: Light;
 }
 
@@ -2380,18 +2380,18 @@ export interface TourEntry {
   id: number;
   slug: string;
   name: string;
-  /** Plain text: the subject of the tour, for people who choose one. */
+  /** The subject of the tour as plain text, which helps people to choose a tour. */
   text: string;
   languages: TourLanguage[];
   stop_count: number;
-  /** Creator of the tour. */
+  /** User who created the tour. */
   user: string;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
   version: number;
 }
 
-/** Tours of a model, in the order of their creation. */
+/** Tours of a model, sorted by time of creation. */
 export interface TourList {
   tours: TourEntry[];
   total: number;
@@ -2401,53 +2401,53 @@ export interface TourList {
 export interface TourStopCreate {
   /** Slug or id of a saved view of the model. */
   view: string;
-  /** At least in the tour's first language. */
+  /** The title must exist at least in the first language of the tour. */
   title: TourWords;
   text?: TourText;
-  /** Seconds that the stop is shown while the tour plays by itself. Default: 10. */
+  /** Number of seconds for which the stop is shown while the tour plays automatically. Default: 10. */
   attract_s?: number;
-  /** Absent: `move`. */
+  /** Default: `move`. */
   transition?: TourTransition;
-  /** Duration of a `move` in seconds. Default: 2. */
+  /** Duration of a `move` transition in seconds. Default: 2. */
   transition_s?: number;
-  /** Slugs or ids of the layers to swipe between, in this order. Each layer once. */
+  /** Slugs or ids of the layers between which visitors can swipe, in this order. Each layer can occur only once. */
   layers?: string[];
-  /** Each entry has another table of the project. */
+  /** Each entry must refer to a different table of the project. */
   records?: TourRecords[];
-  /** Pictures, sounds and videos of the tour, in this order. Each file once. */
+  /** Images, sounds and videos of the tour, in this order. Each file can occur only once. */
   media?: TourMedium[];
 }
 
 /** New tour. */
 export interface TourCreate {
   name: string;
-  /** Plain text: the subject of the tour, for people who choose one. */
+  /** The subject of the tour as plain text, which helps people to choose a tour. */
   text?: string;
-  /** The first one is the default language; every stop has a title in it. Each language once. */
+  /** The first language is the default language. Every stop must have a title in this language. Each language can occur only once. */
   languages: TourLanguage[];
-  /** Seconds after the last touch until the tour restarts and plays by itself. Default: 60. */
+  /** Seconds without touches after which the tour restarts and plays automatically. Default: 60. */
   idle_s?: number;
   theme?: TourTheme;
-  /** Other names of classes. Each layer once. */
+  /** Names of classes that differ from those in the legend. Each layer can occur only once. */
   classes?: TourClasses[];
   stops: TourStopCreate[];
 }
 
-/** Changes to a tour. Stops change as a whole. Remaining stops must match the languages. */
+/** Changes to a tour. The list of stops can only be replaced as a whole. If it is not replaced, the existing stops must match the languages. */
 export interface TourPatch {
   name?: string;
-  /** Plain text: the subject of the tour, for people who choose one. */
+  /** The subject of the tour as plain text, which helps people to choose a tour. */
   text?: string;
-  /** The first one is the default language; every stop has a title in it. Each language once. */
+  /** The first language is the default language. Every stop must have a title in this language. Each language can occur only once. */
   languages?: TourLanguage[];
   idle_s?: number;
   theme?: TourTheme;
-  /** Other names of classes. Each layer once. */
+  /** Names of classes that differ from those in the legend. Each layer can occur only once. */
   classes?: TourClasses[];
   stops?: TourStopCreate[];
 }
 
-/** Kiosk link: a screen that shows a tour. */
+/** Kiosk link for a screen that shows a tour. */
 export interface Kiosk {
   id: number;
   /** Location of the screen. */
@@ -2460,23 +2460,23 @@ export interface Kiosk {
   /** Slug of the tour. */
   tour: string;
   tour_name: string;
-  /** Creator of the link. */
+  /** User who created the link. */
   user: string;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   created: string;
-  /** Absent: never. */
+  /** Absent if the link does not expire. */
   expires?: string;
-  /** Accurate to a minute. Absent: never. */
+  /** Accurate to one minute. Absent if the kiosk has never sent a request. */
   last_seen?: string;
-  /** Time when the link was revoked. Absent: the link was not revoked. */
+  /** Time when the link was revoked. Absent if the link was not revoked. */
   revoked?: string;
-  /** A reload of the page was requested, and the kiosk has not reloaded it yet. */
+  /** true: a reload of the page was requested, and the kiosk has not reloaded it yet. */
   wants_reload: boolean;
-  /** The screen shows a QR code, with which visitors open the tour on their phones. */
+  /** true: the screen shows a QR code with which visitors can open the tour on their phones. */
   phones?: boolean;
 }
 
-/** Kiosk links, in the order of their creation. */
+/** Kiosk links, sorted by time of creation. */
 export interface KioskList {
   kiosks: Kiosk[];
   total: number;
@@ -2486,21 +2486,21 @@ export interface KioskList {
 export interface KioskCreate {
   /** Location of the screen. */
   name: string;
-  /** Days until the link expires. Absent: never. */
+  /** Number of days until the link expires. Default: the link does not expire. */
   days?: number;
-  /** The screen shows a QR code, with which visitors open the tour on their phones. Default: false. */
+  /** true: the screen shows a QR code with which visitors can open the tour on their phones. Default: false. */
   phones?: boolean;
 }
 
 /** Changes to a kiosk link. */
 export interface KioskPatch {
-  /** false: the QR code disappears, and the links that phones opened by it become invalid. true: a new code. */
+  /** false: the screen hides the QR code, and the link in the code becomes invalid. true: the screen shows a new QR code. */
   phones: boolean;
 }
 
-/** A new kiosk link, which is shown only now. */
+/** New kiosk link, which cannot be retrieved later. */
 export interface KioskMade {
-  /** Path of the page, after the address of the server: `/kiosk/{secret}`. */
+  /** Path of the page, to append to the address of the server: `/kiosk/{secret}`. */
   path: string;
   kiosk: Kiosk;
 }
@@ -2511,7 +2511,7 @@ export interface KioskLogin {
   link: string;
 }
 
-/** A kiosk's own data. */
+/** Data of the calling kiosk. */
 export interface KioskSelf {
   id: number;
   /** Location of the screen. */
@@ -2521,13 +2521,13 @@ export interface KioskSelf {
   /** Slug of the model. */
   model: string;
   tour: Tour;
-  /** UTC, RFC 3339. Absent: never. */
+  /** In UTC (RFC 3339). Absent if the link does not expire. */
   expires?: string;
-  /** true: reload the page and sign in with the link, which clears this member. */
+  /** true: the kiosk must reload its page and open the link again. This resets the member. */
   wants_reload: boolean;
-  /** The caller has the link for phones. Absent: false. */
+  /** true: the caller uses the link for phones. Default: false. */
   is_phone?: boolean;
-  /** Path of the page for visitors' phones, after the address of the server. Absent: the kiosk shows no QR code. */
+  /** Path of the page for visitors' phones, to append to the address of the server. Absent if the kiosk shows no QR code. */
   phone_path?: string;
 }
 
@@ -2556,26 +2556,26 @@ export interface LayerPatch {
   name?: string;
   unit?: string;
   description?: string;
-  /** Names in other languages; replaces all. */
+  /** Names in other languages. Replaces all existing names in other languages. */
   labels?: Labels;
-  /** Descriptions in other languages; replaces all. */
+  /** Descriptions in other languages. Replaces all existing descriptions in other languages. */
   descriptions?: Descriptions;
-  /** Heading under which the page lists the layer. The server removes blanks at its ends. Empty: none. */
+  /** Heading under which the web page lists the layer. The server removes spaces at the beginning and end. Empty means no heading. */
   group?: string;
   palette?: Palette;
   opacity?: number;
   blend?: LayerBlend;
   visible?: boolean;
-  /** true: from the answer on, nobody below curator can change the texels until the layer is unlocked. false, on a computed layer: from now on it is edited by hand, which stays marked (`edited_by_hand`), and the server does not compute it automatically. */
+  /** true: after the response, users below the curator role cannot change the texels until the layer is unlocked. false: unlocks the layer. A computed layer is then marked as edited by hand (`edited_by_hand`), and the server no longer computes it automatically. */
   locked?: boolean;
-  /** true: later edits of annotators wait for a review by a curator. false: edits that wait already continue to wait. */
+  /** true: later edits by annotators wait for a review by a curator. false: later edits do not need a review. Edits that already wait for review still need a decision. */
   review?: boolean;
-  /** Applies at once, also to open pages. */
+  /** The change takes effect at once, including on open pages. */
   visibility?: Visibility;
   order?: number;
-  /** Only without other members: a layer of u8 or u16, with its history, gets room for larger keys or values (u16, u32). */
+  /** Can only be changed in a separate request, without other members. The type of a u8 or u16 layer and its history can be changed to u16 or u32, for larger keys or values. */
   type?: ValueType;
-  /** For a computed layer: the new expression; compute the layer again with it. Empty: the layer keeps its values and is edited by hand from now on. */
+  /** For a computed layer, the new expression. It takes effect when the layer is computed again. If empty, the layer keeps its values and can be edited by hand. */
   expression?: string;
   recompute?: Recompute;
 }
@@ -2592,42 +2592,42 @@ export interface EditResult {
 /** State of an edit that requires a review. */
 export type ReviewState = "pending" | "accepted" | "rejected";
 
-/** Person who accepted or rejected an edit. */
+/** User who accepted or rejected an edit. */
 export interface Reviewer {
   user: string;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
   reason?: ReviewReason;
 }
 
-/** A stroke or another edit that waits for review. */
+/** Stroke or other edit that waits for review. */
 export interface WaitingStroke {
-  /** Sequence of its first batch; name it in a review. */
+  /** Sequence of its first batch. Use this number in a review. */
   sequence: number;
   /** Sequence of its last batch. */
   last: number;
   stroke: string;
   user: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
   op: "stroke" | "fill" | "polygon" | "import" | "restore";
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   begun: string;
   /** Time of its last batch. */
   time: string;
-  /** Texels that its batches changed, counted once for each batch. */
+  /** Number of texels that its batches changed. A texel counts once for each batch that changed it. */
   texels_changed: number;
   area_m2: number;
-  /** Camera from which it was painted, if there was one. */
+  /** Camera with which it was painted, if any. */
   camera?: Camera;
 }
 
-/** Person whose strokes wait. */
+/** User whose strokes wait for review. */
 export interface ReviewPerson {
   user: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
@@ -2639,41 +2639,41 @@ export interface ReviewQueue {
   strokes: WaitingStroke[];
   /** Number of strokes on all pages. */
   total: number;
-  /** Everybody whose strokes wait, sorted by name. */
+  /** All users whose strokes wait for review, sorted by name. */
   people: ReviewPerson[];
 }
 
-/** A decision about edits of a layer. */
+/** Decision about edits of a layer. */
 export interface Review {
   decision: ReviewDecision;
-  /** Sequences. Any batch of a stroke means the whole stroke. */
+  /** Sequences of the edits. The sequence of any batch of a stroke selects the whole stroke. */
   edits?: number[];
-  /** All waiting edits of this person. Not with reopen. */
+  /** Selects all waiting edits by this user. Cannot be combined with reopen. */
   user?: string;
-  /** All waiting edits of the layer. Not with reopen. */
+  /** true: selects all waiting edits of the layer. Cannot be combined with reopen. */
   all?: true;
   reason?: ReviewReason;
 }
 
-/** One edit in a layer's history. */
+/** Edit in the history of a layer. */
 export interface HistoryEntry {
   sequence: number;
   id?: string;
   stroke?: string;
   user: string;
-  /** UTC, RFC 3339. */
+  /** In UTC (RFC 3339). */
   time: string;
   op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
-  /** False while the edit is undone or rejected. */
+  /** false while the edit is undone or rejected. */
   in_force?: boolean;
   review?: ReviewState;
   reviewer?: Reviewer;
   texels_changed?: number;
   area_m2?: number;
   recipe?: Recipe;
-  /** For a computed layer: its expression of that moment. */
+  /** For a computed layer, the expression that it had at that time. */
   expression?: string;
-  /** For a stroke: the brush shape; one of the site by its id. */
+  /** For a stroke, the brush shape. A brush shape of the site is identified by its id. */
   shape?: ToolShape;
   max_angle_deg?: SlantLimit;
   depth_bias?: DepthBias;
@@ -2685,63 +2685,63 @@ export interface EditList {
   total: number;
 }
 
-/** Empty object. Undo and redo take no members. A request without a body is the same. */
+/** Empty object. Undo and redo requests have no members. The body can be omitted. */
 export type Empty = Record<string, never>;
 
 /** Visible surface inside an outline. */
 export interface SeenOutline {
   camera: Camera;
   path: Outline;
-  /** Also include hidden surfaces. Default: false. */
+  /** true: also include hidden surfaces. Default: false. */
   through?: boolean;
 }
 
-/** Restore of a layer. */
+/** Restore a layer to an earlier state. */
 export interface Restore {
-  /** The layer gets its state after this edit. 0: empty. */
+  /** The layer is restored to its state after this edit. 0: the layer becomes empty. */
   sequence: number;
-  /** Only the surface inside it. Absent: the whole layer. */
+  /** Restore only the surface inside this outline. Default: the whole layer. */
   within?: SeenOutline;
 }
 
-/** Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339). */
+/** Sequence or time. The state of the layers after this sequence of the model, or at this time (RFC 3339). */
 export type At = number | string;
 
 /** Two states of a layer. */
 export interface DifferenceRequest {
   from: At;
-  /** Absent: the newest state. */
+  /** Default: the newest state. */
   to?: At;
-  /** Count only inside it. */
+  /** Count only texels inside this outline. */
   within?: SeenOutline;
 }
 
-/** Difference of two states of a layer. */
+/** Difference between two states of a layer. */
 export interface Difference {
-  /** Sequence of the one state. */
+  /** Sequence of the first state. */
   from: number;
-  /** Sequence of the other. */
+  /** Sequence of the second state. */
   to: number;
-  /** Texels of the surface whose value differs. */
+  /** Number of texels on the surface whose values differ. */
   texels: number;
   area_m2: number;
   /** Share of the whole surface. */
   share: number;
 }
 
-/** Edits of a person in an interval. */
+/** Edits by one user in an interval. */
 export interface TimelinePerson {
   user: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
   edits: number;
 }
 
-/** Interval of a timeline with edits. */
+/** Interval of a timeline that contains edits. */
 export interface TimelineInterval {
-  /** From 0. All intervals are equally long. */
+  /** Number of the interval, starting at 0. All intervals have the same length. */
   number: number;
   edits: number;
   /** Sequence of its first edit. */
@@ -2752,64 +2752,64 @@ export interface TimelineInterval {
   begun: string;
   /** Time of its last edit. */
   ended: string;
-  /** The people with the most edits. */
+  /** The users with the most edits. */
   people: TimelinePerson[];
-  /** Number of further people. */
+  /** Number of other users. */
   others: number;
   /** Ids of the layers with the most edits. */
   layers: number[];
 }
 
-/** Edits of a model over time. Without edits, `from` and `to` are absent. */
+/** Edits of a model over time. If there are no edits, `from` and `to` are absent. */
 export interface Timeline {
   /** Sequence of the newest durable edit of the model. */
   newest: number;
-  /** Edits in all intervals. */
+  /** Number of edits in all intervals. */
   edits: number;
-  /** Begin of the first interval. */
+  /** Beginning of the first interval. */
   from?: string;
   /** End of the last interval. */
   to?: string;
-  /** Ascending, without those that have no edit. */
+  /** Intervals that contain edits, in ascending order. */
   intervals: TimelineInterval[];
 }
 
-/** A stroke or another edit. */
+/** Stroke or other edit. */
 export interface TimelineStep {
   /** Sequence of its first batch. */
   first: number;
-  /** Sequence of its last batch; use it as `at`. */
+  /** Sequence of its last batch. You can use this number as `at`. */
   last: number;
   stroke: string;
   layer: number;
   user: string;
-  /** Full name of `user`. Absent: the person gave none. */
+  /** Full name of `user`. Absent if the user has not entered a full name. */
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
   op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
   /** Time of its last batch. */
   time: string;
-  /** Texels that its batches changed, counted once for each batch. */
+  /** Number of texels that its batches changed. A texel counts once for each batch that changed it. */
   texels_changed: number;
   area_m2: number;
 }
 
 /** Strokes and other edits of a model. */
 export interface TimelineSteps {
-  /** Ascending by `last`. */
+  /** Sorted by `last` in ascending order. */
   steps: TimelineStep[];
-  /** There are further edits in this direction. */
+  /** true: there are more edits in this direction. */
   more: boolean;
 }
 
-/** Point on the surface, with values. Next to the model, only `hit` is present. */
+/** Point on the surface, with values. If the pixel does not show the model, only `hit` is present. */
 export interface SurfacePoint {
   hit: boolean;
   position?: Point3;
   normal?: Point3;
   uv?: Point2;
-  /** Distance from the requested point, or from the camera's near plane. */
+  /** Distance from the requested point, or from the near plane of the camera. */
   distance?: number;
   values?: SurfaceValues;
 }
@@ -2817,12 +2817,12 @@ export interface SurfacePoint {
 /** Values at many points. */
 export interface PositionsRequest {
   points: Point3[];
-  /** Absent: all layers. */
+  /** Default: all layers. */
   layers?: LayerRef[];
   at?: At;
 }
 
-/** One entry for each point, in the order of the request. */
+/** Values at the requested points, in the order of the request. */
 export interface PositionsResponse {
   positions: SurfacePoint[];
   total: number;
@@ -2836,56 +2836,56 @@ export interface PickRequest {
   at?: At;
 }
 
-/** Part of the surface. Around a place: the surface within `radius_mm` (in a straight line) that is connected with the place within that distance. Or the visible surface inside an outline in a camera's window. */
+/** Part of the surface. Either the surface around a point, or the visible surface inside an outline in the window of a camera. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. */
 export interface Within {
   at?: SurfacePlace;
-  /** Millimeters on the object. */
+  /** In millimeters on the object. */
   radius_mm?: number;
   camera?: Camera;
   path?: Outline;
-  /** Also include hidden surfaces. */
+  /** true: also include hidden surfaces. */
   through?: boolean;
-  /** Further outlines, combined with the first one in their order. All outlines together have at most 16384 points. */
+  /** Further outlines, which are combined with the first one in the given order. All outlines together can have at most 16384 points. */
   steps?: OutlineStep[];
 }
 
-/** Picture of the selection. The part of the selection that the camera sees, in its window. */
+/** Image of the selection. The part of the selection that is visible in the window of the camera. */
 export interface SelectionPicture {
   camera: Camera;
-  /** Pixels of the picture. */
+  /** Width of the image in pixels. */
   width: number;
-  /** Pixels of the picture. */
+  /** Height of the image in pixels. */
   height: number;
 }
 
-/** Part of the statistics that takes longer. */
+/** Additional part of the statistics, which takes longer to compute. */
 export type StatisticsPart = "pieces" | "perimeter" | "quantiles";
 
 /** Paint the selection. */
 export interface SelectInto {
   layer: LayerRef;
-  /** In the layer's type; ignored for erasing. Default: 0. */
+  /** Value of the layer's type. Ignored if the edit erases. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
 }
 
-/** Texels that differ between two states. Together with `where` and `within`: only inside them. */
+/** Texels that differ between two states. Together with `where` and `within`, only texels inside both are selected. */
 export interface SelectChanged {
   from: At;
-  /** Absent: the newest durable state. */
+  /** Default: the newest durable state. */
   to?: At;
-  /** Texels where any of these differs. Absent: all layers that the caller can see. */
+  /** Select texels where any of these layers differs. Default: all layers that the caller can see. */
   layers?: LayerRef[];
 }
 
-/** Selection of surface. Without `where` and `within`: everywhere. */
+/** Selection of a part of the surface. Without `where` and `within`, the whole surface is selected. */
 export interface SelectRequest {
   /** A condition over the layers, as in a fill. */
   where?: string;
   within?: Within;
   at?: At;
-  /** Layers whose statistics in the selection are returned. */
+  /** Layers whose statistics inside the selection are returned. */
   layers?: LayerRef[];
   include?: StatisticsPart[];
   into?: SelectInto;
@@ -2893,7 +2893,7 @@ export interface SelectRequest {
   changed?: SelectChanged;
 }
 
-/** Bar of a histogram. Values from `from` (included) to `to`; the last bin includes `to`. */
+/** Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`. */
 export interface HistogramBin {
   from: number;
   to: number;
@@ -2908,13 +2908,13 @@ export interface KeyStatistics {
   area_m2: number;
   centroid: Point3;
   bounds: Bounds;
-  /** If requested: connected areas of this key. */
+  /** Number of connected areas of this key, if requested. */
   pieces?: number;
-  /** If requested: length around these areas, along the surface. */
+  /** Length of the borders of these areas along the surface, if requested. */
   perimeter_m?: number;
 }
 
-/** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. If requested, and if something has an area. */
+/** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Present if requested and if the total area is not 0. */
 export interface Quantiles {
   p5: number;
   p25: number;
@@ -2923,7 +2923,7 @@ export interface Quantiles {
   p95: number;
 }
 
-/** Statistics of a layer, weighted by surface area. For valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty. `keys` is empty for fractions, and for more than 4096 different values. */
+/** Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values. */
 export interface Statistics {
   texels: number;
   area_m2: number;
@@ -2931,16 +2931,16 @@ export interface Statistics {
   max?: number;
   mean?: number;
   std?: number;
-  /** If requested: connected areas; in layers of whole numbers, those of one value each. */
+  /** Number of connected areas, if requested. In layers of whole numbers, each area has a single value. */
   pieces?: number;
-  /** If requested: length around the valid areas, along the surface. An open edge of the mesh counts, a seam of the atlas does not. */
+  /** Length of the borders of the valid areas along the surface, if requested. It includes open edges of the mesh, but not seams of the atlas. */
   perimeter_m?: number;
   quantiles?: Quantiles;
   histogram: HistogramBin[];
   keys: KeyStatistics[];
 }
 
-/** Contents of layers in a selection. By slug. */
+/** Statistics of layers in a selection. Keys are the slugs of layers. */
 export type SelectedLayers = Record<string, Statistics>;
 
 /** Texels and area of a selection. */
@@ -2953,28 +2953,28 @@ export interface SelectResponse {
   share: number;
   bounds?: Bounds;
   layers: SelectedLayers;
-  /** PNG in base64, if it was requested: white where the camera sees the selection, transparent elsewhere. */
+  /** PNG image in base64, if it was requested. It is white where the selection is visible, and transparent elsewhere. */
   picture?: string;
   /** Result of `into`. */
   edit?: EditResult;
 }
 
-/** Request for a profile of the surface. Through places: for each step, the nearest surface point. Or the visible surface under a line in a camera's window, at each of its pixels. */
+/** Request for a profile of the surface. The line goes through points in space, or is drawn in the window of a camera. In space, each step results in a sample at the nearest point on the surface. In a window, each pixel of the line results in a sample at the visible point of the surface. */
 export interface ProfileRequest {
   places?: Point3[];
-  /** Millimeters on the object. */
+  /** In millimeters on the object. */
   step_mm?: number;
   camera?: Camera;
-  /** Pixels of the camera's window. */
+  /** Pixels in the window of the camera. */
   path?: Point2[];
-  /** Absent: all layers. */
+  /** Default: all layers. */
   layers?: LayerRef[];
   at?: At;
 }
 
-/** Place on a profile. */
+/** Sample on a profile. */
 export interface ProfileSample {
-  /** Distance on the surface from the start. Where the line leaves the surface, nothing is added. */
+  /** Distance from the start, measured along the surface. Gaps where the line leaves the surface do not count. */
   along_mm: number;
   point: SurfacePoint;
 }
@@ -2992,11 +2992,11 @@ export interface SectionRequest {
 
 /** Cut of one plane of a section. */
 export interface SectionCut {
-  /** Of the cut solid, inside what the other planes keep. Absent where the surface is open at the cut, so that it bounds no area. */
+  /** Area of the cut through the solid, limited to the side that the other planes keep. Absent if the surface is open at the cut and therefore bounds no area. */
   area_m2?: number;
 }
 
-/** Measures of a section. */
+/** Measurements of a section. */
 export interface SectionMeasures {
   /** In the order of the planes. */
   cuts: SectionCut[];
@@ -3012,11 +3012,11 @@ export interface CrossTableRequest {
   at?: At;
 }
 
-/** Areas of pairs of values. Keys ascend. Null comes last, for places where the layer has no value. */
+/** Areas of each pair of values. The keys are in ascending order. The last key is null, for texels where the layer has no value. */
 export interface CrossTable {
   rows: (number | null)[];
   columns: (number | null)[];
-  /** One array for each row, with its columns. */
+  /** One array for each row, with one number for each column. */
   area_m2: number[][];
   texels: number[][];
 }
@@ -3031,7 +3031,7 @@ export interface Extent {
   marked: number;
   texels: number;
   area_m2: number;
-  /** Bounds of their texels, lines and points. Absent: the records have none of these. */
+  /** Bounds of the texels, lines and points of these records. Absent if the records have no texels, lines or points. */
   bounds?: Bounds;
 }
 
@@ -3041,33 +3041,33 @@ export interface LayerHighlight {
   highlight: Highlight;
 }
 
-/** One rendered picture. */
+/** Request for a rendered image. */
 export interface FrameRequest {
-  /** Its width × height is the size of the picture. */
+  /** The width and height of the camera set the size of the image. */
   camera: Camera;
-  /** Exactly these are drawn, from bottom to top. Absent: the layers that are visible by default. */
+  /** The visible layers from bottom to top. Default: the layers that are visible by default. */
   layers?: LayerRef[];
-  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
+  /** The visible surface images from bottom to top. Default: the surface images that are visible by default. */
   looks?: LookShown[];
-  /** Absent: museum. */
+  /** Default: the light mode museum. */
   light?: Light;
-  /** Absent: light gray. */
+  /** Default: light gray. */
   background?: Background;
   highlights?: LayerHighlight[];
   at?: At;
-  /** Samples for each pixel. With 16, silhouettes, class borders and fine lines have smooth edges. A server without a GPU takes fewer if they would take more than 5 seconds (of pictures with more than 2 million pixels: for each 2 million). Default: 1. */
+  /** Number of samples per pixel. With 16 samples, silhouettes, class borders and fine lines have smooth edges. A server without a GPU uses fewer samples if rendering would take more than 5 seconds. For images of more than 2 million pixels, this limit applies to each 2 million pixels. Default: 1. */
   samples?: number;
   /** Default: "jpeg". */
   format?: "jpeg" | "png";
 }
 
-/** Kind of file. In SVG and PDF, texts, legend, scale bar and arrow can be edited. */
+/** Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. */
 export type FigureFormat = "png" | "tiff" | "svg" | "pdf";
 
-/** Direction of a figure, relative to the model's up. From the top, the front is at the bottom. On a map with z up, this is the plan: y points up. */
+/** Direction of a figure, relative to the model's up. In the view from the top, the front of the model is at the bottom. For a model in map coordinates with z up, this is the plan, with y pointing up. */
 export type FigureDirection = "top" | "bottom" | "front" | "back" | "left" | "right";
 
-/** Values of records at their places. Where the layer shows a record: its value in the column. If labels overlap, the label of the smaller area is left out first. */
+/** Labels of records. A label shows the value of a record in a column, where the layer contains the record. If two labels overlap, the label of the smaller area is omitted. */
 export interface FigureLabels {
   /** A layer of records. */
   layer: LayerRef;
@@ -3075,65 +3075,65 @@ export interface FigureLabels {
   column: string;
 }
 
-/** A figure to scale. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. The content comes from a saved view, or from camera, layers, surface images and light. The direction comes from there, too, if nothing else sets it. Without any of them, the figure shows the default layers of the model from the top. */
+/** Figure to scale. A drawing to scale without perspective, on a sheet with a scale bar, legend and caption. A saved view, or the camera, layers, surface images and light, set its content. They also set the direction if no other member sets it. Without these members, the figure shows the default layers of the model from the top. */
 export interface FigureRequest {
-  /** A saved view: slug or id. */
+  /** Slug or id of a saved view. */
   view?: string;
-  /** Instead of a view: its direction, its section and its middle are used. */
+  /** A camera instead of a saved view. The figure uses its direction, its section and its center. */
   camera?: Camera;
-  /** Layers that are not listed have their defaults. */
+  /** Layers that are not listed have their default settings. */
   layers?: LayerOverride[];
-  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
+  /** The visible surface images from bottom to top. Default: the surface images that are visible by default. */
   looks?: LookShown[];
-  /** Absent: museum. */
+  /** Default: the light mode museum. */
   light?: Light;
   at?: At;
-  /** Instead of the direction of the camera or view. */
+  /** A standard direction instead of the direction of the camera or view. */
   direction?: FigureDirection;
-  /** Instead of a direction: a surface that faces this way (world) is drawn without foreshortening. */
+  /** A normal in world coordinates, instead of a direction. A surface with this normal is drawn without foreshortening. */
   normal?: Point3;
-  /** Middle of the drawing (world). Absent: with the direction of a camera or view, the middle of that view, otherwise the middle of the visible surface. */
+  /** Center of the drawing in world coordinates. Default: the center of the camera or view if it sets the direction, otherwise the center of the visible surface. */
   center?: Point3;
-  /** 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … with which the whole drawing is on the sheet. */
+  /** Denominator of the scale: 50 means 1 : 50. Default: the largest scale of the series 1, 2, 2.5, 5, 10, 20, 25, 50, … at which the whole drawing fits on the sheet. */
   scale?: number;
   /** Default: "a4". */
   paper?: "a5" | "a4" | "a3";
-  /** Absent: the one with space for the larger scale. */
+  /** Default: the orientation that allows the larger scale. */
   orientation?: "portrait" | "landscape";
-  /** Pixels for each inch. In SVG and PDF: of the drawing in them. Default: 300. */
+  /** Pixels per inch. In SVG and PDF files, this applies only to the drawing. Default: 300. */
   dpi?: number;
-  /** Absent: pdf. */
+  /** Default: pdf. */
   format?: FigureFormat;
-  /** Absent: the name of the model. */
+  /** Default: the name of the model. */
   title?: string;
   caption?: string;
-  /** Absent: that of the model. */
+  /** Default: the credit of the model. */
   credit?: string;
-  /** For the layers and classes that the drawing shows. Classes outside of the drawing, and those completely below an opaque layer, are left out. Default: true. */
+  /** Whether the figure has a legend of the layers and classes in the drawing. The legend omits classes that are outside the drawing or completely below an opaque layer. Default: true. */
   legend?: boolean;
-  /** Text in the legend for edits that wait for review, which are hatched. Default: "Provisional". */
+  /** Text in the legend for the hatch of edits that wait for review. Default: "Provisional". */
   provisional?: string;
   /** Text in the legend after the title of a list that continues in another column. Default: "(continued)". */
   continued?: string;
   labels?: FigureLabels;
 }
 
-/** Class of a column's values. For numbers: from `from` (included) to `to`, which only the last class includes. Otherwise `value`. */
+/** Class of a column's values. A class of numbers is the range from `from` (included) to `to`. Only the last class includes `to`. All other classes have a `value`. */
 export interface ColumnClass {
   from?: number;
   to?: number;
-  /** As text. For a number: as JSON. For a term: its key. */
+  /** The value as text. A number is in JSON format. A term is represented by its key. */
   value?: string;
   records: number;
 }
 
-/** Values of a column in classes. */
+/** Classes of a column's values. */
 export interface ColumnClasses {
   classes: ColumnClass[];
   total: number;
-  /** Number of records of the table. */
+  /** Number of records in the table. */
   records: number;
-  /** Number of records whose values are rarer than those of the classes. */
+  /** Number of records whose values are less frequent than those of the classes. */
   unclassified: number;
   /** Number of records without a value in this column. */
   without: number;
@@ -3142,17 +3142,17 @@ export interface ColumnClasses {
 /** Readiness of the server. */
 export interface Readiness {
   ready: boolean;
-  /** Parts that do not work. */
+  /** Parts of the server that do not work. */
   reasons: string[];
 }
 
-/** Release of Strata. */
+/** Version of the server. */
 export interface ServerVersion {
   /** Semantic version of the release. */
   version: string;
 }
 
-/** An edit that undo or redo would change. */
+/** Edit that undo or redo would affect. */
 export interface UndoStep {
   /** Sequence of its first batch. */
   first: number;
@@ -3163,45 +3163,45 @@ export interface UndoStep {
   op: "stroke" | "fill" | "polygon" | "import" | "compute" | "restore";
   /** Time of its last batch. */
   time: string;
-  /** Texels that its batches changed, counted once for each batch. */
+  /** Number of texels that its batches changed. A texel counts once for each batch that changed it. */
   texels_changed: number;
   area_m2: number;
-  /** The painted value. Absent: it painted no single value. */
+  /** The painted value. Absent if the edit did not paint a single value. */
   value?: number;
-  /** true: it erased. */
+  /** true: the edit erased values. */
   erase?: boolean;
 }
 
-/** What undo and redo would change. */
+/** Edits that undo and redo would affect. */
 export interface UndoSteps {
-  /** Edits in force, newest first: the order of undos. */
+  /** Edits in force, the newest first. Undo follows this order. */
   done: UndoStep[];
-  /** Undone edits that can still be redone, in the order of redos. */
+  /** Undone edits that can still be redone, in the order in which redo restores them. */
   undone: UndoStep[];
-  /** There are earlier edits in force. */
+  /** true: there are earlier edits in force. */
   more: boolean;
 }
 
 /** Named state of a model. */
 export interface Snapshot {
   id: number;
-  /** Stays the same if the snapshot gets another name. */
+  /** The slug does not change if the snapshot is renamed. */
   slug: string;
   name: string;
-  /** Plain text: a note. */
+  /** A note as plain text. */
   text: string;
-  /** The state after this edit; use it as `at`. */
+  /** Sequence of the last edit of the state. You can use this number as `at`. */
   sequence: number;
-  /** Time of the last edit of this state. Absent: the state before the first edit. */
+  /** Time of the last edit of the state. Absent for the state before the first edit. */
   state_time?: string;
-  /** Creator of the snapshot. */
+  /** User who created the snapshot. */
   user: string;
-  /** When the snapshot was made. UTC, RFC 3339. */
+  /** Time when the snapshot was created, in UTC (RFC 3339). */
   time: string;
   version: number;
 }
 
-/** Snapshots of a model, in the order of their creation. */
+/** Snapshots of a model, sorted by time of creation. */
 export interface SnapshotList {
   snapshots: Snapshot[];
   total: number;
@@ -3210,16 +3210,16 @@ export interface SnapshotList {
 /** New snapshot. */
 export interface SnapshotCreate {
   name: string;
-  /** Plain text: a note. */
+  /** A note as plain text. */
   text?: string;
-  /** The state. Absent: the newest durable one. */
+  /** The state. Default: the newest durable state. */
   at?: At;
 }
 
 /** Changes to a snapshot. */
 export interface SnapshotPatch {
   name?: string;
-  /** Plain text: a note. */
+  /** A note as plain text. */
   text?: string;
 }
 

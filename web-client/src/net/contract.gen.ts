@@ -32,7 +32,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Open a kiosk by its link */
+        /** Open a kiosk with its link */
         post: operations["login_kiosk"];
         delete?: never;
         options?: never;
@@ -90,7 +90,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Reset the demo */
+        /** Reset the demo project */
         post: operations["reset_demo"];
         delete?: never;
         options?: never;
@@ -125,7 +125,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Get a group with people and roles */
+        /** Get a group with its users and roles */
         get: operations["get_group"];
         put?: never;
         post?: never;
@@ -163,7 +163,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Get the user of an invitation */
+        /** Get the user who was invited */
         post: operations["show_invitation"];
         delete?: never;
         options?: never;
@@ -217,7 +217,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Get the file of a job */
+        /** Get the file that a job created */
         get: operations["get_job_file"];
         put?: never;
         post?: never;
@@ -234,7 +234,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Get what a kiosk shows */
+        /** Get a kiosk and its tour */
         get: operations["kiosk_self"];
         put?: never;
         post?: never;
@@ -292,7 +292,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Request that a kiosk reloads its page */
+        /** Reload the page of a kiosk */
         post: operations["reload_kiosk"];
         delete?: never;
         options?: never;
@@ -361,12 +361,12 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Get your own view of a model */
+        /** Get your personal view settings for a model */
         get: operations["get_personal_view"];
-        /** Save your own view of a model */
+        /** Save your personal view settings for a model */
         put: operations["put_personal_view"];
         post?: never;
-        /** Delete your own view of a model */
+        /** Delete your personal view settings for a model */
         delete: operations["delete_personal_view"];
         options?: never;
         head?: never;
@@ -401,7 +401,7 @@ export interface paths {
         get: operations["list_sessions"];
         put?: never;
         post?: never;
-        /** Sign out everywhere else */
+        /** End all your other sessions */
         delete: operations["end_other_sessions"];
         options?: never;
         head?: never;
@@ -515,7 +515,7 @@ export interface paths {
         /** List the comments of a model */
         get: operations["list_comments"];
         put?: never;
-        /** Start a thread of comments */
+        /** Start a comment thread */
         post: operations["create_comment"];
         delete?: never;
         options?: never;
@@ -551,7 +551,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Follow the events of a model */
+        /** Receive the events of a model */
         get: operations["model_events"];
         put?: never;
         post?: never;
@@ -572,7 +572,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Make a figure to scale */
+        /** Create a figure to scale */
         post: operations["make_figure"];
         delete?: never;
         options?: never;
@@ -591,7 +591,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Render a picture of a model */
+        /** Render an image of a model */
         post: operations["frame"];
         delete?: never;
         options?: never;
@@ -653,7 +653,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Compute a computed layer again */
+        /** Recompute a computed layer */
         post: operations["compute_layer"];
         delete?: never;
         options?: never;
@@ -673,7 +673,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Get how much differs between two states of a layer */
+        /** Get the difference between two states of a layer */
         post: operations["layer_difference"];
         delete?: never;
         options?: never;
@@ -714,7 +714,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Get the extent of records */
+        /** Get the extent of records on a model */
         post: operations["record_extent"];
         delete?: never;
         options?: never;
@@ -754,7 +754,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Paint a map picture on a layer */
+        /** Paint a layer from a map image */
         post: operations["paint_picture"];
         delete?: never;
         options?: never;
@@ -900,7 +900,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Redo the edit that you undid last */
+        /** Redo the edit that you last undid */
         post: operations["redo"];
         delete?: never;
         options?: never;
@@ -941,7 +941,7 @@ export interface paths {
         /** List the edits that wait for review */
         get: operations["list_review"];
         put?: never;
-        /** Review edits */
+        /** Accept or reject edits */
         post: operations["review_edits"];
         delete?: never;
         options?: never;
@@ -1044,7 +1044,7 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Paint the values of the scan's vertices */
+        /** Paint a layer from values for the scan's vertices */
         put: operations["import_vertex_values"];
         post?: never;
         delete?: never;
@@ -1124,7 +1124,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Get the picture of a surface image */
+        /** Get the image file of a surface image */
         get: operations["get_look_picture"];
         put?: never;
         post?: never;
@@ -1164,7 +1164,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Make a surface image of an orthophoto */
+        /** Create a surface image from an orthophoto */
         post: operations["add_orthophoto"];
         delete?: never;
         options?: never;
@@ -1221,7 +1221,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Get the values at many positions */
+        /** Get the values at several positions */
         post: operations["positions"];
         delete?: never;
         options?: never;
@@ -1298,7 +1298,7 @@ export interface paths {
         /** List the snapshots of a model */
         get: operations["list_snapshots"];
         put?: never;
-        /** Name a state of a model */
+        /** Create a snapshot of a model */
         post: operations["create_snapshot"];
         delete?: never;
         options?: never;
@@ -1356,7 +1356,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Get the edits of a model over time */
+        /** Get a timeline of the edits of a model */
         get: operations["get_timeline"];
         put?: never;
         post?: never;
@@ -1375,7 +1375,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** List the edits of a model around a sequence */
+        /** List the edits of a model before or after a sequence */
         get: operations["list_timeline_steps"];
         put?: never;
         post?: never;
@@ -1499,7 +1499,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Transfer the layers of another scan version */
+        /** Transfer layers from another version of a scan */
         post: operations["transfer_layers"];
         delete?: never;
         options?: never;
@@ -1516,7 +1516,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** List what undo and redo would change */
+        /** List the edits that undo and redo would affect */
         get: operations["list_undo_steps"];
         put?: never;
         post?: never;
@@ -1535,7 +1535,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** List the numbers of a scan's vertices */
+        /** List the numeric vertex properties of a scan */
         get: operations["list_vertex_properties"];
         put?: never;
         post?: never;
@@ -1554,7 +1554,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Get the mesh with values at vertices */
+        /** Get the mesh with layer values at its vertices */
         get: operations["get_vertices"];
         put?: never;
         post?: never;
@@ -1616,7 +1616,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Render the picture of a saved view */
+        /** Render an image of a saved view */
         get: operations["view_picture"];
         put?: never;
         post?: never;
@@ -1633,7 +1633,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Get this document */
+        /** Get this API description */
         get: operations["openapi"];
         put?: never;
         post?: never;
@@ -1771,7 +1771,7 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Give a group a role in a project */
+        /** Assign a project role to a group */
         put: operations["put_project_group"];
         post?: never;
         /** Remove a group's role in a project */
@@ -1811,7 +1811,7 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Give a user a role in a project */
+        /** Assign a project role to a user */
         put: operations["put_member"];
         post?: never;
         /** Remove a user's role in a project */
@@ -1830,7 +1830,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** List the people of a project */
+        /** List the users of a project */
         get: operations["list_project_people"];
         put?: never;
         post?: never;
@@ -1872,7 +1872,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Use a template */
+        /** Create tables and layers from a template */
         post: operations["use_template"];
         delete?: never;
         options?: never;
@@ -1929,7 +1929,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** List the areas of a table's keys */
+        /** List the areas of a table's records */
         get: operations["list_table_areas"];
         put?: never;
         post?: never;
@@ -2029,7 +2029,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Find records that are above themselves */
+        /** Find cycles of records */
         get: operations["list_cycles"];
         put?: never;
         post?: never;
@@ -2151,7 +2151,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Redo your last undone table change */
+        /** Redo the table change that you last undid */
         post: operations["redo_table"];
         delete?: never;
         options?: never;
@@ -2190,7 +2190,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Undo your last change of a table */
+        /** Undo your last change to a table */
         post: operations["undo_table"];
         delete?: never;
         options?: never;
@@ -2263,7 +2263,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Get the picture of a brush shape */
+        /** Get the image of a brush shape */
         get: operations["get_tool_picture"];
         put?: never;
         post?: never;
@@ -2308,7 +2308,7 @@ export interface paths {
         delete: operations["delete_user"];
         options?: never;
         head?: never;
-        /** Change an account */
+        /** Change a user account */
         patch: operations["change_user"];
         trace?: never;
     };
@@ -2323,7 +2323,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Create a new link for a user */
+        /** Create a new invitation link for a user */
         post: operations["invite_again"];
         delete?: never;
         options?: never;
@@ -2338,7 +2338,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Get the release that runs */
+        /** Get the version of the server */
         get: operations["version"];
         put?: never;
         post?: never;
@@ -2352,10 +2352,10 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
-        /** Actions of one person on one thing, at most ten minutes apart */
+        /** Actions of one user on one item, at intervals of at most ten minutes */
         Activity: wire.Activity;
         /**
-         * Kind of the changed thing
+         * Kind of the changed item
          * @enum {string}
          */
         ActivityKind: wire.ActivityKind;
@@ -2363,34 +2363,34 @@ export interface components {
         ActivityList: wire.ActivityList;
         /** Sequence or time */
         At: wire.At;
-        /** How the surface is packed into the texture */
+        /** Layout of the surface in the texture */
         Atlas: wire.Atlas;
-        /** Why part of the texture stays unused */
+        /** Reason why a part of the texture is not used */
         AtlasLimit: wire.AtlasLimit;
         /** Attached files */
         Attached: wire.Attached;
-        /** File of a record */
+        /** File that is attached to a record */
         Attachment: wire.Attachment;
         /** Files of a record, column by column */
         AttachmentList: wire.AttachmentList;
-        /** Names of files, and how they name their records */
+        /** File names, and the pattern by which they identify records */
         AttachmentMatch: wire.AttachmentMatch;
-        /** Records of files */
+        /** Records that match file names */
         AttachmentMatches: wire.AttachmentMatches;
-        /** Changes to a file of a record */
+        /** Changes to an attached file */
         AttachmentPatch: wire.AttachmentPatch;
         /**
          * Up direction
          * @enum {string}
          */
         Axis: wire.Axis;
-        /** Background of a picture */
+        /** Background of an image */
         Background: wire.Background;
-        /** #rrggbb, sRGB */
+        /** sRGB color as #rrggbb */
         BackgroundColor: wire.BackgroundColor;
-        /** A deleted item that can be restored */
+        /** Deleted item that can be restored */
         BinEntry: wire.BinEntry;
-        /** Kind and id of a deleted item; for a record, the id of its table and its key */
+        /** Kind and id of a deleted item, or for a record the id of its table and its key */
         BinEntryId: wire.BinEntryId;
         /**
          * Kind of a deleted item
@@ -2399,9 +2399,9 @@ export interface components {
         BinKind: wire.BinKind;
         /** Trash of a project, newest first */
         BinList: wire.BinList;
-        /** A restored item */
+        /** Restored item */
         BinRestored: wire.BinRestored;
-        /** Box */
+        /** Axis-aligned box */
         Bounds: wire.Bounds;
         /** Camera */
         Camera: wire.Camera;
@@ -2415,11 +2415,11 @@ export interface components {
         ChangedProperty: wire.ChangedProperty;
         /** Column of a table */
         Column: wire.Column;
-        /** A column after a change */
+        /** Column after a change */
         ColumnChanged: wire.ColumnChanged;
         /** Class of a column's values */
         ColumnClass: wire.ColumnClass;
-        /** Values of a column in classes */
+        /** Classes of a column's values */
         ColumnClasses: wire.ColumnClasses;
         /** New column */
         ColumnCreate: wire.ColumnCreate;
@@ -2433,7 +2433,7 @@ export interface components {
         /** Changes to a column */
         ColumnPatch: wire.ColumnPatch;
         /**
-         * How an outline changes the selection of the outlines before it
+         * How an outline is combined with the outlines before it
          * @enum {string}
          */
         Combination: wire.Combination;
@@ -2441,18 +2441,18 @@ export interface components {
         Comment: wire.Comment;
         /** First comment of a thread */
         CommentCreate: wire.CommentCreate;
-        /** Comments of a model, in the order of ids */
+        /** Comments of a model, sorted by id */
         CommentList: wire.CommentList;
-        /** New text of a comment, or new state of a thread */
+        /** New text of a comment or new state of a thread */
         CommentPatch: wire.CommentPatch;
-        /** Person who resolved a thread */
+        /** User who resolved a thread */
         CommentResolution: wire.CommentResolution;
         /**
-         * State of a thread
+         * State of a comment thread
          * @enum {string}
          */
         CommentState: wire.CommentState;
-        /** Areas of pairs of values */
+        /** Areas of each pair of values */
         CrossTable: wire.CrossTable;
         /** Request to compare two layers */
         CrossTableRequest: wire.CrossTableRequest;
@@ -2460,7 +2460,7 @@ export interface components {
         DepthBias: wire.DepthBias;
         /** Descriptions by language */
         Descriptions: wire.Descriptions;
-        /** Difference of two states of a layer */
+        /** Difference between two states of a layer */
         Difference: wire.Difference;
         /** Two states of a layer */
         DifferenceRequest: wire.DifferenceRequest;
@@ -2490,47 +2490,47 @@ export interface components {
          * @enum {string}
          */
         FigureFormat: wire.FigureFormat;
-        /** Values of records at their places */
+        /** Labels of records */
         FigureLabels: wire.FigureLabels;
-        /** A figure to scale */
+        /** Figure to scale */
         FigureRequest: wire.FigureRequest;
-        /** One rendered picture */
+        /** Request for a rendered image */
         FrameRequest: wire.FrameRequest;
-        /** A group of people */
+        /** Group of users */
         Group: wire.Group;
         /** New group */
         GroupCreate: wire.GroupCreate;
-        /** A group with its people and its roles */
+        /** Group with its users and roles */
         GroupDetail: wire.GroupDetail;
         /** Id of a group */
         GroupId: wire.GroupId;
         /** Groups */
         GroupList: wire.GroupList;
-        /** A person in a group */
+        /** User in a group */
         GroupMember: wire.GroupMember;
         /** Name of a group */
         GroupName: wire.GroupName;
-        /** Changes of a group */
+        /** Changes to a group */
         GroupPatch: wire.GroupPatch;
-        /** User name of a person */
+        /** User name */
         GroupPerson: wire.GroupPerson;
-        /** A project in which a group has a role */
+        /** Project in which a group has a role */
         GroupProject: wire.GroupProject;
         /** Records that a view highlights */
         Highlight: wire.Highlight;
-        /** Bar of a histogram */
+        /** Bin of a histogram */
         HistogramBin: wire.HistogramBin;
-        /** One edit in a layer's history */
+        /** Edit in the history of a layer */
         HistoryEntry: wire.HistoryEntry;
-        /** A link with which a person sets a password */
+        /** Link with which a user can set a password */
         Invitation: wire.Invitation;
-        /** An invitation and the new password */
+        /** Invitation and new password */
         InvitationAccept: wire.InvitationAccept;
-        /** An invitation, to get its user */
+        /** Request for the user of an invitation */
         InvitationShow: wire.InvitationShow;
-        /** Job: work that takes longer than an answer */
+        /** Job: a task that runs in the background */
         Job: wire.Job;
-        /** File that a job made */
+        /** File that a job created */
         JobFile: wire.JobFile;
         /** Jobs, newest first */
         JobList: wire.JobList;
@@ -2538,19 +2538,19 @@ export interface components {
         KeyArea: wire.KeyArea;
         /** Statistics of one key */
         KeyStatistics: wire.KeyStatistics;
-        /** Kiosk link: a screen that shows a tour */
+        /** Kiosk link for a screen that shows a tour */
         Kiosk: wire.Kiosk;
         /** New kiosk link */
         KioskCreate: wire.KioskCreate;
-        /** Kiosk links, in the order of their creation */
+        /** Kiosk links, sorted by time of creation */
         KioskList: wire.KioskList;
         /** Link of a kiosk */
         KioskLogin: wire.KioskLogin;
-        /** A new kiosk link, which is shown only now */
+        /** New kiosk link, which cannot be retrieved later */
         KioskMade: wire.KioskMade;
         /** Changes to a kiosk link */
         KioskPatch: wire.KioskPatch;
-        /** A kiosk's own data */
+        /** Data of the calling kiosk */
         KioskSelf: wire.KioskSelf;
         /** Names by language */
         Labels: wire.Labels;
@@ -2559,7 +2559,7 @@ export interface components {
         /** Area of one key on one layer */
         LayerArea: wire.LayerArea;
         /**
-         * How the colors of a layer are combined with what is below them
+         * How the colors of a layer are combined with the colors below
          * @enum {string}
          */
         LayerBlend: wire.LayerBlend;
@@ -2574,7 +2574,7 @@ export interface components {
         LayerKind: wire.LayerKind;
         /** Layers of a model, in their order */
         LayerList: wire.LayerList;
-        /** How a view shows a layer */
+        /** Settings of a layer in a view */
         LayerOverride: wire.LayerOverride;
         /** Changes to a layer */
         LayerPatch: wire.LayerPatch;
@@ -2584,14 +2584,14 @@ export interface components {
         LayerQuantity: wire.LayerQuantity;
         /** Layer by id or slug */
         LayerRef: wire.LayerRef;
-        /** Light of a view */
+        /** Light in a view */
         Light: wire.Light;
         /**
          * Kind of light
          * @enum {string}
          */
         LightMode: wire.LightMode;
-        /** Term in its place in a list */
+        /** Term with its position in a term list */
         ListedTerm: wire.ListedTerm;
         /** Sign-in */
         Login: wire.Login;
@@ -2603,7 +2603,7 @@ export interface components {
         LookPatch: wire.LookPatch;
         /** Surface image in a view */
         LookShown: wire.LookShown;
-        /** Color that covers a part of a picture */
+        /** Color that covers a part of an image */
         MapColor: wire.MapColor;
         /** Attribute of a map's polygons */
         MapColumn: wire.MapColumn;
@@ -2611,23 +2611,23 @@ export interface components {
         MapContents: wire.MapContents;
         /** Line or point of a record on a model */
         Mark: wire.Mark;
-        /** Place of a line or point */
+        /** Position of a point, or of a vertex of a line */
         MarkPlace: wire.MarkPlace;
-        /** Name of a file, with its record */
+        /** File name and matching record */
         MatchedName: wire.MatchedName;
         /** 4 × 4 matrix */
         Matrix: wire.Matrix;
-        /** The signed-in user */
+        /** Signed-in user */
         Me: wire.Me;
-        /** A person with a role in a project */
+        /** User with a role in a project */
         Member: wire.Member;
-        /** A group with a role in a project */
+        /** Group with a role in a project */
         MemberGroup: wire.MemberGroup;
         /** Members of a project */
         MemberList: wire.MemberList;
         /** Role in a project */
         MemberPut: wire.MemberPut;
-        /** Changes of your own account */
+        /** Changes to your own account */
         MePatch: wire.MePatch;
         /** Model */
         Model: wire.Model;
@@ -2637,7 +2637,7 @@ export interface components {
         ModelList: wire.ModelList;
         /** Changes to a model's metadata */
         ModelPatch: wire.ModelPatch;
-        /** Open edges: loops of edges of one triangle only */
+        /** Open edges: loops of edges that belong to only one triangle */
         OpenEdges: wire.OpenEdges;
         /** Outline of an area */
         Outline: wire.Outline;
@@ -2651,20 +2651,20 @@ export interface components {
         PasswordChange: wire.PasswordChange;
         /** Pointer path */
         Path: wire.Path;
-        /** A person with an account */
+        /** User account */
         Person: wire.Person;
-        /** How a user shows the layers of a model */
+        /** Display settings of a user for the layers of a model */
         PersonalView: wire.PersonalView;
-        /** Color of a person */
+        /** Color of a user */
         PersonColor: wire.PersonColor;
-        /** New account */
+        /** New user account */
         PersonCreate: wire.PersonCreate;
-        /** People */
+        /** Users */
         PersonList: wire.PersonList;
-        /** Changes of an account */
+        /** Changes to a user account */
         PersonPatch: wire.PersonPatch;
         /**
-         * Whether a person can sign in
+         * State of a user account
          * @enum {string}
          */
         PersonState: wire.PersonState;
@@ -2672,13 +2672,13 @@ export interface components {
         PickRequest: wire.PickRequest;
         /** Plane in space */
         Plane: wire.Plane;
-        /** Pixel of a camera's window, or a texture coordinate */
+        /** Pixel in the window of a camera, or texture coordinate */
         Point2: wire.Point2;
         /** Point or direction in space */
         Point3: wire.Point3;
         /** Values at many points */
         PositionsRequest: wire.PositionsRequest;
-        /** One entry for each point, in the order of the request */
+        /** Values at the requested points, in the order of the request */
         PositionsResponse: wire.PositionsResponse;
         /** Problem (RFC 9457) */
         Problem: wire.Problem;
@@ -2696,7 +2696,7 @@ export interface components {
         Profile: wire.Profile;
         /** Request for a profile of the surface */
         ProfileRequest: wire.ProfileRequest;
-        /** Place on a profile */
+        /** Sample on a profile */
         ProfileSample: wire.ProfileSample;
         /** Project: a site or a collection */
         Project: wire.Project;
@@ -2706,9 +2706,9 @@ export interface components {
         ProjectList: wire.ProjectList;
         /** Changes to a project */
         ProjectPatch: wire.ProjectPatch;
-        /** A person who can see the project */
+        /** User who can see the project */
         ProjectPerson: wire.ProjectPerson;
-        /** People who can see the project */
+        /** Users who can see the project */
         ProjectPersonList: wire.ProjectPersonList;
         /**
          * Role in one project
@@ -2726,7 +2726,7 @@ export interface components {
         /** How the content of a layer was computed */
         Recipe: wire.Recipe;
         /**
-         * When a computed layer follows its inputs
+         * When a computed layer is updated
          * @enum {string}
          */
         Recompute: wire.Recompute;
@@ -2736,37 +2736,37 @@ export interface components {
         RecordList: wire.RecordList;
         /** Changes to a record */
         RecordPatch: wire.RecordPatch;
-        /** One new record, or several */
+        /** One or several new records */
         RecordsCreate: wire.RecordsCreate;
-        /** Result of writing many records */
+        /** Result of an import of records */
         RecordsReport: wire.RecordsReport;
-        /** Repair at import */
+        /** Repair during the import */
         Repair: wire.Repair;
-        /** Reply in a thread */
+        /** Reply in a comment thread */
         ReplyCreate: wire.ReplyCreate;
-        /** Replies of a thread, in the order of ids */
+        /** Replies in a thread, sorted by id */
         ReplyList: wire.ReplyList;
         /**
-         * Texels a side
+         * Number of texels per side
          * @enum {integer}
          */
         Resolution: wire.Resolution;
-        /** Restore of a layer */
+        /** Restore a layer to an earlier state */
         Restore: wire.Restore;
-        /** A decision about edits of a layer */
+        /** Decision about edits of a layer */
         Review: wire.Review;
         /**
          * Decision of a curator about edits
          * @enum {string}
          */
         ReviewDecision: wire.ReviewDecision;
-        /** Person who accepted or rejected an edit */
+        /** User who accepted or rejected an edit */
         Reviewer: wire.Reviewer;
-        /** Person whose strokes wait */
+        /** User whose strokes wait for review */
         ReviewPerson: wire.ReviewPerson;
         /** Edits of a layer that wait for review, oldest first */
         ReviewQueue: wire.ReviewQueue;
-        /** Reason of a decision, for the authors */
+        /** Reason for a decision, for the authors */
         ReviewReason: wire.ReviewReason;
         /**
          * State of an edit that requires a review
@@ -2778,28 +2778,28 @@ export interface components {
          * @enum {string}
          */
         Role: wire.Role;
-        /** Problem of a row */
+        /** Error in a row */
         RowProblem: wire.RowProblem;
         /** Unit and up direction proposed for a scan */
         ScaleProposal: wire.ScaleProposal;
         /**
-         * Why a unit or an up direction is proposed
+         * Reason for a proposed unit or up direction
          * @enum {string}
          */
         ScaleReason: wire.ScaleReason;
-        /** A token for scripts */
+        /** Token for scripts */
         ScriptToken: wire.ScriptToken;
         /** New token */
         ScriptTokenCreate: wire.ScriptTokenCreate;
         /** Tokens */
         ScriptTokenList: wire.ScriptTokenList;
-        /** A new token with its secret, which is shown only now */
+        /** New token with its secret, which cannot be retrieved later */
         ScriptTokenMade: wire.ScriptTokenMade;
         /** Planes that cut the model open */
         Section: wire.Section;
         /** Cut of one plane of a section */
         SectionCut: wire.SectionCut;
-        /** Measures of a section */
+        /** Measurements of a section */
         SectionMeasures: wire.SectionMeasures;
         /** Request to measure a section */
         SectionRequest: wire.SectionRequest;
@@ -2807,62 +2807,62 @@ export interface components {
         SeenOutline: wire.SeenOutline;
         /** Texels that differ between two states */
         SelectChanged: wire.SelectChanged;
-        /** Contents of layers in a selection */
+        /** Statistics of layers in a selection */
         SelectedLayers: wire.SelectedLayers;
         /** Paint the selection */
         SelectInto: wire.SelectInto;
-        /** Picture of the selection */
+        /** Image of the selection */
         SelectionPicture: wire.SelectionPicture;
-        /** Selection of surface */
+        /** Selection of a part of the surface */
         SelectRequest: wire.SelectRequest;
         /** Texels and area of a selection */
         SelectResponse: wire.SelectResponse;
-        /** Release of Strata */
+        /** Version of the server */
         ServerVersion: wire.ServerVersion;
-        /** Values computed from the model's shape */
+        /** Values that are computed from the shape of the model */
         ShapeRecipe: wire.ShapeRecipe;
-        /** A browser in which a user is signed in */
+        /** Browser in which a user is signed in */
         SignInSession: wire.SignInSession;
         /** Sessions */
         SignInSessionList: wire.SignInSessionList;
-        /** Largest angle at which a surface is painted */
+        /** Maximum angle at which a surface is painted */
         SlantLimit: wire.SlantLimit;
         /** Named state of a model */
         Snapshot: wire.Snapshot;
         /** New snapshot */
         SnapshotCreate: wire.SnapshotCreate;
-        /** Snapshots of a model, in the order of their creation */
+        /** Snapshots of a model, sorted by time of creation */
         SnapshotList: wire.SnapshotList;
         /** Changes to a snapshot */
         SnapshotPatch: wire.SnapshotPatch;
-        /** Uploaded file, kept unchanged */
+        /** Uploaded file, which is stored unchanged */
         SourceFile: wire.SourceFile;
         /** Statistics of a layer, weighted by surface area */
         Statistics: wire.Statistics;
         /**
-         * Part of the statistics that takes longer
+         * Additional part of the statistics, which takes longer to compute
          * @enum {string}
          */
         StatisticsPart: wire.StatisticsPart;
-        /** Place on the surface */
+        /** Point on the surface */
         SurfacePlace: wire.SurfacePlace;
         /** Point on the surface, with values */
         SurfacePoint: wire.SurfacePoint;
         /** Value of a layer at a point */
         SurfaceValue: wire.SurfaceValue;
-        /** Values by the layers' slugs */
+        /** Values by the slugs of layers */
         SurfaceValues: wire.SurfaceValues;
         /** Table of a project */
         Table: wire.Table;
         /** Areas of records, in total and by model and layer */
         TableAreas: wire.TableAreas;
-        /** Change of one record or column */
+        /** Change to one record or column */
         TableCellChange: wire.TableCellChange;
-        /** Changes of a table by undo or redo */
+        /** Changes to a table by undo or redo */
         TableChanged: wire.TableChanged;
         /** New table */
         TableCreate: wire.TableCreate;
-        /** One entry of a table's history */
+        /** Entry in the history of a table */
         TableEdit: wire.TableEdit;
         /** History of a table, newest first */
         TableEditList: wire.TableEditList;
@@ -2878,15 +2878,15 @@ export interface components {
         TableRecord: wire.TableRecord;
         /** Table by id or slug */
         TableRef: wire.TableRef;
-        /** Template: tables and layers that are made together */
+        /** Template: tables and layers that are created together */
         Template: wire.Template;
-        /** Group of a template's layers */
+        /** Group of layers in a template */
         TemplateGroup: wire.TemplateGroup;
         /** Layer of a template */
         TemplateLayer: wire.TemplateLayer;
         /** Templates */
         TemplateList: wire.TemplateList;
-        /** Tables and layers made from a template */
+        /** Tables and layers that were created from a template */
         TemplateMade: wire.TemplateMade;
         /** Table of a template */
         TemplateTable: wire.TemplateTable;
@@ -2896,15 +2896,15 @@ export interface components {
         TemplateUse: wire.TemplateUse;
         /** Terms of a term list */
         TermTree: wire.TermTree;
-        /** Surface of a texel */
+        /** Surface area of a texel */
         TexelSize: wire.TexelSize;
         /** Edits of a model over time */
         Timeline: wire.Timeline;
-        /** Interval of a timeline with edits */
+        /** Interval of a timeline that contains edits */
         TimelineInterval: wire.TimelineInterval;
-        /** Edits of a person in an interval */
+        /** Edits by one user in an interval */
         TimelinePerson: wire.TimelinePerson;
-        /** A stroke or another edit */
+        /** Stroke or other edit */
         TimelineStep: wire.TimelineStep;
         /** Strokes and other edits of a model */
         TimelineSteps: wire.TimelineSteps;
@@ -2944,12 +2944,12 @@ export interface components {
         TourFont: wire.TourFont;
         /** Language of a tour */
         TourLanguage: wire.TourLanguage;
-        /** Tours of a model, in the order of their creation */
+        /** Tours of a model, sorted by time of creation */
         TourList: wire.TourList;
-        /** Picture, sound or video at a stop */
+        /** Image, sound or video at a stop */
         TourMedium: wire.TourMedium;
         /**
-         * Light or dark pages
+         * Light or dark design
          * @enum {string}
          */
         TourMode: wire.TourMode;
@@ -2976,13 +2976,13 @@ export interface components {
         TourWords: wire.TourWords;
         /** Transfer of layers from another version of the same scan */
         Transfer: wire.Transfer;
-        /** One layer of a transfer */
+        /** Layer in a transfer */
         TransferredLayer: wire.TransferredLayer;
         /** Report of a transfer of layers */
         TransferReport: wire.TransferReport;
-        /** An edit that undo or redo would change */
+        /** Edit that undo or redo would affect */
         UndoStep: wire.UndoStep;
-        /** What undo and redo would change */
+        /** Edits that undo and redo would affect */
         UndoSteps: wire.UndoSteps;
         /**
          * Unit of length
@@ -2999,26 +2999,26 @@ export interface components {
          * @enum {string}
          */
         ValueType: wire.ValueType;
-        /** Numbers of the source files' vertices */
+        /** Numeric vertex properties of the source files */
         VertexPropertyList: wire.VertexPropertyList;
-        /** A property and its file */
+        /** Vertex property with its file */
         VertexPropertyName: wire.VertexPropertyName;
         /** Saved view of a model */
         View: wire.View;
         /** New saved view */
         ViewCreate: wire.ViewCreate;
-        /** Saved views of a model, in the order of their creation */
+        /** Saved views of a model, sorted by time of creation */
         ViewList: wire.ViewList;
         /** Changes to a saved view */
         ViewPatch: wire.ViewPatch;
         /**
-         * Who can see it, among those who can see the project
+         * Who can see an item, among the users who can see the project
          * @enum {string}
          */
         Visibility: wire.Visibility;
-        /** A stroke or another edit that waits for review */
+        /** Stroke or other edit that waits for review */
         WaitingStroke: wire.WaitingStroke;
-        /** Share of the brush radius at each point */
+        /** Fraction of the brush radius at each point */
         Widths: wire.Widths;
         /** Part of the surface */
         Within: wire.Within;

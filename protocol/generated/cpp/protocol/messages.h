@@ -360,10 +360,10 @@ std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
 template <class T>
 extern const Schema kSchemaOf;
 
-// Pointer path. Pixels of the camera's window. Consecutive points are joined; one point is a dab.
+// Pointer path. Pixels in the window of the camera. Consecutive points are joined. A path with only one point is a dab.
 using Path = std::vector<glm::dvec2>;
 
-// Background of a picture. A gradient from top to bottom.
+// Background of an image. A color gradient from top to bottom.
 struct Background {
   std::string top;
   std::string bottom;
@@ -374,16 +374,16 @@ nlohmann::json to_json(const Background& value);
 template <>
 inline constexpr Schema kSchemaOf<Background> = Schema::Background;
 
-// Share of the brush radius at each point. One for each point of the path: the pressure of a pen. Absent: the whole radius.
+// Fraction of the brush radius at each point. One number for each point of the path, for example from the pressure of a pen. Default: the full radius at all points.
 using Widths = std::vector<double>;
 
 // Table by id or slug.
 using TableRef = std::variant<std::int64_t, std::string>;
 
-// Names by language. Keys are language tags (BCP 47): es, pt-BR.
+// Names by language. Keys are language tags (BCP 47), such as es or pt-BR.
 using Labels = std::map<std::string, std::string>;
 
-// Descriptions by language. Keys are language tags (BCP 47): es, pt-BR.
+// Descriptions by language. Keys are language tags (BCP 47), such as es or pt-BR.
 using Descriptions = std::map<std::string, std::string>;
 
 // Kind of column.
@@ -392,12 +392,12 @@ std::string_view name(ColumnKind value);
 void read(const nlohmann::json& json, ColumnKind& value);
 nlohmann::json to_json(const ColumnKind& value);
 
-// Place of a line or point.
+// Position of a point, or of a vertex of a line.
 using MarkPlace = std::array<double, 3>;
 
 using Visibility = strata::Visibility;
 
-// State of a thread.
+// State of a comment thread.
 enum class CommentState { open, resolved };
 std::string_view name(CommentState value);
 void read(const nlohmann::json& json, CommentState& value);
@@ -408,21 +408,21 @@ using LayerRef = std::variant<std::int64_t, std::string>;
 
 using Camera = strata::Camera;
 
-// Brush shape. `disc`, `square`, or a brush shape of the site by id or slug. A path sweeps it without steps.
+// Brush shape. `disc`, `square`, or the id or slug of a brush shape of the site. The brush moves continuously along a path.
 using ToolShape = std::variant<std::int64_t, std::string>;
 
-// Stroke. Sweeps the brush along a path that a camera sees. Needs a value, unless it erases.
+// Stroke. Moves the brush along a path in the window of a camera. The stroke must contain a value, unless it erases.
 struct EditStroke {
   static constexpr std::string_view kOp = "stroke";
-  double value = 0;  // In the layer's type; ignored for erasing.
+  double value = 0;  // Value of the layer's type. Ignored if the edit erases.
   bool erase = false;
   strata::Camera camera;
-  std::optional<double> radius_px;  // Radius in window pixels.
+  std::optional<double> radius_px;  // Radius in pixels of the window.
   std::optional<double> radius_mm;  // Radius in millimeters on the object.
   ToolShape shape = "disc";
   Path path;
   std::optional<Widths> widths;
-  bool through = false;  // Also paint hidden surfaces.
+  bool through = false;  // true: also paint hidden surfaces.
   std::optional<double> depth_bias;
   std::optional<double> max_angle_deg;
   bool operator==(const EditStroke&) const = default;
@@ -433,7 +433,7 @@ Result<void> check(const EditStroke& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditStroke> = Schema::EditStroke;
 
-// Place on the surface. The surface at a pixel of a view, or the surface point nearest to a point in space.
+// Point on the surface. The point of the surface at a pixel of a view, or the point of the surface that is nearest to a point in space.
 struct SurfacePlace {
   std::optional<glm::dvec3> point;
   std::optional<strata::Camera> camera;
@@ -452,16 +452,16 @@ std::string_view name(EditFillMode value);
 void read(const nlohmann::json& json, EditFillMode& value);
 nlohmann::json to_json(const EditFillMode& value);
 
-// Fill. Gives a value to a part of the surface. `where`: every texel where the expression is true; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: the surface that is connected with the place and has the same value, or also has no value.
+// Fill. Sets a part of the surface to a value. `where`: all texels where the expression is true (`true` fills the whole surface). `island`: the connected piece of the surface at a point. `connected`: the surface that is connected to a point and has the same value as this point, or no value if the point has none. Seams of the atlas do not limit a fill.
 struct EditFill {
   static constexpr std::string_view kOp = "fill";
-  double value = 0;  // In the layer's type; ignored for erasing.
+  double value = 0;  // Value of the layer's type. Ignored if the edit erases.
   bool erase = false;
   EditFillMode mode{};
-  // With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not
+  // With mode `where`, a condition over the layers of the model, such as `moisture > 0.3 and not
   // valid(cracks)`.
   std::optional<std::string> where;
-  std::optional<SurfacePlace> at;  // With the other modes: the place where the fill begins.
+  std::optional<SurfacePlace> at;  // With the other modes, the point where the fill begins.
   bool operator==(const EditFill&) const = default;
 };
 void read(const nlohmann::json& json, EditFill& value);
@@ -470,21 +470,21 @@ Result<void> check(const EditFill& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditFill> = Schema::EditFill;
 
-// Outline of an area. Pixels of the camera's window; the last point is joined to the first. If the outline crosses itself, areas that it surrounds twice are outside.
+// Outline of an area. Pixels in the window of the camera. The last point is joined to the first. If the outline crosses itself, areas that it encloses twice are outside.
 using Outline = std::vector<glm::dvec2>;
 
-// How an outline changes the selection of the outlines before it.
+// How an outline is combined with the outlines before it.
 enum class Combination { add, subtract, intersect };
 std::string_view name(Combination value);
 void read(const nlohmann::json& json, Combination& value);
 nlohmann::json to_json(const Combination& value);
 
-// Further outline of a selection. In the window of its own camera.
+// Further outline of a selection. An outline in the window of its own camera.
 struct OutlineStep {
   Combination combine{};
   strata::Camera camera;
   Outline path;
-  bool through = false;  // Also include hidden surfaces.
+  bool through = false;  // true: also include hidden surfaces.
   bool operator==(const OutlineStep&) const = default;
 };
 void read(const nlohmann::json& json, OutlineStep& value);
@@ -493,16 +493,16 @@ Result<void> check(const OutlineStep& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<OutlineStep> = Schema::OutlineStep;
 
-// Polygon or lasso. Paints the area inside an outline that a camera sees. Needs a value, unless it erases.
+// Polygon or lasso. Paints the surface inside an outline in the window of a camera. The edit must contain a value, unless it erases.
 struct EditPolygon {
   static constexpr std::string_view kOp = "polygon";
-  double value = 0;  // In the layer's type; ignored for erasing.
+  double value = 0;  // Value of the layer's type. Ignored if the edit erases.
   bool erase = false;
   strata::Camera camera;
   Outline path;
-  bool through = false;  // Also paint hidden surfaces.
-  // Further outlines, combined with the first one in their order. All outlines together have at
-  // most 16384 points.
+  bool through = false;  // true: also paint hidden surfaces.
+  // Further outlines, which are combined with the first one in the given order. All outlines
+  // together can have at most 16384 points.
   std::optional<std::vector<OutlineStep>> steps;
   bool operator==(const EditPolygon&) const = default;
 };
@@ -512,7 +512,7 @@ Result<void> check(const EditPolygon& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditPolygon> = Schema::EditPolygon;
 
-// Edit. The same object over HTTP and the WebSocket.
+// Edit. HTTP and the WebSocket use the same object.
 using Edit = std::variant<EditStroke, EditFill, EditPolygon>;
 void read(const nlohmann::json& json, Edit& value);
 nlohmann::json to_json(const Edit& value);
@@ -528,16 +528,17 @@ nlohmann::json to_json(const PalettePointPattern& value);
 // Control point of a palette.
 struct PalettePoint {
   double at = 0;
-  std::string color;  // #rrggbb or #rrggbbaa, sRGB.
+  std::string color;  // sRGB color as #rrggbb or #rrggbbaa.
   std::optional<std::string> label;
-  // With a `column` without numbers, in a categorical palette: the value of the point as text; for
-  // a term, its key. `at` then only orders the points.
+  // In a categorical palette for a `column` without numbers, the value of the point as text. For a
+  // term, this is its key. `at` then sets only the order of the points.
   std::optional<std::string> value;
-  // How the color is drawn; step and categorical palettes only.
+  // Pattern in which the color is drawn. Only for step and categorical palettes.
   PalettePointPattern pattern = PalettePointPattern::solid;
-  double angle = 45;  // For hatch and dots: degrees on the picture; 0 is to the right, 90 is up.
-  // Distance between lines or dots, at the distance of the model's middle (exact in an orthographic
-  // view). 0: some pixels, as in the legend.
+  // For hatch and dots, the angle on the image in degrees. 0 means to the right, and 90 means up.
+  double angle = 45;
+  // Distance between lines or dots in millimeters, at the distance of the model's center. It is
+  // exact in an orthographic view. 0: a fixed distance in pixels, as in the legend.
   double spacing_mm = 0;
   bool operator==(const PalettePoint&) const = default;
 };
@@ -550,13 +551,13 @@ using ValueType = strata::ValueType;
 
 using LayerKind = strata::LayerKind;
 
-// Decision of a curator about edits. accept: the edits stay. reject: the edits are removed, also from below later paint. reopen: accepted or rejected edits wait again.
+// Decision of a curator about edits. accept: the edits stay. reject: the edits are removed, even under later paint. reopen: accepted or rejected edits wait for review again.
 enum class ReviewDecision { accept, reject, reopen };
 std::string_view name(ReviewDecision value);
 void read(const nlohmann::json& json, ReviewDecision& value);
 nlohmann::json to_json(const ReviewDecision& value);
 
-// When a computed layer follows its inputs. manual: on request. automatic: within seconds after a change of something that the layer reads.
+// When a computed layer is updated. manual: on request. automatic: within seconds after a change to the data that the layer reads.
 enum class Recompute { manual, automatic };
 std::string_view name(Recompute value);
 void read(const nlohmann::json& json, Recompute& value);
@@ -564,11 +565,11 @@ nlohmann::json to_json(const Recompute& value);
 
 using LayerBlend = strata::LayerBlend;
 
-// Records that a view highlights. For a layer of records. The texels of these records keep their colors. Those of other records become gray, or with `isolate` are not drawn.
+// Records that a view highlights. Only for layers of records. The texels of these records keep their colors. The texels of all other records are gray or, with `isolate`, are not drawn.
 struct Highlight {
   std::optional<std::vector<std::int64_t>> keys;
-  // A condition over the columns of the layer's table (OGC CQL2 text). It follows changes of the
-  // records.
+  // A condition over the columns of the layer's table (OGC CQL2 Text). If records change, the
+  // server evaluates it again.
   std::optional<std::string> filter;
   bool isolate = false;
   bool operator==(const Highlight&) const = default;
@@ -580,7 +581,7 @@ inline constexpr Schema kSchemaOf<Highlight> = Schema::Highlight;
 
 // Surface image in a view.
 struct LookShown {
-  LayerRef look;  // Id or slug.
+  LayerRef look;  // Id or slug of the surface image.
   double opacity = 1;
   bool operator==(const LookShown&) const = default;
 };
@@ -593,13 +594,13 @@ using LightMode = strata::LightMode;
 
 using Light = strata::Light;
 
-// How a view shows a layer. Absent members have the layer's own defaults.
+// Settings of a layer in a view. Members that are absent have the default values of the layer.
 struct LayerOverride {
   LayerRef layer;
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<nlohmann::json> palette;
-  std::optional<int> order;  // Drawn in ascending order, as `order` of the layers.
+  std::optional<int> order;  // Layers are drawn in ascending order, as for `order` of a layer.
   std::optional<Highlight> highlight;
   bool operator==(const LayerOverride&) const = default;
 };
@@ -608,9 +609,9 @@ nlohmann::json to_json(const LayerOverride& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
 
-// How a user shows the layers of a model. Layers that it does not name have their defaults. It contains only layers that the user can see.
+// Display settings of a user for the layers of a model. Layers that are not listed have their default settings. The list contains only layers that the user can see.
 struct PersonalView {
-  std::vector<LayerOverride> layers;  // Without `highlight`.
+  std::vector<LayerOverride> layers;  // The settings of each layer, without `highlight`.
   bool operator==(const PersonalView&) const = default;
 };
 void read(const nlohmann::json& json, PersonalView& value);
@@ -627,13 +628,14 @@ nlohmann::json to_json(const TourTransition& value);
 // Short text by language. Keys are languages of the tour.
 using TourWords = std::map<std::string, std::string>;
 
-// Text by language. Plain text; keys are languages of the tour.
+// Text by language. Plain text. Keys are languages of the tour.
 using TourText = std::map<std::string, std::string>;
 
 // Column on the card of a record.
 struct TourColumn {
-  std::string column;  // Its slug; in requests also its id.
-  std::optional<TourWords> labels;  // Names of the column on the card. Absent: as in the table.
+  std::string column;  // Slug of the column. Requests can also contain its id.
+  // Names of the column on the card. Default: the names in the table.
+  std::optional<TourWords> labels;
   bool operator==(const TourColumn&) const = default;
 };
 void read(const nlohmann::json& json, TourColumn& value);
@@ -643,9 +645,12 @@ inline constexpr Schema kSchemaOf<TourColumn> = Schema::TourColumn;
 
 // Records of a table at a stop.
 struct TourRecords {
-  std::string table;  // Its slug; in requests also its id.
-  std::vector<std::int64_t> keys;  // In this order. Some records may have been deleted since.
-  // In this order, for any record of the table that visitors open at this stop.
+  std::string table;  // Slug of the table. Requests can also contain its id.
+  // Keys of the records, in the order in which they are shown. Some of these records can have been
+  // deleted in the meantime.
+  std::vector<std::int64_t> keys;
+  // Columns on the cards of all records of this table that visitors open at this stop, in the order
+  // in which they are shown.
   std::vector<TourColumn> columns;
   bool operator==(const TourRecords&) const = default;
 };
@@ -654,16 +659,17 @@ nlohmann::json to_json(const TourRecords& value);
 template <>
 inline constexpr Schema kSchemaOf<TourRecords> = Schema::TourRecords;
 
-// Caption by language. Plain text; keys are languages of the tour.
+// Caption by language. Plain text. Keys are languages of the tour.
 using TourCaption = std::map<std::string, std::string>;
 
-// Subtitles of a video by language. Ids of WebVTT files of the tour; keys are languages of the tour.
+// Subtitles of a video by language. Ids of WebVTT files of the tour. Keys are languages of the tour.
 using TourSubtitles = std::map<std::string, std::int64_t>;
 
-// Picture, sound or video at a stop.
+// Image, sound or video at a stop.
 struct TourMedium {
   std::int64_t file = 0;  // Id of a file of the tour.
-  std::optional<TourWords> alt;  // For people who cannot see or hear it.
+  // A description for visitors who cannot see the image or hear the sound.
+  std::optional<TourWords> alt;
   std::optional<TourCaption> caption;
   std::optional<TourSubtitles> subtitles;
   bool operator==(const TourMedium&) const = default;
@@ -679,7 +685,7 @@ std::string_view name(TourFileKind value);
 void read(const nlohmann::json& json, TourFileKind& value);
 nlohmann::json to_json(const TourFileKind& value);
 
-// Light or dark pages. `dark` is for dark rooms.
+// Light or dark design. `dark` is intended for dark rooms.
 enum class TourMode { light, dark };
 std::string_view name(TourMode value);
 void read(const nlohmann::json& json, TourMode& value);
@@ -691,15 +697,15 @@ std::string_view name(TourFont value);
 void read(const nlohmann::json& json, TourFont& value);
 nlohmann::json to_json(const TourFont& value);
 
-// Design of the kiosks that show a tour. The text has a contrast of at least 4.5:1 with the background, and the accent color one of at least 3:1 (WCAG 2.2).
+// Design of the kiosks that show a tour. The contrast between text and background must be at least 4.5:1, and the contrast between accent color and background at least 3:1 (WCAG 2.2).
 struct TourTheme {
-  std::optional<TourMode> mode;  // Absent: `light`.
-  std::optional<std::string> accent;  // Color of buttons. Absent: that of the mode.
-  // Color of the page and around the object. Absent: that of the mode.
+  std::optional<TourMode> mode;  // Default: `light`.
+  std::optional<std::string> accent;  // Color of buttons. Default: the accent color of the mode.
+  // Color of the page and of the area around the object. Default: the background color of the mode.
   std::optional<std::string> background;
-  std::optional<TourFont> font;  // Absent: `serif`.
-  std::optional<std::int64_t> logo;  // Id of a picture of the tour. Absent: no logo.
-  std::optional<std::string> logo_alt;  // Name of the museum, for people who cannot see the logo.
+  std::optional<TourFont> font;  // Default: `serif`.
+  std::optional<std::int64_t> logo;  // Id of an image of the tour. Default: no logo.
+  std::optional<std::string> logo_alt;  // Name of the museum, for visitors who cannot see the logo.
   bool operator==(const TourTheme&) const = default;
 };
 void read(const nlohmann::json& json, TourTheme& value);
@@ -720,8 +726,8 @@ inline constexpr Schema kSchemaOf<TourClassName> = Schema::TourClassName;
 
 // Names of the classes of a layer in the languages of a tour.
 struct TourClasses {
-  std::string layer;  // Its slug; in requests also its id.
-  std::vector<TourClassName> classes;  // Each value once.
+  std::string layer;  // Slug of the layer. Requests can also contain its id.
+  std::vector<TourClassName> classes;  // Each value can occur only once.
   bool operator==(const TourClasses&) const = default;
 };
 void read(const nlohmann::json& json, TourClasses& value);
@@ -731,28 +737,28 @@ inline constexpr Schema kSchemaOf<TourClasses> = Schema::TourClasses;
 
 using Unit = strata::Unit;
 
-// Why a unit or an up direction is proposed. `given`: the import request states it. `format`: glTF is in meters with +Y up. `comment`: a comment of the file states it. `coordinates`: they are those of a map. `size`: scanned objects usually have this size. `shape`: the object would stand this way.
+// Reason for a proposed unit or up direction. `given`: the import request sets it. `format`: glTF files use meters and +Y as the up direction. `comment`: a comment in the file states it. `coordinates`: the coordinates are map coordinates. `size`: the object has the usual size of scanned objects. `shape`: the object can stand stably in this position.
 enum class ScaleReason { given, format, comment, coordinates, size, shape };
 std::string_view name(ScaleReason value);
 void read(const nlohmann::json& json, ScaleReason& value);
 nlohmann::json to_json(const ScaleReason& value);
 
-// Up direction. An axis of the model, or its opposite.
+// Up direction. An axis of the model, or its opposite direction.
 enum class Axis { x, y, z, _x, _y, _z };
 std::string_view name(Axis value);
 void read(const nlohmann::json& json, Axis& value);
 nlohmann::json to_json(const Axis& value);
 
-// Unit and up direction proposed for a scan. Made at import; models that were imported before proposals existed have none. It does not change with `unit` and `up`.
+// Unit and up direction proposed for a scan. The import creates the proposal. Models that were imported by older versions do not have a proposal. Changes to `unit` and `up` do not change it.
 struct ScaleProposal {
   strata::Unit unit{};
   ScaleReason unit_reason{};
   double unit_confidence = 0;
-  std::optional<std::string> unit_comment;  // The comment of the file that names the unit.
+  std::optional<std::string> unit_comment;  // The comment in the file that states the unit.
   Axis up{};
   ScaleReason up_reason{};
   double up_confidence = 0;
-  std::optional<std::string> up_comment;  // The comment of the file that names the up direction.
+  std::optional<std::string> up_comment;  // The comment in the file that states the up direction.
   bool operator==(const ScaleProposal&) const = default;
 };
 void read(const nlohmann::json& json, ScaleProposal& value);
@@ -760,7 +766,7 @@ nlohmann::json to_json(const ScaleProposal& value);
 template <>
 inline constexpr Schema kSchemaOf<ScaleProposal> = Schema::ScaleProposal;
 
-// Box.
+// Axis-aligned box.
 struct Bounds {
   glm::dvec3 min{0};
   glm::dvec3 max{0};
@@ -776,11 +782,11 @@ std::string_view name(AtlasLimitCode value);
 void read(const nlohmann::json& json, AtlasLimitCode& value);
 nlohmann::json to_json(const AtlasLimitCode& value);
 
-// Why part of the texture stays unused.
+// Reason why a part of the texture is not used.
 struct AtlasLimit {
-  // long_triangles: the longest triangle sets the scale of all. many_charts: the gutters around
-  // charts need the space. hollow_charts: charts leave their own boxes empty. file_coordinates: the
-  // scan's own coordinates were kept.
+  // long_triangles: the longest triangle limits the scale of all charts. many_charts: the gutters
+  // around the charts take up space. hollow_charts: the charts do not fill their bounding boxes.
+  // file_coordinates: the texture coordinates come from the scan.
   AtlasLimitCode code{};
   std::string text;
   bool operator==(const AtlasLimit&) const = default;
@@ -790,7 +796,7 @@ nlohmann::json to_json(const AtlasLimit& value);
 template <>
 inline constexpr Schema kSchemaOf<AtlasLimit> = Schema::AtlasLimit;
 
-// Surface of a texel.
+// Surface area of a texel.
 struct TexelSize {
   int resolution = 0;
   double area_mean_m2 = 0;
@@ -807,21 +813,21 @@ std::string_view name(AtlasSource value);
 void read(const nlohmann::json& json, AtlasSource& value);
 nlohmann::json to_json(const AtlasSource& value);
 
-// How the surface is packed into the texture.
+// Layout of the surface in the texture.
 struct Atlas {
-  AtlasSource source{};  // Whether the scan's own texture coordinates were kept.
+  // Whether the texture coordinates come from the scan or were created by the import.
+  AtlasSource source{};
   int lowest_resolution = 0;
   int charts = 0;
   double coverage = 0;
   double overlap = 0;
   double stretch_mean = 0;
   double stretch_p99 = 0;
-  // Surface of the texel with the largest area, at `lowest_resolution`.
-  double texel_area_max_m2 = 0;
-  // Precision of layers by their resolution, the lowest first. Unknown for models imported before
-  // it was measured.
+  double texel_area_max_m2 = 0;  // Surface area of the largest texel, at `lowest_resolution`.
+  // Texel sizes for each resolution of layers, in ascending order of resolution. Absent for models
+  // that were imported by older versions.
   std::optional<std::vector<TexelSize>> texel_sizes;
-  // Why less than 60 % of the texels are used. Empty if more are used.
+  // Reasons why less than 60 % of the texels are used. Empty if at least 60 % are used.
   std::optional<std::vector<AtlasLimit>> limits;
   bool operator==(const Atlas&) const = default;
 };
@@ -830,7 +836,7 @@ nlohmann::json to_json(const Atlas& value);
 template <>
 inline constexpr Schema kSchemaOf<Atlas> = Schema::Atlas;
 
-// Repair at import.
+// Repair during the import.
 struct Repair {
   std::string what;
   std::int64_t count = 0;
@@ -841,11 +847,11 @@ nlohmann::json to_json(const Repair& value);
 template <>
 inline constexpr Schema kSchemaOf<Repair> = Schema::Repair;
 
-// Open edges: loops of edges of one triangle only. The rims of holes and of objects that were scanned in part. A closed surface has 0 loops. Models imported before the measurement existed do not have this member.
+// Open edges: loops of edges that belong to only one triangle. The rims of holes and of partly scanned surfaces. A closed surface has 0 loops. Models that were imported by older versions do not have this member.
 struct OpenEdges {
   std::int64_t loops = 0;
-  double length_m = 0;  // Length of all loops together.
-  std::vector<double> longest_m;  // Lengths of single loops, longest first.
+  double length_m = 0;  // Total length of all loops.
+  std::vector<double> longest_m;  // Lengths of the individual loops, the longest first.
   bool operator==(const OpenEdges&) const = default;
 };
 void read(const nlohmann::json& json, OpenEdges& value);
@@ -853,7 +859,7 @@ nlohmann::json to_json(const OpenEdges& value);
 template <>
 inline constexpr Schema kSchemaOf<OpenEdges> = Schema::OpenEdges;
 
-// Uploaded file, kept unchanged.
+// Uploaded file, which is stored unchanged.
 struct SourceFile {
   std::string name;
   std::string sha256;
@@ -868,7 +874,7 @@ inline constexpr Schema kSchemaOf<SourceFile> = Schema::SourceFile;
 // Value of a layer at a point.
 struct SurfaceValue {
   bool valid = false;
-  std::optional<double> value;  // Absent if the texel is not valid.
+  std::optional<double> value;  // Absent if the texel has no value.
   bool operator==(const SurfaceValue&) const = default;
 };
 void read(const nlohmann::json& json, SurfaceValue& value);
@@ -876,22 +882,22 @@ nlohmann::json to_json(const SurfaceValue& value);
 template <>
 inline constexpr Schema kSchemaOf<SurfaceValue> = Schema::SurfaceValue;
 
-// Values by the layers' slugs.
+// Values by the slugs of layers.
 using SurfaceValues = std::map<std::string, SurfaceValue>;
 
-// Role. In ascending order. A guest can see only the projects in which the guest has a role.
+// Role. The roles in ascending order. Guests can see only the projects in which they have a role.
 enum class Role { guest, viewer, annotator, curator, administrator, owner };
 std::string_view name(Role value);
 void read(const nlohmann::json& json, Role& value);
 nlohmann::json to_json(const Role& value);
 
-// First message.
+// First message from the client.
 struct Hello {
   static constexpr std::string_view kOp = "hello";
-  std::string client;  // Name and version of the program.
-  double dpr = 1;  // Device pixels for each CSS pixel.
-  // Codecs of frames that the client can draw, best first: jpeg, png. Absent: jpeg and png. Unknown
-  // names are ignored.
+  std::string client;  // Name and version of the client program.
+  double dpr = 1;  // Number of device pixels per CSS pixel.
+  // Frame codecs that the client supports, in order of preference: jpeg, png. Unknown names are
+  // ignored. Default: jpeg and png.
   std::optional<std::vector<std::string>> accept;
   bool operator==(const Hello&) const = default;
 };
@@ -900,17 +906,19 @@ nlohmann::json to_json(const Hello& value);
 template <>
 inline constexpr Schema kSchemaOf<Hello> = Schema::Hello;
 
-// Newest camera of a view. Only the newest counts; frames repeat its `seq`.
+// Newest camera of a view. The server renders only the newest camera. Frames contain its `seq`.
 struct CameraUpdate {
   static constexpr std::string_view kOp = "camera";
   int view_id = 0;
-  std::int64_t seq = 0;  // Ascending number that the client chooses.
+  std::int64_t seq = 0;  // A number that the client chooses. It must increase with each message.
   glm::dmat4 view{1};
   glm::dmat4 projection{1};
   int width = 0;
   int height = 0;
   std::optional<std::vector<glm::dvec4>> section;
-  bool moving = false;  // More cameras follow at once: speed is more important than quality.
+  // true: the camera is moving, and more cameras will follow. The server then prefers speed to
+  // quality.
+  bool moving = false;
   bool operator==(const CameraUpdate&) const = default;
 };
 void read(const nlohmann::json& json, CameraUpdate& value);
@@ -920,19 +928,20 @@ Result<void> check(const CameraUpdate& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<CameraUpdate> = Schema::CameraUpdate;
 
-// Settings of a view for this participant. Replaces all earlier settings of the view. Layers that are not listed have their defaults.
+// Display settings of a view for this participant. Replaces all earlier settings of the view. Layers that are not listed have their default settings.
 struct LayersUpdate {
   static constexpr std::string_view kOp = "layers";
   int view_id = 0;
   std::vector<LayerOverride> layers;
-  // Exactly these, from bottom to top, over the colors of the vertices. Absent: the surface images
-  // that are visible by default.
+  // The visible surface images from bottom to top, above the vertex colors. Default: the surface
+  // images that are visible by default.
   std::optional<std::vector<LookShown>> looks;
-  std::optional<strata::Light> light;  // Absent: museum.
-  std::optional<Background> background;  // Absent: light gray.
-  // Sequence of a durable edit: the view shows the layers as they were after it, until the next
-  // message without `at`. While view 0 shows such a state, the server refuses strokes and other
-  // edits of this connection (409). Absent: always the newest state.
+  std::optional<strata::Light> light;  // Default: the light mode museum.
+  std::optional<Background> background;  // Default: light gray.
+  // Sequence of a durable edit. The view shows the state of the layers after this edit until the
+  // client sends this message without `at`. While view 0 shows an earlier state, the server refuses
+  // strokes and other edits of this connection (409). Default: the view always shows the newest
+  // state.
   std::optional<std::int64_t> at;
   bool operator==(const LayersUpdate&) const = default;
 };
@@ -941,11 +950,11 @@ nlohmann::json to_json(const LayersUpdate& value);
 template <>
 inline constexpr Schema kSchemaOf<LayersUpdate> = Schema::LayersUpdate;
 
-// Start of a stroke. Sets the layer, the value, the camera and the brush. Needs a value, unless it erases, and one radius.
+// Start of a stroke. Sets the layer, the value, the camera and the brush. The message must contain one radius. It must also contain a value, unless the stroke erases.
 struct StrokeBegin {
   static constexpr std::string_view kOp = "stroke.begin";
   Uuid id;
-  Uuid stroke;  // Name of the stroke in the messages that follow.
+  Uuid stroke;  // Id of the stroke in the subsequent messages.
   LayerRef layer;
   double value = 0;
   bool erase = false;
@@ -964,12 +973,12 @@ Result<void> check(const StrokeBegin& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<StrokeBegin> = Schema::StrokeBegin;
 
-// Next batch of a stroke's points. The brush is swept from the last point of the previous batch.
+// Next batch of points of a stroke. The brush moves from the last point of the previous batch to the first point of this one.
 struct StrokeExtend {
   static constexpr std::string_view kOp = "stroke.extend";
   Uuid id;
   Uuid stroke;
-  int n = 0;  // Number of the batch: 0, 1, 2…
+  int n = 0;  // Number of the batch: 0, 1, 2, …
   Path path;
   std::optional<Widths> widths;
   bool operator==(const StrokeExtend&) const = default;
@@ -991,7 +1000,7 @@ nlohmann::json to_json(const StrokeEnd& value);
 template <>
 inline constexpr Schema kSchemaOf<StrokeEnd> = Schema::StrokeEnd;
 
-// A whole edit.
+// A complete edit.
 struct EditRequest {
   static constexpr std::string_view kOp = "edit";
   Uuid id;
@@ -1017,7 +1026,7 @@ nlohmann::json to_json(const Undo& value);
 template <>
 inline constexpr Schema kSchemaOf<Undo> = Schema::Undo;
 
-// Redo the edit that the caller undid last.
+// Redo the edit that the caller last undid.
 struct Redo {
   static constexpr std::string_view kOp = "redo";
   Uuid id;
@@ -1029,14 +1038,15 @@ nlohmann::json to_json(const Redo& value);
 template <>
 inline constexpr Schema kSchemaOf<Redo> = Schema::Redo;
 
-// Start or end of editing a record. Shows the other participants that this person edits the record (`record.editors`). The version of the record protects its data. Editing ends with the connection. If somebody else edits the record, nothing changes, unless this message takes it over.
+// The user starts or stops editing a record. Informs the other participants that this user is editing the record (`record.editors`). This is not a lock: the version of the record protects its data. Editing ends when the connection is closed. If another user is already editing the record, the message has no effect, unless `take_over` is true.
 struct RecordEdit {
   static constexpr std::string_view kOp = "record.edit";
-  std::optional<std::string> id;  // Returned as `ref` of a problem.
-  std::int64_t table = 0;  // Id of a table of the model's project.
+  // If an error occurs, the server returns this id as `ref` of the problem.
+  std::optional<std::string> id;
+  std::int64_t table = 0;  // Id of a table in the model's project.
   std::int64_t key = 0;
   bool editing = false;
-  bool take_over = false;  // Take the record over from the person who edits it.
+  bool take_over = false;  // true: take over the record from the user who is editing it.
   bool operator==(const RecordEdit&) const = default;
 };
 void read(const nlohmann::json& json, RecordEdit& value);
@@ -1044,11 +1054,11 @@ nlohmann::json to_json(const RecordEdit& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEdit> = Schema::RecordEdit;
 
-// A frame was drawn. Sent when the last rectangle of a frame is on the screen. The server may then send another frame.
+// The client has shown a frame. The client sends this message when the last rectangle of a frame is on the screen. The server can then send another frame.
 struct Ack {
   static constexpr std::string_view kOp = "ack";
   int view_id = 0;
-  std::int64_t frame = 0;  // Frame number of the frame header.
+  std::int64_t frame = 0;  // Number of the frame, from the frame header.
   bool operator==(const Ack&) const = default;
 };
 void read(const nlohmann::json& json, Ack& value);
@@ -1056,17 +1066,19 @@ nlohmann::json to_json(const Ack& value);
 template <>
 inline constexpr Schema kSchemaOf<Ack> = Schema::Ack;
 
-// Presence of this participant. Replaces the earlier presence: an absent member no longer applies. The server refuses the message as a whole.
+// Presence of this participant. Replaces the earlier presence of this participant. If a member is absent, its earlier value no longer applies. If one member is invalid, the server refuses the whole message.
 struct PresenceUpdate {
   static constexpr std::string_view kOp = "presence";
   int view_id = 0;
-  // Pixel of the view's newest camera. Null or absent: the pointer is elsewhere.
+  // Position of the pointer, as a pixel of the newest camera of the view. Null or absent if the
+  // pointer is outside the view.
   std::optional<glm::dvec2> pointer;
-  // Radius of the brush at the pointer, in world coordinates. Absent: another tool.
+  // Radius of the brush at the pointer, in world coordinates. Absent if another tool is active.
   std::optional<double> radius;
-  bool leading = false;  // Invites the others to follow this participant.
-  // Session of the participant that this one follows. Its camera then comes with `presence`. 404:
-  // the session is not here. 409: that participant follows this one, directly or through others.
+  bool leading = false;  // true: this participant invites the other participants to follow.
+  // Session of the participant that this participant follows. `presence` messages then contain the
+  // camera of that participant. 404: the session does not exist. 409: that participant follows this
+  // one, directly or through other participants.
   std::optional<Uuid> follow;
   bool operator==(const PresenceUpdate&) const = default;
 };
@@ -1078,9 +1090,9 @@ inline constexpr Schema kSchemaOf<PresenceUpdate> = Schema::PresenceUpdate;
 // Values at a pixel.
 struct Pick {
   static constexpr std::string_view kOp = "pick";
-  std::optional<std::string> id;  // Returned in `picked`.
+  std::optional<std::string> id;  // The server returns this id in `picked`.
   int view_id = 0;
-  std::optional<strata::Camera> camera;  // Absent: the view's newest camera.
+  std::optional<strata::Camera> camera;  // Default: the newest camera of the view.
   double x = 0;
   double y = 0;
   bool operator==(const Pick&) const = default;
@@ -1094,7 +1106,7 @@ inline constexpr Schema kSchemaOf<Pick> = Schema::Pick;
 // Last saved batch of an unfinished stroke.
 struct StrokeProgress {
   Uuid stroke;
-  int n = 0;  // -1: nothing of it is saved.
+  int n = 0;  // Number of the batch. -1: no batch of the stroke has been saved.
   bool operator==(const StrokeProgress&) const = default;
 };
 void read(const nlohmann::json& json, StrokeProgress& value);
@@ -1105,10 +1117,11 @@ inline constexpr Schema kSchemaOf<StrokeProgress> = Schema::StrokeProgress;
 // Limits of the connection.
 struct Limits {
   int message_bytes = 0;
-  int path_points = 0;  // Points in one message.
-  int view_size = 0;  // Pixels a side of a picture.
+  int path_points = 0;  // Maximum number of points in one message.
+  int view_size = 0;  // Maximum width and height of a frame in pixels.
   int views = 0;
-  int frames_in_flight = 0;  // Frames that the server sends before it waits for an ack.
+  // Number of frames that the server sends before it waits for an `ack` message.
+  int frames_in_flight = 0;
   int messages_per_second = 0;
   bool operator==(const Limits&) const = default;
 };
@@ -1117,7 +1130,7 @@ nlohmann::json to_json(const Limits& value);
 template <>
 inline constexpr Schema kSchemaOf<Limits> = Schema::Limits;
 
-// Answer to the first message.
+// Response to the first message.
 struct Welcome {
   static constexpr std::string_view kOp = "welcome";
   Uuid session;
@@ -1125,12 +1138,12 @@ struct Welcome {
   Role role{};
   nlohmann::json model;
   std::vector<nlohmann::json> layers;
-  std::vector<nlohmann::json> looks;  // In their order.
-  // How this user shows the layers, as kept on the server. Absent: nothing is kept, or this is a
-  // kiosk.
+  std::vector<nlohmann::json> looks;  // Sorted by `order`.
+  // The display settings of this user for the layers, as stored on the server. Absent if the server
+  // has no stored settings or if the client is a kiosk.
   std::optional<PersonalView> personal_view;
   Limits limits;
-  // Unfinished strokes of this user, so that the client sends the missing batches again.
+  // Unfinished strokes of this user. The client should send the missing batches again.
   std::vector<StrokeProgress> strokes;
   bool operator==(const Welcome&) const = default;
 };
@@ -1139,7 +1152,7 @@ nlohmann::json to_json(const Welcome& value);
 template <>
 inline constexpr Schema kSchemaOf<Welcome> = Schema::Welcome;
 
-// An edit is done and visible, but not durable yet. `stroke` and `n` name a batch of a stroke, `id` any other message.
+// An edit is applied and visible, but not durable yet. `stroke` and `n` identify a batch of a stroke. `id` identifies any other message.
 struct Applied {
   static constexpr std::string_view kOp = "applied";
   std::optional<Uuid> id;
@@ -1156,7 +1169,7 @@ nlohmann::json to_json(const Applied& value);
 template <>
 inline constexpr Schema kSchemaOf<Applied> = Schema::Applied;
 
-// An edit is durable. `stroke` and `n` name a batch of a stroke, `id` any other message.
+// An edit is durable. `stroke` and `n` identify a batch of a stroke. `id` identifies any other message.
 struct Saved {
   static constexpr std::string_view kOp = "saved";
   std::optional<Uuid> id;
@@ -1173,11 +1186,11 @@ nlohmann::json to_json(const Saved& value);
 template <>
 inline constexpr Schema kSchemaOf<Saved> = Schema::Saved;
 
-// Edits that could not be saved and were taken back.
+// Edits that could not be saved and were removed.
 struct Unsaved {
   static constexpr std::string_view kOp = "unsaved";
   std::vector<Uuid> ids;  // Ids of the messages.
-  std::optional<std::string> detail;  // Reason.
+  std::optional<std::string> detail;  // Reason of the failure.
   bool operator==(const Unsaved&) const = default;
 };
 void read(const nlohmann::json& json, Unsaved& value);
@@ -1202,7 +1215,7 @@ std::string_view name(LayerEventEvent value);
 void read(const nlohmann::json& json, LayerEventEvent& value);
 nlohmann::json to_json(const LayerEventEvent& value);
 
-// A layer was created, changed, deleted or edited. `layer` is present for created and changed. For edited, `sequence` is present, with `provisional` if the edit waits for review, and `review` if it decides about others.
+// A layer was created, changed, deleted or edited. `layer` is present if the layer was created or changed. If it was edited, `sequence` is present. `provisional` is also present if the edit waits for review, and `review` if the edit is a decision about other edits.
 struct LayerEvent {
   static constexpr std::string_view kOp = "layer";
   LayerEventEvent event{};
@@ -1224,7 +1237,7 @@ std::string_view name(LookEventEvent value);
 void read(const nlohmann::json& json, LookEventEvent& value);
 nlohmann::json to_json(const LookEventEvent& value);
 
-// A surface image was created, changed or deleted. `look` is present for created and changed.
+// A surface image was created, changed or deleted. `look` is present if the surface image was created or changed.
 struct LookEvent {
   static constexpr std::string_view kOp = "look";
   LookEventEvent event{};
@@ -1242,7 +1255,7 @@ std::string_view name(ToolEventEvent value);
 void read(const nlohmann::json& json, ToolEventEvent& value);
 nlohmann::json to_json(const ToolEventEvent& value);
 
-// A brush shape was created, renamed or deleted. `tool` is present for created and changed.
+// A brush shape was created, renamed or deleted. `tool` is present if the brush shape was created or renamed.
 struct ToolEvent {
   static constexpr std::string_view kOp = "tool";
   ToolEventEvent event{};
@@ -1260,7 +1273,7 @@ std::string_view name(ModelEventEvent value);
 void read(const nlohmann::json& json, ModelEventEvent& value);
 nlohmann::json to_json(const ModelEventEvent& value);
 
-// The model's metadata changed, or it was deleted. `model` is present for changed.
+// The metadata of the model changed, or the model was deleted. `model` is present if the metadata changed.
 struct ModelEvent {
   static constexpr std::string_view kOp = "model";
   ModelEventEvent event{};
@@ -1277,7 +1290,7 @@ std::string_view name(RecordEventEvent value);
 void read(const nlohmann::json& json, RecordEventEvent& value);
 nlohmann::json to_json(const RecordEventEvent& value);
 
-// A record was created, changed or deleted. For tables of the model's project. `record` is present unless the record was deleted.
+// A record was created, changed or deleted. The server sends this message for all tables of the model's project. `record` is present unless the record was deleted.
 struct RecordEvent {
   static constexpr std::string_view kOp = "record";
   RecordEventEvent event{};
@@ -1292,7 +1305,7 @@ nlohmann::json to_json(const RecordEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEvent> = Schema::RecordEvent;
 
-// Person who edits a record. `session` and `user` are both absent if nobody edits the record now.
+// User who is editing a record. `session` and `user` are absent if nobody is editing the record now.
 struct RecordEditor {
   std::int64_t table = 0;  // Id of the table.
   std::int64_t key = 0;
@@ -1305,7 +1318,7 @@ nlohmann::json to_json(const RecordEditor& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEditor> = Schema::RecordEditor;
 
-// People who edit records. For the tables of the project. A new participant gets all editors, if there are any. Then all participants get each change. Not stored.
+// Users who are editing records. The message contains editors of records in all tables of the project. A new participant receives all current editors, if there are any. After that, all participants receive each change. The server does not store the editors.
 struct RecordEditors {
   static constexpr std::string_view kOp = "record.editors";
   std::vector<RecordEditor> records;
@@ -1321,7 +1334,7 @@ std::string_view name(TableEventEvent value);
 void read(const nlohmann::json& json, TableEventEvent& value);
 nlohmann::json to_json(const TableEventEvent& value);
 
-// A table was created, changed or deleted. For tables of the model's project. Changed: its names or columns, or so many records at once that clients should read them again. `table` is present unless the table was deleted.
+// A table was created, changed or deleted. The server sends this message for all tables of the model's project. A table counts as changed if its names or columns changed, or if many records changed at once. Clients should then read the records again. `table` is present unless the table was deleted.
 struct TableEvent {
   static constexpr std::string_view kOp = "table";
   TableEventEvent event{};
@@ -1340,7 +1353,7 @@ std::string_view name(CommentEventEvent value);
 void read(const nlohmann::json& json, CommentEventEvent& value);
 nlohmann::json to_json(const CommentEventEvent& value);
 
-// A comment was created, changed or deleted. For comments on the model. `comment` is present unless the comment was deleted. A deleted comment that stays for its replies counts as changed.
+// A comment was created, changed or deleted. The server sends this message for comments on the model. `comment` is present unless the comment was deleted. A deleted comment that stays because it has replies counts as changed.
 struct CommentEvent {
   static constexpr std::string_view kOp = "comment";
   CommentEventEvent event{};
@@ -1359,7 +1372,7 @@ std::string_view name(ViewEventEvent value);
 void read(const nlohmann::json& json, ViewEventEvent& value);
 nlohmann::json to_json(const ViewEventEvent& value);
 
-// A saved view was created, changed or deleted. For views of the model. Clients that list views read the view again.
+// A saved view was created, changed or deleted. The server sends this message for saved views of the model. Clients that show a list of views should read the view again.
 struct ViewEvent {
   static constexpr std::string_view kOp = "view";
   ViewEventEvent event{};
@@ -1377,7 +1390,7 @@ std::string_view name(SnapshotEventEvent value);
 void read(const nlohmann::json& json, SnapshotEventEvent& value);
 nlohmann::json to_json(const SnapshotEventEvent& value);
 
-// A snapshot was created, changed or deleted. For snapshots of the model. Clients that list snapshots read the snapshot again.
+// A snapshot was created, changed or deleted. The server sends this message for snapshots of the model. Clients that show a list of snapshots should read the snapshot again.
 struct SnapshotEvent {
   static constexpr std::string_view kOp = "snapshot";
   SnapshotEventEvent event{};
@@ -1390,10 +1403,10 @@ nlohmann::json to_json(const SnapshotEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<SnapshotEvent> = Schema::SnapshotEvent;
 
-// Place where a pointer touches the surface. World coordinates.
+// Point where a pointer is on the surface. Position in world coordinates.
 struct PresencePointer {
   glm::dvec3 position{0};
-  std::optional<double> radius;  // Radius of the brush. Absent: another tool.
+  std::optional<double> radius;  // Radius of the brush. Absent if another tool is active.
   bool operator==(const PresencePointer&) const = default;
 };
 void read(const nlohmann::json& json, PresencePointer& value);
@@ -1401,16 +1414,17 @@ nlohmann::json to_json(const PresencePointer& value);
 template <>
 inline constexpr Schema kSchemaOf<PresencePointer> = Schema::PresencePointer;
 
-// One participant. A person can be present several times, with the same color.
+// Participant. A user with several connections appears several times, with the same color.
 struct PresenceUser {
   Uuid session;
   std::string name;
-  // Full name at the start of the connection. Absent: the person gave none.
+  // Full name of the user when the connection was opened. Absent if the user has not entered a full
+  // name.
   std::optional<std::string> full_name;
   std::string color;
   std::optional<PresencePointer> pointer;
-  bool leading = false;  // Invites the others to follow this participant.
-  std::optional<Uuid> following;  // Session of the participant that this one follows.
+  bool leading = false;  // true: this participant invites the other participants to follow.
+  std::optional<Uuid> following;  // Session of the participant that this participant follows.
   // Newest camera of view 0, without its section. Present only for the participant that the
   // receiver follows.
   std::optional<strata::Camera> camera;
@@ -1422,7 +1436,7 @@ Result<void> check(const PresenceUser& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PresenceUser> = Schema::PresenceUser;
 
-// Participants of the model. Everybody with the model open, including the receiver. Not stored. The more people are present, the less often the server sends it.
+// Participants of the model. All participants who have the model open, including the receiver. The server does not store this list. The more participants there are, the less often the server sends this message.
 struct Presence {
   static constexpr std::string_view kOp = "presence";
   std::vector<PresenceUser> users;
@@ -1434,7 +1448,7 @@ Result<void> check(const Presence& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Presence> = Schema::Presence;
 
-// Values at the pixel. Next to the model, only `hit` and `id` are present.
+// Values at the pixel. If the pixel does not show the model, only `hit` and `id` are present.
 struct Picked {
   static constexpr std::string_view kOp = "picked";
   std::optional<std::string> id;
@@ -1442,7 +1456,7 @@ struct Picked {
   std::optional<glm::dvec3> position;
   std::optional<glm::dvec3> normal;
   std::optional<glm::dvec2> uv;
-  std::optional<double> distance;  // Distance from the camera's near plane.
+  std::optional<double> distance;  // Distance from the near plane of the camera.
   std::optional<SurfaceValues> values;
   bool operator==(const Picked&) const = default;
 };
@@ -1451,7 +1465,7 @@ nlohmann::json to_json(const Picked& value);
 template <>
 inline constexpr Schema kSchemaOf<Picked> = Schema::Picked;
 
-// Something was refused or failed. The members of RFC 9457, and `ref`, the id of the message.
+// A message was refused, or an operation failed. Contains the members of RFC 9457, and the id of the message as `ref`.
 struct ProblemMessage {
   static constexpr std::string_view kOp = "problem";
   std::optional<std::string> ref;
@@ -1459,13 +1473,15 @@ struct ProblemMessage {
   std::string title;
   int status = 0;
   std::string detail;
-  std::optional<std::string> field;  // Path of the wrong member in the message: camera.view[3].
-  // If the member is a condition or formula: the number of characters (Unicode code points) before
+  // Path of the invalid member in the message, such as camera.view[3].
+  std::optional<std::string> field;
+  // If the member is a condition or formula, the number of characters (Unicode code points) before
   // the mistake.
   std::optional<int> offset;
-  std::optional<int> length;  // With `offset`: the number of wrong characters, if it is known.
-  // With `offset` and `length`: texts that would correct the wrong characters, the most likely one
-  // first.
+  // With `offset`, the number of incorrect characters, if the server can determine it.
+  std::optional<int> length;
+  // With `offset` and `length`, texts that can replace the incorrect characters, the most likely
+  // one first.
   std::optional<std::vector<std::string>> suggestions;
   std::optional<std::string> reason;
   bool operator==(const ProblemMessage&) const = default;
@@ -1475,9 +1491,9 @@ nlohmann::json to_json(const ProblemMessage& value);
 template <>
 inline constexpr Schema kSchemaOf<ProblemMessage> = Schema::ProblemMessage;
 
-// Sign-in. By user name and password, or by the secret of an owner link.
+// Sign-in. With a user name and password, or with the secret of an owner link.
 struct Login {
-  std::optional<std::string> user;  // Upper and lower case count the same.
+  std::optional<std::string> user;  // The user name is not case-sensitive.
   std::optional<std::string> password;
   std::optional<std::string> token;
   bool operator==(const Login&) const = default;
@@ -1487,10 +1503,11 @@ nlohmann::json to_json(const Login& value);
 template <>
 inline constexpr Schema kSchemaOf<Login> = Schema::Login;
 
-// New password. If the user has a password, `current` is required. Ends all other sessions.
+// New password. `current` is required if the user already has a password. The change ends all other sessions of the user.
 struct PasswordChange {
   std::optional<std::string> current;
-  std::string password;  // At least ten characters, and not the user name.
+  // The password must have at least ten characters and must differ from the user name.
+  std::string password;
   bool operator==(const PasswordChange&) const = default;
 };
 void read(const nlohmann::json& json, PasswordChange& value);
@@ -1498,7 +1515,7 @@ nlohmann::json to_json(const PasswordChange& value);
 template <>
 inline constexpr Schema kSchemaOf<PasswordChange> = Schema::PasswordChange;
 
-// Changes of your own account.
+// Changes to your own account.
 struct MePatch {
   std::string full_name;
   bool operator==(const MePatch&) const = default;
@@ -1512,9 +1529,9 @@ inline constexpr Schema kSchemaOf<MePatch> = Schema::MePatch;
 struct ScriptTokenCreate {
   std::string name;  // Purpose of the token.
   std::optional<Role> role;
-  int days = 365;  // Days until the token expires.
-  // Slug or id of the only project in which the token is valid, as viewer, annotator or curator.
-  // Absent: in all projects of its user.
+  int days = 365;  // Number of days until the token expires.
+  // Slug or id of the only project in which the token is valid. The role must then be viewer,
+  // annotator or curator. Default: the token is valid in all projects of its user.
   std::optional<std::string> project;
   bool operator==(const ScriptTokenCreate&) const = default;
 };
@@ -1523,19 +1540,19 @@ nlohmann::json to_json(const ScriptTokenCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<ScriptTokenCreate> = Schema::ScriptTokenCreate;
 
-// Whether a person can sign in. Invited: the person has not set a password yet.
+// State of a user account. `invited`: the user has not set a password yet.
 enum class PersonState { invited, active, disabled };
 std::string_view name(PersonState value);
 void read(const nlohmann::json& json, PersonState& value);
 nlohmann::json to_json(const PersonState& value);
 
-// New account.
+// New user account.
 struct PersonCreate {
-  // For signing in, and in the history. Unique; upper and lower case count the same.
+  // The user name for sign-in and in the history. It must be unique and is not case-sensitive.
   std::string user;
   std::optional<std::string> full_name;
   std::optional<Role> role;
-  std::optional<std::vector<std::int64_t>> groups;  // Groups of the person from the start.
+  std::optional<std::vector<std::int64_t>> groups;  // Groups to which the user is added.
   bool operator==(const PersonCreate&) const = default;
 };
 void read(const nlohmann::json& json, PersonCreate& value);
@@ -1543,11 +1560,12 @@ nlohmann::json to_json(const PersonCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<PersonCreate> = Schema::PersonCreate;
 
-// Changes of an account.
+// Changes to a user account.
 struct PersonPatch {
   std::optional<std::string> full_name;
   std::optional<Role> role;
-  std::optional<bool> disabled;  // Ends all sessions of the user, and prevents signing in.
+  // true: ends all sessions of the user and prevents further sign-in.
+  std::optional<bool> disabled;
   bool operator==(const PersonPatch&) const = default;
 };
 void read(const nlohmann::json& json, PersonPatch& value);
@@ -1555,7 +1573,7 @@ nlohmann::json to_json(const PersonPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<PersonPatch> = Schema::PersonPatch;
 
-// An invitation, to get its user.
+// Request for the user of an invitation.
 struct InvitationShow {
   std::string invitation;
   bool operator==(const InvitationShow&) const = default;
@@ -1565,10 +1583,11 @@ nlohmann::json to_json(const InvitationShow& value);
 template <>
 inline constexpr Schema kSchemaOf<InvitationShow> = Schema::InvitationShow;
 
-// An invitation and the new password.
+// Invitation and new password.
 struct InvitationAccept {
   std::string invitation;
-  std::string password;  // At least ten characters, and not the user name.
+  // The password must have at least ten characters and must differ from the user name.
+  std::string password;
   std::optional<std::string> full_name;
   bool operator==(const InvitationAccept&) const = default;
 };
@@ -1577,7 +1596,7 @@ nlohmann::json to_json(const InvitationAccept& value);
 template <>
 inline constexpr Schema kSchemaOf<InvitationAccept> = Schema::InvitationAccept;
 
-// Role in one project. In addition to the role in all projects; the higher one applies.
+// Role in one project. This role applies in addition to the user's role in all projects. The higher of the two roles applies.
 enum class ProjectRole { viewer, annotator, curator };
 std::string_view name(ProjectRole value);
 void read(const nlohmann::json& json, ProjectRole& value);
@@ -1604,12 +1623,12 @@ nlohmann::json to_json(const GroupCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<GroupCreate> = Schema::GroupCreate;
 
-// Changes of a group.
+// Changes to a group.
 struct GroupPatch {
   std::optional<std::string> name;
-  // People to add to the group. People who are in it already stay.
+  // Users to add to the group. Users who are already in the group stay in it.
   std::optional<std::vector<std::string>> add;
-  // People to remove from the group. People who are not in it are ignored.
+  // Users to remove from the group. Users who are not in the group are ignored.
   std::optional<std::vector<std::string>> remove;
   bool operator==(const GroupPatch&) const = default;
 };
@@ -1618,7 +1637,7 @@ nlohmann::json to_json(const GroupPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<GroupPatch> = Schema::GroupPatch;
 
-// Kind of the changed thing.
+// Kind of the changed item.
 enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project, snapshot };
 std::string_view name(ActivityKind value);
 void read(const nlohmann::json& json, ActivityKind& value);
@@ -1633,7 +1652,8 @@ nlohmann::json to_json(const BinKind& value);
 // New project.
 struct ProjectCreate {
   std::string name;
-  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
+  // Default: derived from the name. A slug cannot consist only of digits.
+  std::optional<std::string> slug;
   std::string description;
   bool operator==(const ProjectCreate&) const = default;
 };
@@ -1646,7 +1666,8 @@ inline constexpr Schema kSchemaOf<ProjectCreate> = Schema::ProjectCreate;
 struct ProjectPatch {
   std::optional<std::string> name;
   std::optional<std::string> description;
-  std::optional<bool> require_if_match;  // As in Project. Curators can change it, too.
+  // The same setting as in Project. Curators can also change it.
+  std::optional<bool> require_if_match;
   bool operator==(const ProjectPatch&) const = default;
 };
 void read(const nlohmann::json& json, ProjectPatch& value);
@@ -1659,14 +1680,14 @@ std::string_view name(ModelPatchSourceDownload value);
 void read(const nlohmann::json& json, ModelPatchSourceDownload& value);
 nlohmann::json to_json(const ModelPatchSourceDownload& value);
 
-// Changes to a model's metadata. No change affects paint. Stating the unit clears `unit_assumed`.
+// Changes to a model's metadata. The changes do not affect the painted values. Setting the unit clears `unit_assumed`.
 struct ModelPatch {
   std::optional<std::string> name;
   std::optional<strata::Unit> unit;
   std::optional<bool> scale_verified;
   std::optional<Axis> up;
   std::optional<std::string> north;
-  std::optional<std::string> crs;  // EPSG:n, or empty.
+  std::optional<std::string> crs;  // Coordinate system as EPSG:n, or empty.
   std::optional<int> default_resolution;
   std::optional<std::string> inventory_number;
   std::optional<std::string> owner;
@@ -1677,7 +1698,8 @@ struct ModelPatch {
   std::optional<std::string> processing;
   std::optional<std::string> rights_uri;
   std::optional<std::string> credit;
-  // Lowest role that can get the scan's files, the pictures of its surface images and its mesh.
+  // Lowest role that can download the files of the scan, the surface images in full size and the
+  // mesh.
   std::optional<ModelPatchSourceDownload> source_download;
   bool operator==(const ModelPatch&) const = default;
 };
@@ -1686,7 +1708,7 @@ nlohmann::json to_json(const ModelPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ModelPatch> = Schema::ModelPatch;
 
-// File that a job made. For the user who started the job, at `/jobs/{job}/file`. The server keeps only the newest files.
+// File that a job created. The user who started the job can get the file from `/jobs/{job}/file`. The server keeps only the newest files.
 struct JobFile {
   std::string name;
   std::string media_type;
@@ -1698,14 +1720,15 @@ nlohmann::json to_json(const JobFile& value);
 template <>
 inline constexpr Schema kSchemaOf<JobFile> = Schema::JobFile;
 
-// One layer of a transfer.
+// Layer in a transfer.
 struct TransferredLayer {
   std::int64_t from = 0;  // Id of the original layer.
   std::int64_t layer = 0;  // Id of the new layer.
   std::optional<std::string> name;
-  double source_m2 = 0;  // Painted surface of the original layer.
-  double transferred_m2 = 0;  // Painted surface of the new layer.
-  double lost_m2 = 0;  // The part of `source_m2` that has no counterpart within the tolerance.
+  double source_m2 = 0;  // Painted area of the original layer.
+  double transferred_m2 = 0;  // Painted area of the new layer.
+  // The part of `source_m2` for which this model has no surface within the tolerance.
+  double lost_m2 = 0;
   bool operator==(const TransferredLayer&) const = default;
 };
 void read(const nlohmann::json& json, TransferredLayer& value);
@@ -1716,13 +1739,14 @@ inline constexpr Schema kSchemaOf<TransferredLayer> = Schema::TransferredLayer;
 // Report of a transfer of layers.
 struct TransferReport {
   std::int64_t from = 0;  // Id of the model with the original layers.
-  double area_m2 = 0;  // Surface of the model with the new layers.
-  double matched_m2 = 0;  // The part of `area_m2` that has a counterpart within the tolerance.
+  double area_m2 = 0;  // Surface area of the model with the new layers.
+  // The part of `area_m2` for which the other model has a surface within the tolerance.
+  double matched_m2 = 0;
   std::vector<TransferredLayer> layers;
-  // Lines and points of records that are now also on this model.
+  // Number of lines and points of records that were copied to this model.
   std::optional<std::int64_t> marks;
-  // Lines and points of the other model that have no counterpart within the tolerance, completely
-  // or in part.
+  // Number of lines and points of the other model that could not be copied completely, because this
+  // model has no surface within the tolerance.
   std::optional<std::int64_t> lost_marks;
   bool operator==(const TransferReport&) const = default;
 };
@@ -1736,17 +1760,17 @@ std::string_view name(JobState value);
 void read(const nlohmann::json& json, JobState& value);
 nlohmann::json to_json(const JobState& value);
 
-// Job: work that takes longer than an answer.
+// Job: a task that runs in the background.
 struct Job {
   std::int64_t id = 0;
   JobState state{};
   double progress = 0;
-  std::string message;  // The current step, for people.
+  std::string message;  // Description of the current step, for people.
   std::optional<nlohmann::json> problem;
-  std::optional<std::int64_t> model;  // Id of the model, when the job is finished.
-  // Ids of the layers that the job made on the model.
+  std::optional<std::int64_t> model;  // Id of the model, if the job is finished.
+  // Ids of the layers that the job created on the model.
   std::optional<std::vector<std::int64_t>> layers;
-  std::optional<std::int64_t> look;  // Id of the surface image that the job made on the model.
+  std::optional<std::int64_t> look;  // Id of the surface image that the job created on the model.
   std::optional<TransferReport> report;
   std::optional<JobFile> file;
   bool operator==(const Job&) const = default;
@@ -1758,14 +1782,17 @@ inline constexpr Schema kSchemaOf<Job> = Schema::Job;
 
 // Transfer of layers from another version of the same scan.
 struct Transfer {
-  // Id or slug of the model with the original layers. The coordinates of both models must be of one
+  // Id or slug of the model with the original layers. Both models must use the same coordinate
   // system.
   std::string from;
-  // A place stays empty if the other model has no surface within this distance.
+  // Maximum distance in millimeters. Points stay empty if the other model has no surface within
+  // this distance.
   double tolerance_mm = 0;
-  // Largest angle between the surfaces in degrees. It keeps the two sides of a thin wall apart.
+  // Maximum angle between the two surfaces in degrees. It prevents transfers between the two sides
+  // of a thin wall.
   double max_angle = 60;
-  std::optional<std::vector<std::string>> layers;  // Ids or slugs. Absent: all.
+  // Ids or slugs of the layers. Default: all layers.
+  std::optional<std::vector<std::string>> layers;
   bool operator==(const Transfer&) const = default;
 };
 void read(const nlohmann::json& json, Transfer& value);
@@ -1787,21 +1814,22 @@ inline constexpr Schema kSchemaOf<JobList> = Schema::JobList;
 // New column.
 struct ColumnCreate {
   std::string name;
-  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
+  // Default: derived from the name. A slug cannot consist only of digits.
+  std::optional<std::string> slug;
   std::optional<Labels> labels;
   ColumnKind kind = ColumnKind::text;
-  std::string unit;  // Numbers: unit of the values.
+  std::string unit;  // For columns of numbers, the unit of the values.
   bool required = false;
   bool unique = false;
-  // Value of new records that give none. Null: no value.
+  // Value of new records that do not set one. Null means no value.
   std::optional<nlohmann::json> default_value;
   std::string comment;
-  std::optional<std::vector<std::string>> choices;  // Enumerations: possible values.
-  // Terms and relations: table of the project whose records they name.
+  std::optional<std::vector<std::string>> choices;  // For enumerations, the possible values.
+  // For terms and relations, the table of the project whose records they refer to.
   std::optional<TableRef> target;
   std::optional<double> minimum;
   std::optional<double> maximum;
-  std::optional<strata::Visibility> visibility;  // Absent: public.
+  std::optional<strata::Visibility> visibility;  // Default: public.
   bool operator==(const ColumnCreate&) const = default;
 };
 void read(const nlohmann::json& json, ColumnCreate& value);
@@ -1809,26 +1837,26 @@ nlohmann::json to_json(const ColumnCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<ColumnCreate> = Schema::ColumnCreate;
 
-// Changes to a column. With another kind or target, a new column replaces this one and gets the values that it can hold.
+// Changes to a column. If the kind or target changes, a new column replaces this one. It contains the values that the server could convert.
 struct ColumnPatch {
   std::optional<std::string> name;
   std::optional<std::string> slug;
   std::optional<Labels> labels;
   std::optional<ColumnKind> kind;
-  std::optional<std::string> unit;  // Numbers: unit of the values.
+  std::optional<std::string> unit;  // For columns of numbers, the unit of the values.
   std::optional<bool> required;
   std::optional<bool> unique;
-  // Value of new records that give none. Null: no value.
+  // Value of new records that do not set one. Null means no value.
   std::optional<nlohmann::json> default_value;
   std::optional<std::string> comment;
-  std::optional<std::vector<std::string>> choices;  // Enumerations: possible values.
-  // Terms and relations: table of the project whose records they name.
+  std::optional<std::vector<std::string>> choices;  // For enumerations, the possible values.
+  // For terms and relations, the table of the project whose records they refer to.
   std::optional<TableRef> target;
   std::optional<double> minimum;
   std::optional<double> maximum;
-  std::optional<int> order;  // In ascending order from left to right.
-  // Only without other members. The change also applies to the past. It is not an entry of the
-  // table's journal, so undo cannot show the column again.
+  std::optional<int> order;  // Columns are sorted in ascending order, from left to right.
+  // Can only be changed in a separate request, without other members. The change also applies to
+  // earlier states. It is not an entry in the table's journal, so undo cannot reverse it.
   std::optional<strata::Visibility> visibility;
   bool operator==(const ColumnPatch&) const = default;
 };
@@ -1837,7 +1865,7 @@ nlohmann::json to_json(const ColumnPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ColumnPatch> = Schema::ColumnPatch;
 
-// Changes to a file of a record.
+// Changes to an attached file.
 struct AttachmentPatch {
   strata::Visibility visibility{};
   bool operator==(const AttachmentPatch&) const = default;
@@ -1847,9 +1875,10 @@ nlohmann::json to_json(const AttachmentPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<AttachmentPatch> = Schema::AttachmentPatch;
 
-// Names of files, and how they name their records.
+// File names, and the pattern by which they identify records.
 struct AttachmentMatch {
-  // A {word} matches one or more characters. The word with the name of the column names the record.
+  // A placeholder {word} matches one or more characters. The placeholder with the name of the
+  // column identifies the record.
   std::string pattern;
   std::string column;  // Slug or id of a column, or `key`.
   std::vector<std::string> names;
@@ -1863,7 +1892,8 @@ inline constexpr Schema kSchemaOf<AttachmentMatch> = Schema::AttachmentMatch;
 // New table.
 struct TableCreate {
   std::string name;
-  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
+  // Default: derived from the name. A slug cannot consist only of digits.
+  std::optional<std::string> slug;
   std::optional<Labels> labels;
   std::string description;
   std::optional<std::vector<ColumnCreate>> columns;
@@ -1879,7 +1909,8 @@ struct TablePatch {
   std::optional<std::string> name;
   std::optional<Labels> labels;
   std::optional<std::string> description;
-  // Id or slug of the column with the titles of records. Empty: the best one by rule.
+  // Id or slug of the column that contains the titles of records. If empty, the server chooses a
+  // column (see Table).
   std::optional<std::string> title_column;
   bool operator==(const TablePatch&) const = default;
 };
@@ -1890,7 +1921,7 @@ inline constexpr Schema kSchemaOf<TablePatch> = Schema::TablePatch;
 
 // New record.
 struct RecordInput {
-  // Absent: the next free key. The server never gives the key of a deleted record again.
+  // Default: the next free key. The server never reuses the key of a deleted record.
   std::optional<std::int64_t> key;
   std::optional<nlohmann::json> values;
   bool operator==(const RecordInput&) const = default;
@@ -1900,7 +1931,7 @@ nlohmann::json to_json(const RecordInput& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordInput> = Schema::RecordInput;
 
-// One new record, or several. Either `records`, of which all or none are created, or `key` and `values` of one record.
+// One or several new records. Contains either `records`, or `key` and `values` of a single record. The server creates all of the records or none.
 struct RecordsCreate {
   std::optional<std::int64_t> key;
   std::optional<nlohmann::json> values;
@@ -1912,9 +1943,9 @@ nlohmann::json to_json(const RecordsCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordsCreate> = Schema::RecordsCreate;
 
-// Changes to a record. Columns that are not named do not change.
+// Changes to a record. Columns that are not listed do not change.
 struct RecordPatch {
-  std::optional<std::int64_t> version;  // Version of the record as it was read, as in If-Match.
+  std::optional<std::int64_t> version;  // Version of the record when it was read, as for If-Match.
   nlohmann::json values;
   bool operator==(const RecordPatch&) const = default;
 };
@@ -1932,7 +1963,7 @@ nlohmann::json to_json(const TemplateTermPattern& value);
 struct TemplateTerm {
   std::string code;
   std::optional<std::string> parent;  // Code of the parent term.
-  std::string label;  // In English.
+  std::string label;  // Label in English.
   std::optional<Labels> labels;
   std::string definition;
   std::optional<std::string> color;
@@ -1944,14 +1975,14 @@ nlohmann::json to_json(const TemplateTerm& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateTerm> = Schema::TemplateTerm;
 
-// Table of a template. It has terms, columns, or both. Columns of a term list come after those that every list has.
+// Table of a template. The table has terms, columns or both. The columns of a term list follow the columns that every term list has.
 struct TemplateTable {
   std::string name;
-  std::string slug;  // Name of the table in columns and layers of the template.
+  std::string slug;  // Name by which columns and layers of the template refer to the table.
   std::optional<Labels> labels;
   std::string description;
   std::optional<std::vector<TemplateTerm>> terms;
-  // Their targets are earlier tables of the template, or the table itself.
+  // The targets of the columns are earlier tables of the template, or the table itself.
   std::optional<std::vector<ColumnCreate>> columns;
   bool operator==(const TemplateTable&) const = default;
 };
@@ -1978,7 +2009,7 @@ nlohmann::json to_json(const TemplateLayer& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateLayer> = Schema::TemplateLayer;
 
-// Group of a template's layers.
+// Group of layers in a template.
 struct TemplateGroup {
   std::string name;
   std::optional<Labels> labels;
@@ -1989,9 +2020,9 @@ nlohmann::json to_json(const TemplateGroup& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateGroup> = Schema::TemplateGroup;
 
-// Template: tables and layers that are made together.
+// Template: tables and layers that are created together.
 struct Template {
-  std::optional<std::string> slug;  // Name of the template's file.
+  std::optional<std::string> slug;  // Name of the file of the template.
   std::string name;
   std::optional<Labels> labels;
   std::string description;
@@ -2007,9 +2038,11 @@ inline constexpr Schema kSchemaOf<Template> = Schema::Template;
 
 // Use of a template.
 struct TemplateUse {
-  // Id or slug of a model of the project that gets the layers. Absent: only tables are created.
+  // Id or slug of the model of the project on which the layers are created. If absent, only tables
+  // are created.
   std::optional<std::string> model;
-  // Language of the names, if the template has it. Otherwise English.
+  // Language of the names. If the template does not contain this language, the names are in
+  // English.
   std::optional<std::string> language;
   bool operator==(const TemplateUse&) const = default;
 };
@@ -2023,20 +2056,23 @@ std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
 nlohmann::json to_json(const ShapeRecipeKind& value);
 
-// Values computed from the model's shape. The answer is a job; the layer exists when the job is finished. If unit, palette or description are absent, they follow from the recipe.
+// Values that are computed from the shape of the model. The response is a job. The layer exists when the job is finished. If unit, palette or description are absent, the server derives them from the recipe.
 struct ShapeRecipe {
   ShapeRecipeKind kind{};
-  // Curvatures and roughness: radius of the neighborhood. Absent: four edges of the mesh.
+  // For curvature and roughness, the radius of the neighborhood. Default: the length of four edges
+  // of the mesh.
   std::optional<double> radius_mm;
-  // Ambient occlusion and model distance: largest distance of the search. Absent: a quarter of the
-  // model's diagonal for ambient occlusion, a tenth for model distance.
+  // For ambient occlusion and model distance, the maximum search distance. Default: a quarter of
+  // the model's diagonal for ambient occlusion, and a tenth for model distance.
   std::optional<double> distance_mm;
-  std::optional<int> rays;  // Ambient occlusion: rays for each point. Absent: 64.
-  // Height: the world coordinate, instead of the height above the lowest point.
+  // For ambient occlusion, the number of rays for each point. Default: 64.
+  std::optional<int> rays;
+  // For height, true: use the world coordinate instead of the height above the lowest point.
   bool absolute = false;
-  std::optional<std::string> model;  // Model distance: id or slug of the other model.
-  std::optional<std::string> property;  // Vertex property: its name in the PLY, such as quality.
-  // Vertex property: the source file. Required if several files have the property.
+  std::optional<std::string> model;  // For model distance, the id or slug of the other model.
+  // For a vertex property, its name in the PLY file, such as quality.
+  std::optional<std::string> property;
+  // For a vertex property, the source file. Required if several files contain the property.
   std::optional<std::string> source;
   bool operator==(const ShapeRecipe&) const = default;
 };
@@ -2048,43 +2084,46 @@ inline constexpr Schema kSchemaOf<ShapeRecipe> = Schema::ShapeRecipe;
 // New layer.
 struct LayerCreate {
   std::string name;
-  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
+  // Default: derived from the name. A slug cannot consist only of digits.
+  std::optional<std::string> slug;
   strata::LayerKind kind = strata::LayerKind::numeric;
-  // Absent: u8. For computed layers f32, except u8 for a condition.
+  // Default: u8. For computed layers, the default is f32, or u8 for a condition.
   std::optional<strata::ValueType> type;
-  std::optional<int> resolution;  // Absent: the model's default.
+  std::optional<int> resolution;  // Default: the default resolution of the model.
   std::string unit;
   std::string description;
   std::optional<Labels> labels;  // Names of the layer in other languages.
   std::optional<Descriptions> descriptions;
-  // Heading under which the page lists the layer. The server removes blanks at its ends. Empty:
-  // none.
+  // Heading under which the web page lists the layer. The server removes spaces at the beginning
+  // and end. Empty means no heading.
   std::optional<std::string> group;
   std::optional<nlohmann::json> palette;
   double opacity = 1;
-  std::optional<strata::LayerBlend> blend;  // Absent: normal.
-  // Absent: true. For computed layers false, because they must not cover the view of others; the
-  // creator sees the layer at once.
+  std::optional<strata::LayerBlend> blend;  // Default: normal.
+  // Default: true. For computed layers, the default is false, so that they do not cover the other
+  // layers for other users. The creator sees the layer at once.
   std::optional<bool> visible;
-  // Nobody below curator can change the texels of the layer. Absent: false. A computed layer is
-  // always locked when it is created (422 for false).
+  // true: users below the curator role cannot change the texels of the layer. Default: false. A new
+  // computed layer is always locked (422 for false).
   std::optional<bool> locked;
-  bool review = false;  // Edits of annotators wait for a review by a curator.
-  // Absent: public. Everybody who can see the layer must be able to see the layers and columns that
-  // it reads and that color it.
+  bool review = false;  // true: edits by annotators wait for a review by a curator.
+  // Default: public. Everybody who can see the layer must also be able to see the layers and
+  // columns that it reads or that color it.
   std::optional<strata::Visibility> visibility;
-  std::optional<int> order;  // Absent: on top. A computed layer is below all others.
-  // Layers of records: the project's table whose keys the texels hold. Absent: a new table with the
-  // layer's name.
+  // Default: above all other layers. For computed layers, the default is below all other layers.
+  std::optional<int> order;
+  // For layers of records, the table of the project whose keys the texels store. By default, the
+  // server creates a new table with the name of the layer.
   std::optional<TableRef> table;
-  // Layers of records without `table`: columns of the new table. Absent: one text column, Name.
+  // For layers of records without `table`, the columns of the new table. Default: one text column,
+  // Name.
   std::optional<std::vector<ColumnCreate>> columns;
   std::optional<ShapeRecipe> compute;
-  // For a computed layer: a number, or a condition (1 where it is true, not painted elsewhere). It
-  // can use layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature,
-  // area).
+  // For a computed layer, a formula or a condition. A condition results in the value 1 where it is
+  // true and no value elsewhere. The expression can use layers, their records and the surface (x,
+  // y, z, nx, ny, nz, height, slope, curvature, area).
   std::optional<std::string> expression;
-  std::optional<Recompute> recompute;  // With `expression`. Absent: manual.
+  std::optional<Recompute> recompute;  // Only with `expression`. Default: manual.
   bool operator==(const LayerCreate&) const = default;
 };
 void read(const nlohmann::json& json, LayerCreate& value);
@@ -2092,7 +2131,7 @@ nlohmann::json to_json(const LayerCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerCreate> = Schema::LayerCreate;
 
-// A property and its file.
+// Vertex property with its file.
 struct VertexPropertyName {
   std::string source;
   std::string property;
@@ -2103,7 +2142,7 @@ nlohmann::json to_json(const VertexPropertyName& value);
 template <>
 inline constexpr Schema kSchemaOf<VertexPropertyName> = Schema::VertexPropertyName;
 
-// Numbers of the source files' vertices.
+// Numeric vertex properties of the source files.
 struct VertexPropertyList {
   std::vector<VertexPropertyName> properties;
   std::int64_t total = 0;
@@ -2117,11 +2156,11 @@ inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyLi
 // First comment of a thread.
 struct CommentCreate {
   std::string text;  // Plain text.
-  // World coordinates. The server uses the nearest place of the surface, within 5 % of the model's
-  // diagonal.
+  // Position in world coordinates. The server uses the nearest point on the surface. The distance
+  // to this point can be at most 5 % of the model's diagonal.
   glm::dvec3 position{0};
   std::optional<LayerRef> layer;  // The layer that the comment is about.
-  // The record that the comment is about: a key of the layer, which must be a layer of records.
+  // Key of the record that the comment is about. `layer` must then be a layer of records.
   std::optional<std::int64_t> record;
   bool operator==(const CommentCreate&) const = default;
 };
@@ -2130,7 +2169,7 @@ nlohmann::json to_json(const CommentCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<CommentCreate> = Schema::CommentCreate;
 
-// Reply in a thread.
+// Reply in a comment thread.
 struct ReplyCreate {
   std::string text;  // Plain text.
   bool operator==(const ReplyCreate&) const = default;
@@ -2140,10 +2179,11 @@ nlohmann::json to_json(const ReplyCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<ReplyCreate> = Schema::ReplyCreate;
 
-// New text of a comment, or new state of a thread.
+// New text of a comment or new state of a thread.
 struct CommentPatch {
-  std::optional<std::string> text;  // Text of your own comment.
-  std::optional<CommentState> state;  // State of the thread, on its first comment.
+  std::optional<std::string> text;  // New text. You can change only your own comments.
+  // New state of the thread. Only for the first comment of the thread.
+  std::optional<CommentState> state;
   bool operator==(const CommentPatch&) const = default;
 };
 void read(const nlohmann::json& json, CommentPatch& value);
@@ -2155,12 +2195,13 @@ inline constexpr Schema kSchemaOf<CommentPatch> = Schema::CommentPatch;
 struct ViewCreate {
   std::string name;
   std::optional<std::string> text;  // Plain text.
-  strata::Camera camera;  // With its section.
-  // Layers that are not listed have their defaults.
+  strata::Camera camera;  // Camera with its section.
+  // Layers that are not listed have their default settings.
   std::optional<std::vector<LayerOverride>> layers;
-  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
+  // The visible surface images from bottom to top. Default: the surface images that are visible by
+  // default.
   std::optional<std::vector<LookShown>> looks;
-  std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<strata::Light> light;  // Default: the light mode museum.
   bool operator==(const ViewCreate&) const = default;
 };
 void read(const nlohmann::json& json, ViewCreate& value);
@@ -2169,16 +2210,17 @@ Result<void> check(const ViewCreate& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<ViewCreate> = Schema::ViewCreate;
 
-// Changes to a saved view. The content changes as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults.
+// Changes to a saved view. The content can only be replaced as a whole. If the request contains `camera`, then `layers`, `looks` and `light` get their default values if they are absent.
 struct ViewPatch {
   std::optional<std::string> name;
   std::optional<std::string> text;  // Plain text.
-  std::optional<strata::Camera> camera;  // With its section.
-  // Layers that are not listed have their defaults.
+  std::optional<strata::Camera> camera;  // Camera with its section.
+  // Layers that are not listed have their default settings.
   std::optional<std::vector<LayerOverride>> layers;
-  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
+  // The visible surface images from bottom to top. Default: the surface images that are visible by
+  // default.
   std::optional<std::vector<LookShown>> looks;
-  std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<strata::Light> light;  // Default: the light mode museum.
   bool operator==(const ViewPatch&) const = default;
 };
 void read(const nlohmann::json& json, ViewPatch& value);
@@ -2190,15 +2232,18 @@ inline constexpr Schema kSchemaOf<ViewPatch> = Schema::ViewPatch;
 // Stop of a tour.
 struct TourStopCreate {
   std::string view;  // Slug or id of a saved view of the model.
-  TourWords title;  // At least in the tour's first language.
+  TourWords title;  // The title must exist at least in the first language of the tour.
   std::optional<TourText> text;
-  double attract_s = 10;  // Seconds that the stop is shown while the tour plays by itself.
-  std::optional<TourTransition> transition;  // Absent: `move`.
-  double transition_s = 2;  // Duration of a `move` in seconds.
-  // Slugs or ids of the layers to swipe between, in this order. Each layer once.
+  // Number of seconds for which the stop is shown while the tour plays automatically.
+  double attract_s = 10;
+  std::optional<TourTransition> transition;  // Default: `move`.
+  double transition_s = 2;  // Duration of a `move` transition in seconds.
+  // Slugs or ids of the layers between which visitors can swipe, in this order. Each layer can
+  // occur only once.
   std::optional<std::vector<std::string>> layers;
-  std::optional<std::vector<TourRecords>> records;  // Each entry has another table of the project.
-  // Pictures, sounds and videos of the tour, in this order. Each file once.
+  // Each entry must refer to a different table of the project.
+  std::optional<std::vector<TourRecords>> records;
+  // Images, sounds and videos of the tour, in this order. Each file can occur only once.
   std::optional<std::vector<TourMedium>> media;
   bool operator==(const TourStopCreate&) const = default;
 };
@@ -2210,13 +2255,16 @@ inline constexpr Schema kSchemaOf<TourStopCreate> = Schema::TourStopCreate;
 // New tour.
 struct TourCreate {
   std::string name;
-  // Plain text: the subject of the tour, for people who choose one.
+  // The subject of the tour as plain text, which helps people to choose a tour.
   std::optional<std::string> text;
-  // The first one is the default language; every stop has a title in it. Each language once.
+  // The first language is the default language. Every stop must have a title in this language. Each
+  // language can occur only once.
   std::vector<std::string> languages;
-  int idle_s = 60;  // Seconds after the last touch until the tour restarts and plays by itself.
+  // Seconds without touches after which the tour restarts and plays automatically.
+  int idle_s = 60;
   std::optional<TourTheme> theme;
-  std::optional<std::vector<TourClasses>> classes;  // Other names of classes. Each layer once.
+  // Names of classes that differ from those in the legend. Each layer can occur only once.
+  std::optional<std::vector<TourClasses>> classes;
   std::vector<TourStopCreate> stops;
   bool operator==(const TourCreate&) const = default;
 };
@@ -2225,16 +2273,18 @@ nlohmann::json to_json(const TourCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<TourCreate> = Schema::TourCreate;
 
-// Changes to a tour. Stops change as a whole. Remaining stops must match the languages.
+// Changes to a tour. The list of stops can only be replaced as a whole. If it is not replaced, the existing stops must match the languages.
 struct TourPatch {
   std::optional<std::string> name;
-  // Plain text: the subject of the tour, for people who choose one.
+  // The subject of the tour as plain text, which helps people to choose a tour.
   std::optional<std::string> text;
-  // The first one is the default language; every stop has a title in it. Each language once.
+  // The first language is the default language. Every stop must have a title in this language. Each
+  // language can occur only once.
   std::optional<std::vector<std::string>> languages;
   std::optional<int> idle_s;
   std::optional<TourTheme> theme;
-  std::optional<std::vector<TourClasses>> classes;  // Other names of classes. Each layer once.
+  // Names of classes that differ from those in the legend. Each layer can occur only once.
+  std::optional<std::vector<TourClasses>> classes;
   std::optional<std::vector<TourStopCreate>> stops;
   bool operator==(const TourPatch&) const = default;
 };
@@ -2246,8 +2296,9 @@ inline constexpr Schema kSchemaOf<TourPatch> = Schema::TourPatch;
 // New kiosk link.
 struct KioskCreate {
   std::string name;  // Location of the screen.
-  std::optional<int> days;  // Days until the link expires. Absent: never.
-  // The screen shows a QR code, with which visitors open the tour on their phones.
+  // Number of days until the link expires. Default: the link does not expire.
+  std::optional<int> days;
+  // true: the screen shows a QR code with which visitors can open the tour on their phones.
   bool phones = false;
   bool operator==(const KioskCreate&) const = default;
 };
@@ -2258,8 +2309,8 @@ inline constexpr Schema kSchemaOf<KioskCreate> = Schema::KioskCreate;
 
 // Changes to a kiosk link.
 struct KioskPatch {
-  // false: the QR code disappears, and the links that phones opened by it become invalid. true: a
-  // new code.
+  // false: the screen hides the QR code, and the link in the code becomes invalid. true: the screen
+  // shows a new QR code.
   bool phones = false;
   bool operator==(const KioskPatch&) const = default;
 };
@@ -2307,29 +2358,32 @@ struct LayerPatch {
   std::optional<std::string> name;
   std::optional<std::string> unit;
   std::optional<std::string> description;
-  std::optional<Labels> labels;  // Names in other languages; replaces all.
-  std::optional<Descriptions> descriptions;  // Descriptions in other languages; replaces all.
-  // Heading under which the page lists the layer. The server removes blanks at its ends. Empty:
-  // none.
+  // Names in other languages. Replaces all existing names in other languages.
+  std::optional<Labels> labels;
+  // Descriptions in other languages. Replaces all existing descriptions in other languages.
+  std::optional<Descriptions> descriptions;
+  // Heading under which the web page lists the layer. The server removes spaces at the beginning
+  // and end. Empty means no heading.
   std::optional<std::string> group;
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
   std::optional<strata::LayerBlend> blend;
   std::optional<bool> visible;
-  // true: from the answer on, nobody below curator can change the texels until the layer is
-  // unlocked. false, on a computed layer: from now on it is edited by hand, which stays marked
-  // (`edited_by_hand`), and the server does not compute it automatically.
+  // true: after the response, users below the curator role cannot change the texels until the layer
+  // is unlocked. false: unlocks the layer. A computed layer is then marked as edited by hand
+  // (`edited_by_hand`), and the server no longer computes it automatically.
   std::optional<bool> locked;
-  // true: later edits of annotators wait for a review by a curator. false: edits that wait already
-  // continue to wait.
+  // true: later edits by annotators wait for a review by a curator. false: later edits do not need
+  // a review. Edits that already wait for review still need a decision.
   std::optional<bool> review;
-  std::optional<strata::Visibility> visibility;  // Applies at once, also to open pages.
+  // The change takes effect at once, including on open pages.
+  std::optional<strata::Visibility> visibility;
   std::optional<int> order;
-  // Only without other members: a layer of u8 or u16, with its history, gets room for larger keys
-  // or values (u16, u32).
+  // Can only be changed in a separate request, without other members. The type of a u8 or u16 layer
+  // and its history can be changed to u16 or u32, for larger keys or values.
   std::optional<strata::ValueType> type;
-  // For a computed layer: the new expression; compute the layer again with it. Empty: the layer
-  // keeps its values and is edited by hand from now on.
+  // For a computed layer, the new expression. It takes effect when the layer is computed again. If
+  // empty, the layer keeps its values and can be edited by hand.
   std::optional<std::string> expression;
   std::optional<Recompute> recompute;
   bool operator==(const LayerPatch&) const = default;
@@ -2358,10 +2412,10 @@ std::string_view name(ReviewState value);
 void read(const nlohmann::json& json, ReviewState& value);
 nlohmann::json to_json(const ReviewState& value);
 
-// Person who accepted or rejected an edit.
+// User who accepted or rejected an edit.
 struct Reviewer {
   std::string user;
-  std::string time;  // UTC, RFC 3339.
+  std::string time;  // In UTC (RFC 3339).
   std::optional<std::string> reason;
   bool operator==(const Reviewer&) const = default;
 };
@@ -2375,20 +2429,22 @@ std::string_view name(WaitingStrokeOp value);
 void read(const nlohmann::json& json, WaitingStrokeOp& value);
 nlohmann::json to_json(const WaitingStrokeOp& value);
 
-// A stroke or another edit that waits for review.
+// Stroke or other edit that waits for review.
 struct WaitingStroke {
-  std::int64_t sequence = 0;  // Sequence of its first batch; name it in a review.
+  std::int64_t sequence = 0;  // Sequence of its first batch. Use this number in a review.
   std::int64_t last = 0;  // Sequence of its last batch.
   Uuid stroke;
   std::string user;
-  std::optional<std::string> full_name;  // Full name of `user`. Absent: the person gave none.
+  // Full name of `user`. Absent if the user has not entered a full name.
+  std::optional<std::string> full_name;
   std::optional<std::string> color;  // Color of `user`.
   WaitingStrokeOp op{};
-  std::string begun;  // UTC, RFC 3339.
+  std::string begun;  // In UTC (RFC 3339).
   std::string time;  // Time of its last batch.
-  std::int64_t texels_changed = 0;  // Texels that its batches changed, counted once for each batch.
+  // Number of texels that its batches changed. A texel counts once for each batch that changed it.
+  std::int64_t texels_changed = 0;
   double area_m2 = 0;
-  std::optional<strata::Camera> camera;  // Camera from which it was painted, if there was one.
+  std::optional<strata::Camera> camera;  // Camera with which it was painted, if any.
   bool operator==(const WaitingStroke&) const = default;
 };
 void read(const nlohmann::json& json, WaitingStroke& value);
@@ -2397,10 +2453,11 @@ Result<void> check(const WaitingStroke& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<WaitingStroke> = Schema::WaitingStroke;
 
-// Person whose strokes wait.
+// User whose strokes wait for review.
 struct ReviewPerson {
   std::string user;
-  std::optional<std::string> full_name;  // Full name of `user`. Absent: the person gave none.
+  // Full name of `user`. Absent if the user has not entered a full name.
+  std::optional<std::string> full_name;
   std::optional<std::string> color;  // Color of `user`.
   std::int64_t strokes = 0;
   bool operator==(const ReviewPerson&) const = default;
@@ -2414,7 +2471,7 @@ inline constexpr Schema kSchemaOf<ReviewPerson> = Schema::ReviewPerson;
 struct ReviewQueue {
   std::vector<WaitingStroke> strokes;
   std::int64_t total = 0;  // Number of strokes on all pages.
-  std::vector<ReviewPerson> people;  // Everybody whose strokes wait, sorted by name.
+  std::vector<ReviewPerson> people;  // All users whose strokes wait for review, sorted by name.
   bool operator==(const ReviewQueue&) const = default;
 };
 void read(const nlohmann::json& json, ReviewQueue& value);
@@ -2423,12 +2480,13 @@ Result<void> check(const ReviewQueue& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<ReviewQueue> = Schema::ReviewQueue;
 
-// A decision about edits of a layer.
+// Decision about edits of a layer.
 struct Review {
   ReviewDecision decision{};
-  // Sequences. Any batch of a stroke means the whole stroke.
+  // Sequences of the edits. The sequence of any batch of a stroke selects the whole stroke.
   std::optional<std::vector<std::int64_t>> edits;
-  std::optional<std::string> user;  // All waiting edits of this person. Not with reopen.
+  // Selects all waiting edits by this user. Cannot be combined with reopen.
+  std::optional<std::string> user;
   std::optional<std::string> reason;
   bool operator==(const Review&) const = default;
 };
@@ -2442,22 +2500,24 @@ std::string_view name(HistoryEntryOp value);
 void read(const nlohmann::json& json, HistoryEntryOp& value);
 nlohmann::json to_json(const HistoryEntryOp& value);
 
-// One edit in a layer's history.
+// Edit in the history of a layer.
 struct HistoryEntry {
   std::int64_t sequence = 0;
   std::optional<Uuid> id;
   std::optional<Uuid> stroke;
   std::string user;
-  std::string time;  // UTC, RFC 3339.
+  std::string time;  // In UTC (RFC 3339).
   HistoryEntryOp op{};
-  std::optional<bool> in_force;  // False while the edit is undone or rejected.
+  std::optional<bool> in_force;  // false while the edit is undone or rejected.
   std::optional<ReviewState> review;
   std::optional<Reviewer> reviewer;
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
   std::optional<nlohmann::json> recipe;
-  std::optional<std::string> expression;  // For a computed layer: its expression of that moment.
-  std::optional<ToolShape> shape;  // For a stroke: the brush shape; one of the site by its id.
+  // For a computed layer, the expression that it had at that time.
+  std::optional<std::string> expression;
+  // For a stroke, the brush shape. A brush shape of the site is identified by its id.
+  std::optional<ToolShape> shape;
   std::optional<double> max_angle_deg;
   std::optional<double> depth_bias;
   bool operator==(const HistoryEntry&) const = default;
@@ -2478,7 +2538,7 @@ nlohmann::json to_json(const EditList& value);
 template <>
 inline constexpr Schema kSchemaOf<EditList> = Schema::EditList;
 
-// Empty object. Undo and redo take no members. A request without a body is the same.
+// Empty object. Undo and redo requests have no members. The body can be omitted.
 struct Empty {
   bool operator==(const Empty&) const = default;
 };
@@ -2491,7 +2551,7 @@ inline constexpr Schema kSchemaOf<Empty> = Schema::Empty;
 struct SeenOutline {
   strata::Camera camera;
   Outline path;
-  bool through = false;  // Also include hidden surfaces.
+  bool through = false;  // true: also include hidden surfaces.
   bool operator==(const SeenOutline&) const = default;
 };
 void read(const nlohmann::json& json, SeenOutline& value);
@@ -2500,10 +2560,12 @@ Result<void> check(const SeenOutline& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<SeenOutline> = Schema::SeenOutline;
 
-// Restore of a layer.
+// Restore a layer to an earlier state.
 struct Restore {
-  std::int64_t sequence = 0;  // The layer gets its state after this edit. 0: empty.
-  std::optional<SeenOutline> within;  // Only the surface inside it. Absent: the whole layer.
+  // The layer is restored to its state after this edit. 0: the layer becomes empty.
+  std::int64_t sequence = 0;
+  // Restore only the surface inside this outline. Default: the whole layer.
+  std::optional<SeenOutline> within;
   bool operator==(const Restore&) const = default;
 };
 void read(const nlohmann::json& json, Restore& value);
@@ -2512,14 +2574,14 @@ Result<void> check(const Restore& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Restore> = Schema::Restore;
 
-// Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339).
+// Sequence or time. The state of the layers after this sequence of the model, or at this time (RFC 3339).
 using At = std::variant<std::int64_t, std::string>;
 
 // Two states of a layer.
 struct DifferenceRequest {
   At from;
-  std::optional<At> to;  // Absent: the newest state.
-  std::optional<SeenOutline> within;  // Count only inside it.
+  std::optional<At> to;  // Default: the newest state.
+  std::optional<SeenOutline> within;  // Count only texels inside this outline.
   bool operator==(const DifferenceRequest&) const = default;
 };
 void read(const nlohmann::json& json, DifferenceRequest& value);
@@ -2528,13 +2590,13 @@ Result<void> check(const DifferenceRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<DifferenceRequest> = Schema::DifferenceRequest;
 
-// Point on the surface, with values. Next to the model, only `hit` is present.
+// Point on the surface, with values. If the pixel does not show the model, only `hit` is present.
 struct SurfacePoint {
   bool hit = false;
   std::optional<glm::dvec3> position;
   std::optional<glm::dvec3> normal;
   std::optional<glm::dvec2> uv;
-  // Distance from the requested point, or from the camera's near plane.
+  // Distance from the requested point, or from the near plane of the camera.
   std::optional<double> distance;
   std::optional<SurfaceValues> values;
   bool operator==(const SurfacePoint&) const = default;
@@ -2547,7 +2609,7 @@ inline constexpr Schema kSchemaOf<SurfacePoint> = Schema::SurfacePoint;
 // Values at many points.
 struct PositionsRequest {
   std::vector<glm::dvec3> points;
-  std::optional<std::vector<LayerRef>> layers;  // Absent: all layers.
+  std::optional<std::vector<LayerRef>> layers;  // Default: all layers.
   std::optional<At> at;
   bool operator==(const PositionsRequest&) const = default;
 };
@@ -2556,7 +2618,7 @@ nlohmann::json to_json(const PositionsRequest& value);
 template <>
 inline constexpr Schema kSchemaOf<PositionsRequest> = Schema::PositionsRequest;
 
-// One entry for each point, in the order of the request.
+// Values at the requested points, in the order of the request.
 struct PositionsResponse {
   std::vector<SurfacePoint> positions;
   int total = 0;
@@ -2581,15 +2643,15 @@ Result<void> check(const PickRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PickRequest> = Schema::PickRequest;
 
-// Part of the surface. Around a place: the surface within `radius_mm` (in a straight line) that is connected with the place within that distance. Or the visible surface inside an outline in a camera's window.
+// Part of the surface. Either the surface around a point, or the visible surface inside an outline in the window of a camera. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance.
 struct Within {
   std::optional<SurfacePlace> at;
-  std::optional<double> radius_mm;  // Millimeters on the object.
+  std::optional<double> radius_mm;  // In millimeters on the object.
   std::optional<strata::Camera> camera;
   std::optional<Outline> path;
-  std::optional<bool> through;  // Also include hidden surfaces.
-  // Further outlines, combined with the first one in their order. All outlines together have at
-  // most 16384 points.
+  std::optional<bool> through;  // true: also include hidden surfaces.
+  // Further outlines, which are combined with the first one in the given order. All outlines
+  // together can have at most 16384 points.
   std::optional<std::vector<OutlineStep>> steps;
   bool operator==(const Within&) const = default;
 };
@@ -2599,11 +2661,11 @@ Result<void> check(const Within& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Within> = Schema::Within;
 
-// Picture of the selection. The part of the selection that the camera sees, in its window.
+// Image of the selection. The part of the selection that is visible in the window of the camera.
 struct SelectionPicture {
   strata::Camera camera;
-  int width = 0;  // Pixels of the picture.
-  int height = 0;  // Pixels of the picture.
+  int width = 0;  // Width of the image in pixels.
+  int height = 0;  // Height of the image in pixels.
   bool operator==(const SelectionPicture&) const = default;
 };
 void read(const nlohmann::json& json, SelectionPicture& value);
@@ -2612,7 +2674,7 @@ Result<void> check(const SelectionPicture& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<SelectionPicture> = Schema::SelectionPicture;
 
-// Part of the statistics that takes longer.
+// Additional part of the statistics, which takes longer to compute.
 enum class StatisticsPart { pieces, perimeter, quantiles };
 std::string_view name(StatisticsPart value);
 void read(const nlohmann::json& json, StatisticsPart& value);
@@ -2621,7 +2683,7 @@ nlohmann::json to_json(const StatisticsPart& value);
 // Paint the selection.
 struct SelectInto {
   LayerRef layer;
-  double value = 0;  // In the layer's type; ignored for erasing.
+  double value = 0;  // Value of the layer's type. Ignored if the edit erases.
   bool erase = false;
   bool operator==(const SelectInto&) const = default;
 };
@@ -2630,11 +2692,11 @@ nlohmann::json to_json(const SelectInto& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectInto> = Schema::SelectInto;
 
-// Texels that differ between two states. Together with `where` and `within`: only inside them.
+// Texels that differ between two states. Together with `where` and `within`, only texels inside both are selected.
 struct SelectChanged {
   At from;
-  std::optional<At> to;  // Absent: the newest durable state.
-  // Texels where any of these differs. Absent: all layers that the caller can see.
+  std::optional<At> to;  // Default: the newest durable state.
+  // Select texels where any of these layers differs. Default: all layers that the caller can see.
   std::optional<std::vector<LayerRef>> layers;
   bool operator==(const SelectChanged&) const = default;
 };
@@ -2643,12 +2705,12 @@ nlohmann::json to_json(const SelectChanged& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectChanged> = Schema::SelectChanged;
 
-// Selection of surface. Without `where` and `within`: everywhere.
+// Selection of a part of the surface. Without `where` and `within`, the whole surface is selected.
 struct SelectRequest {
   std::optional<std::string> where;  // A condition over the layers, as in a fill.
   std::optional<Within> within;
   std::optional<At> at;
-  // Layers whose statistics in the selection are returned.
+  // Layers whose statistics inside the selection are returned.
   std::optional<std::vector<LayerRef>> layers;
   std::optional<std::vector<StatisticsPart>> include;
   std::optional<SelectInto> into;
@@ -2662,7 +2724,7 @@ Result<void> check(const SelectRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<SelectRequest> = Schema::SelectRequest;
 
-// Bar of a histogram. Values from `from` (included) to `to`; the last bin includes `to`.
+// Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`.
 struct HistogramBin {
   double from = 0;
   double to = 0;
@@ -2682,8 +2744,9 @@ struct KeyStatistics {
   double area_m2 = 0;
   glm::dvec3 centroid{0};
   Bounds bounds;
-  std::optional<std::int64_t> pieces;  // If requested: connected areas of this key.
-  std::optional<double> perimeter_m;  // If requested: length around these areas, along the surface.
+  std::optional<std::int64_t> pieces;  // Number of connected areas of this key, if requested.
+  // Length of the borders of these areas along the surface, if requested.
+  std::optional<double> perimeter_m;
   bool operator==(const KeyStatistics&) const = default;
 };
 void read(const nlohmann::json& json, KeyStatistics& value);
@@ -2691,7 +2754,7 @@ nlohmann::json to_json(const KeyStatistics& value);
 template <>
 inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
 
-// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. If requested, and if something has an area.
+// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Present if requested and if the total area is not 0.
 struct Quantiles {
   double p5 = 0;
   double p25 = 0;
@@ -2705,7 +2768,7 @@ nlohmann::json to_json(const Quantiles& value);
 template <>
 inline constexpr Schema kSchemaOf<Quantiles> = Schema::Quantiles;
 
-// Statistics of a layer, weighted by surface area. For valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty. `keys` is empty for fractions, and for more than 4096 different values.
+// Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values.
 struct Statistics {
   std::int64_t texels = 0;
   double area_m2 = 0;
@@ -2713,10 +2776,11 @@ struct Statistics {
   std::optional<double> max;
   std::optional<double> mean;
   std::optional<double> std;
-  // If requested: connected areas; in layers of whole numbers, those of one value each.
+  // Number of connected areas, if requested. In layers of whole numbers, each area has a single
+  // value.
   std::optional<std::int64_t> pieces;
-  // If requested: length around the valid areas, along the surface. An open edge of the mesh
-  // counts, a seam of the atlas does not.
+  // Length of the borders of the valid areas along the surface, if requested. It includes open
+  // edges of the mesh, but not seams of the atlas.
   std::optional<double> perimeter_m;
   std::optional<Quantiles> quantiles;
   std::vector<HistogramBin> histogram;
@@ -2736,8 +2800,8 @@ struct SelectResponse {
   double share = 0;  // Share of the whole surface.
   std::optional<Bounds> bounds;
   nlohmann::json layers;
-  // PNG in base64, if it was requested: white where the camera sees the selection, transparent
-  // elsewhere.
+  // PNG image in base64, if it was requested. It is white where the selection is visible, and
+  // transparent elsewhere.
   std::optional<std::string> picture;
   std::optional<EditResult> edit;  // Result of `into`.
   bool operator==(const SelectResponse&) const = default;
@@ -2747,13 +2811,13 @@ nlohmann::json to_json(const SelectResponse& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectResponse> = Schema::SelectResponse;
 
-// Request for a profile of the surface. Through places: for each step, the nearest surface point. Or the visible surface under a line in a camera's window, at each of its pixels.
+// Request for a profile of the surface. The line goes through points in space, or is drawn in the window of a camera. In space, each step results in a sample at the nearest point on the surface. In a window, each pixel of the line results in a sample at the visible point of the surface.
 struct ProfileRequest {
   std::optional<std::vector<glm::dvec3>> places;
-  std::optional<double> step_mm;  // Millimeters on the object.
+  std::optional<double> step_mm;  // In millimeters on the object.
   std::optional<strata::Camera> camera;
-  std::optional<std::vector<glm::dvec2>> path;  // Pixels of the camera's window.
-  std::optional<std::vector<LayerRef>> layers;  // Absent: all layers.
+  std::optional<std::vector<glm::dvec2>> path;  // Pixels in the window of the camera.
+  std::optional<std::vector<LayerRef>> layers;  // Default: all layers.
   std::optional<At> at;
   bool operator==(const ProfileRequest&) const = default;
 };
@@ -2763,9 +2827,10 @@ Result<void> check(const ProfileRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<ProfileRequest> = Schema::ProfileRequest;
 
-// Place on a profile.
+// Sample on a profile.
 struct ProfileSample {
-  // Distance on the surface from the start. Where the line leaves the surface, nothing is added.
+  // Distance from the start, measured along the surface. Gaps where the line leaves the surface do
+  // not count.
   double along_mm = 0;
   SurfacePoint point;
   bool operator==(const ProfileSample&) const = default;
@@ -2798,8 +2863,8 @@ inline constexpr Schema kSchemaOf<SectionRequest> = Schema::SectionRequest;
 
 // Cut of one plane of a section.
 struct SectionCut {
-  // Of the cut solid, inside what the other planes keep. Absent where the surface is open at the
-  // cut, so that it bounds no area.
+  // Area of the cut through the solid, limited to the side that the other planes keep. Absent if
+  // the surface is open at the cut and therefore bounds no area.
   std::optional<double> area_m2;
   bool operator==(const SectionCut&) const = default;
 };
@@ -2808,7 +2873,7 @@ nlohmann::json to_json(const SectionCut& value);
 template <>
 inline constexpr Schema kSchemaOf<SectionCut> = Schema::SectionCut;
 
-// Measures of a section.
+// Measurements of a section.
 struct SectionMeasures {
   std::vector<SectionCut> cuts;  // In the order of the planes.
   bool operator==(const SectionMeasures&) const = default;
@@ -2833,11 +2898,12 @@ Result<void> check(const CrossTableRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<CrossTableRequest> = Schema::CrossTableRequest;
 
-// Areas of pairs of values. Keys ascend. Null comes last, for places where the layer has no value.
+// Areas of each pair of values. The keys are in ascending order. The last key is null, for texels where the layer has no value.
 struct CrossTable {
   std::vector<std::optional<double>> rows;
   std::vector<std::optional<double>> columns;
-  std::vector<std::vector<double>> area_m2;  // One array for each row, with its columns.
+  // One array for each row, with one number for each column.
+  std::vector<std::vector<double>> area_m2;
   std::vector<std::vector<std::int64_t>> texels;
   bool operator==(const CrossTable&) const = default;
 };
@@ -2853,7 +2919,8 @@ struct Extent {
   std::int64_t marked = 0;  // Number of these records that have lines or points on the model.
   std::int64_t texels = 0;
   double area_m2 = 0;
-  // Bounds of their texels, lines and points. Absent: the records have none of these.
+  // Bounds of the texels, lines and points of these records. Absent if the records have no texels,
+  // lines or points.
   std::optional<Bounds> bounds;
   bool operator==(const Extent&) const = default;
 };
@@ -2878,20 +2945,21 @@ std::string_view name(FrameRequestFormat value);
 void read(const nlohmann::json& json, FrameRequestFormat& value);
 nlohmann::json to_json(const FrameRequestFormat& value);
 
-// One rendered picture.
+// Request for a rendered image.
 struct FrameRequest {
-  strata::Camera camera;  // Its width × height is the size of the picture.
-  // Exactly these are drawn, from bottom to top. Absent: the layers that are visible by default.
+  strata::Camera camera;  // The width and height of the camera set the size of the image.
+  // The visible layers from bottom to top. Default: the layers that are visible by default.
   std::optional<std::vector<LayerRef>> layers;
-  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
+  // The visible surface images from bottom to top. Default: the surface images that are visible by
+  // default.
   std::optional<std::vector<LookShown>> looks;
-  std::optional<strata::Light> light;  // Absent: museum.
-  std::optional<Background> background;  // Absent: light gray.
+  std::optional<strata::Light> light;  // Default: the light mode museum.
+  std::optional<Background> background;  // Default: light gray.
   std::optional<std::vector<LayerHighlight>> highlights;
   std::optional<At> at;
-  // Samples for each pixel. With 16, silhouettes, class borders and fine lines have smooth edges. A
-  // server without a GPU takes fewer if they would take more than 5 seconds (of pictures with more
-  // than 2 million pixels: for each 2 million).
+  // Number of samples per pixel. With 16 samples, silhouettes, class borders and fine lines have
+  // smooth edges. A server without a GPU uses fewer samples if rendering would take more than 5
+  // seconds. For images of more than 2 million pixels, this limit applies to each 2 million pixels.
   int samples = 1;
   FrameRequestFormat format = FrameRequestFormat::jpeg;
   bool operator==(const FrameRequest&) const = default;
@@ -2902,19 +2970,19 @@ Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 
-// Kind of file. In SVG and PDF, texts, legend, scale bar and arrow can be edited.
+// Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited.
 enum class FigureFormat { png, tiff, svg, pdf };
 std::string_view name(FigureFormat value);
 void read(const nlohmann::json& json, FigureFormat& value);
 nlohmann::json to_json(const FigureFormat& value);
 
-// Direction of a figure, relative to the model's up. From the top, the front is at the bottom. On a map with z up, this is the plan: y points up.
+// Direction of a figure, relative to the model's up. In the view from the top, the front of the model is at the bottom. For a model in map coordinates with z up, this is the plan, with y pointing up.
 enum class FigureDirection { top, bottom, front, back, left, right };
 std::string_view name(FigureDirection value);
 void read(const nlohmann::json& json, FigureDirection& value);
 nlohmann::json to_json(const FigureDirection& value);
 
-// Values of records at their places. Where the layer shows a record: its value in the column. If labels overlap, the label of the smaller area is left out first.
+// Labels of records. A label shows the value of a record in a column, where the layer contains the record. If two labels overlap, the label of the smaller area is omitted.
 struct FigureLabels {
   LayerRef layer;  // A layer of records.
   std::string column;  // Slug or id of a column of its table.
@@ -2935,38 +3003,41 @@ std::string_view name(FigureRequestOrientation value);
 void read(const nlohmann::json& json, FigureRequestOrientation& value);
 nlohmann::json to_json(const FigureRequestOrientation& value);
 
-// A figure to scale. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. The content comes from a saved view, or from camera, layers, surface images and light. The direction comes from there, too, if nothing else sets it. Without any of them, the figure shows the default layers of the model from the top.
+// Figure to scale. A drawing to scale without perspective, on a sheet with a scale bar, legend and caption. A saved view, or the camera, layers, surface images and light, set its content. They also set the direction if no other member sets it. Without these members, the figure shows the default layers of the model from the top.
 struct FigureRequest {
-  std::optional<std::string> view;  // A saved view: slug or id.
-  // Instead of a view: its direction, its section and its middle are used.
+  std::optional<std::string> view;  // Slug or id of a saved view.
+  // A camera instead of a saved view. The figure uses its direction, its section and its center.
   std::optional<strata::Camera> camera;
-  // Layers that are not listed have their defaults.
+  // Layers that are not listed have their default settings.
   std::optional<std::vector<LayerOverride>> layers;
-  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
+  // The visible surface images from bottom to top. Default: the surface images that are visible by
+  // default.
   std::optional<std::vector<LookShown>> looks;
-  std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<strata::Light> light;  // Default: the light mode museum.
   std::optional<At> at;
-  std::optional<FigureDirection> direction;  // Instead of the direction of the camera or view.
-  // Instead of a direction: a surface that faces this way (world) is drawn without foreshortening.
+  // A standard direction instead of the direction of the camera or view.
+  std::optional<FigureDirection> direction;
+  // A normal in world coordinates, instead of a direction. A surface with this normal is drawn
+  // without foreshortening.
   std::optional<glm::dvec3> normal;
-  // Middle of the drawing (world). Absent: with the direction of a camera or view, the middle of
-  // that view, otherwise the middle of the visible surface.
+  // Center of the drawing in world coordinates. Default: the center of the camera or view if it
+  // sets the direction, otherwise the center of the visible surface.
   std::optional<glm::dvec3> center;
-  // 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … with which the whole
-  // drawing is on the sheet.
+  // Denominator of the scale: 50 means 1 : 50. Default: the largest scale of the series 1, 2, 2.5,
+  // 5, 10, 20, 25, 50, … at which the whole drawing fits on the sheet.
   std::optional<double> scale;
   FigureRequestPaper paper = FigureRequestPaper::a4;
-  // Absent: the one with space for the larger scale.
+  // Default: the orientation that allows the larger scale.
   std::optional<FigureRequestOrientation> orientation;
-  int dpi = 300;  // Pixels for each inch. In SVG and PDF: of the drawing in them.
-  std::optional<FigureFormat> format;  // Absent: pdf.
-  std::optional<std::string> title;  // Absent: the name of the model.
+  int dpi = 300;  // Pixels per inch. In SVG and PDF files, this applies only to the drawing.
+  std::optional<FigureFormat> format;  // Default: pdf.
+  std::optional<std::string> title;  // Default: the name of the model.
   std::optional<std::string> caption;
-  std::optional<std::string> credit;  // Absent: that of the model.
-  // For the layers and classes that the drawing shows. Classes outside of the drawing, and those
-  // completely below an opaque layer, are left out.
+  std::optional<std::string> credit;  // Default: the credit of the model.
+  // Whether the figure has a legend of the layers and classes in the drawing. The legend omits
+  // classes that are outside the drawing or completely below an opaque layer.
   bool legend = true;
-  // Text in the legend for edits that wait for review, which are hatched.
+  // Text in the legend for the hatch of edits that wait for review.
   std::string provisional = "Provisional";
   // Text in the legend after the title of a list that continues in another column.
   std::string continued = "(continued)";
@@ -2979,11 +3050,12 @@ Result<void> check(const FigureRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FigureRequest> = Schema::FigureRequest;
 
-// Class of a column's values. For numbers: from `from` (included) to `to`, which only the last class includes. Otherwise `value`.
+// Class of a column's values. A class of numbers is the range from `from` (included) to `to`. Only the last class includes `to`. All other classes have a `value`.
 struct ColumnClass {
   std::optional<double> from;
   std::optional<double> to;
-  std::optional<std::string> value;  // As text. For a number: as JSON. For a term: its key.
+  // The value as text. A number is in JSON format. A term is represented by its key.
+  std::optional<std::string> value;
   std::int64_t records = 0;
   bool operator==(const ColumnClass&) const = default;
 };
@@ -2992,12 +3064,12 @@ nlohmann::json to_json(const ColumnClass& value);
 template <>
 inline constexpr Schema kSchemaOf<ColumnClass> = Schema::ColumnClass;
 
-// Values of a column in classes.
+// Classes of a column's values.
 struct ColumnClasses {
   std::vector<ColumnClass> classes;
   int total = 0;
-  std::int64_t records = 0;  // Number of records of the table.
-  // Number of records whose values are rarer than those of the classes.
+  std::int64_t records = 0;  // Number of records in the table.
+  // Number of records whose values are less frequent than those of the classes.
   std::int64_t unclassified = 0;
   std::int64_t without = 0;  // Number of records without a value in this column.
   bool operator==(const ColumnClasses&) const = default;
@@ -3010,7 +3082,7 @@ inline constexpr Schema kSchemaOf<ColumnClasses> = Schema::ColumnClasses;
 // Readiness of the server.
 struct Readiness {
   bool ready = false;
-  std::vector<std::string> reasons;  // Parts that do not work.
+  std::vector<std::string> reasons;  // Parts of the server that do not work.
   bool operator==(const Readiness&) const = default;
 };
 void read(const nlohmann::json& json, Readiness& value);
@@ -3018,7 +3090,7 @@ nlohmann::json to_json(const Readiness& value);
 template <>
 inline constexpr Schema kSchemaOf<Readiness> = Schema::Readiness;
 
-// Release of Strata.
+// Version of the server.
 struct ServerVersion {
   std::string version;  // Semantic version of the release.
   bool operator==(const ServerVersion&) const = default;
@@ -3031,8 +3103,8 @@ inline constexpr Schema kSchemaOf<ServerVersion> = Schema::ServerVersion;
 // New snapshot.
 struct SnapshotCreate {
   std::string name;
-  std::optional<std::string> text;  // Plain text: a note.
-  std::optional<At> at;  // The state. Absent: the newest durable one.
+  std::optional<std::string> text;  // A note as plain text.
+  std::optional<At> at;  // The state. Default: the newest durable state.
   bool operator==(const SnapshotCreate&) const = default;
 };
 void read(const nlohmann::json& json, SnapshotCreate& value);
@@ -3043,7 +3115,7 @@ inline constexpr Schema kSchemaOf<SnapshotCreate> = Schema::SnapshotCreate;
 // Changes to a snapshot.
 struct SnapshotPatch {
   std::optional<std::string> name;
-  std::optional<std::string> text;  // Plain text: a note.
+  std::optional<std::string> text;  // A note as plain text.
   bool operator==(const SnapshotPatch&) const = default;
 };
 void read(const nlohmann::json& json, SnapshotPatch& value);
