@@ -9,9 +9,9 @@
 namespace strata::app {
 
 // The vertex colors of a model: the visible surface images, and over them the layers in their order
-// from bottom to top. `memory` is reserved for the colors as long as they exist. `compose_vertices` refuses a
-// palette that uses a column invisible to the role (422), and an image that exceeds the memory
-// limit (503). Blocks.
+// from bottom to top. `memory` is reserved for the colors as long as they exist. `compose_vertices`
+// refuses a palette that uses a column invisible to the role (422), and an image that exceeds the
+// memory limit (503). Blocks.
 struct ComposedVertices {
   query::VertexColors colors;
   MemoryLedger::Share memory;

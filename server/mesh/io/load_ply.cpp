@@ -288,7 +288,9 @@ class PlyReader {
     const std::string where = element + " " + std::to_string(index) + " of " +
                               std::to_string(count) + " (" + source_.place() + ")";
     if (list_too_long_)
-      return refuse_file("The list of " + where + " is longer than the file can contain.");
+      return refuse_file(
+          "The list of " + where +
+          " has an invalid length: it is negative, or longer than the file can contain.");
     if (source_.fault() == PlyFault::not_a_number)
       return refuse_file("In " + where + ", the file contains a value that is not a number.");
     return refuse_file("The file ends within " + where +

@@ -36,8 +36,8 @@ struct TexelGraph {
 Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap& map,
                                      Progress& progress, int threads = 2);
 
-// Returns the surface texel at a texture coordinate. In a gutter, returns the surface texel that the
-// gutter texel copies. Returns nothing if the atlas is empty there.
+// Returns the surface texel at a texture coordinate. In a gutter, returns the surface texel that
+// the gutter texel copies. Returns nothing if the atlas is empty there.
 std::optional<std::uint32_t> surface_texel_at(const SurfaceMap& map, glm::vec2 uv);
 
 enum class Way { right, upper, left, lower };
