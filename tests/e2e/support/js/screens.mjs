@@ -142,6 +142,9 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     await dialog.first().waitFor();
   };
   const close_dialog = async () => {
+    // A docked dialog closes by Escape only while it has the focus.
+    const docked = page.locator("dialog[open]:not(:modal)");
+    if ((await docked.count()) > 0) await docked.first().focus();
     await page.keyboard.press("Escape");
     await wait_for(async () => (await dialog.count()) === 0, "the dialog to close");
   };
