@@ -90,7 +90,7 @@ const of = (where) => {
   const places = (count) =>
     panel
       .locator('[role="status"]')
-      .getByText(new RegExp(`^${count} places?\\b`))
+      .getByText(new RegExp(`^${count} points?\\b`))
       .waitFor({ state: "attached" });
   const none = () =>
     wait_for(
@@ -227,7 +227,7 @@ test("who may only look has the tool, by its key, with no layer chosen", async (
       .getAttribute("aria-pressed"),
     "true",
   );
-  await desk.panel.getByText(/Click or tap places/).waitFor();
+  await desk.panel.getByText(/Click or tap points/).waitFor();
   const unconfirmed = desk.panel.getByText("Size not confirmed.");
   await unconfirmed.waitFor();
   await server.json("PATCH", `/models/${model}`, { scale_verified: true });
@@ -490,7 +490,7 @@ test("buttons do the same, and the keyboard stays in the panel when the one that
       return at.textContent.trim();
     });
   await wait_for(
-    async () => (await focused()) === "Place in the middle",
+    async () => (await focused()) === "Point in the middle",
     "the keyboard at the first button",
   );
   await page.keyboard.press("Enter");
@@ -552,7 +552,7 @@ test("by fingers, on a phone: taps set places, a drag turns, buttons end and cle
   await phone.page.goto(`${server.url}/models/${model}`);
   await phone.drawn();
   await phone.page.getByRole("button", { name: words.tools.measure, exact: true }).tap();
-  await hand.panel.getByText(/Click or tap places/).waitFor();
+  await hand.panel.getByText(/Click or tap points/).waitFor();
   const stage = await phone.stage_box();
   const tap = (share_x, share_y) =>
     phone.page.touchscreen.tap(stage.x + share_x * stage.width, stage.y + share_y * stage.height);

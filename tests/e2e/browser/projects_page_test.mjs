@@ -215,7 +215,7 @@ test("with models it stays, and it is said what to do", async () => {
   await pia.page.getByRole("link", { name: words.home.open("Threshold") }).waitFor();
   await from_menu(pia, "Villa Giulia, Rome", "Delete…");
   await heading(pia, words.projects.kept_title("Villa Giulia, Rome"));
-  await pia.page.getByText("Delete its model first").waitFor();
+  await pia.page.getByText("First delete its model").waitFor();
   assert.equal(
     await inside(pia).getByRole("button", { name: words.delete, exact: true }).count(),
     0,
