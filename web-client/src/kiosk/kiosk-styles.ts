@@ -296,9 +296,14 @@ export const kioskStyles = css`
   .row.languages {
     flex: 1 1 0;
     justify-content: safe center;
+    gap: calc(var(--gap) / 2);
     min-width: 0;
     margin-inline: 0;
     padding-inline: 6px;
+  }
+  .row.languages button {
+    padding-inline: 0.8em;
+    font-size: 0.9em;
   }
   .steps > button {
     display: inline-flex;
