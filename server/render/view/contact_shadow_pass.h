@@ -18,7 +18,8 @@ namespace strata::render {
 FrameRequest::Box box_of(const mesh::ContactShadow& shadow);
 
 // Darkens the background of a frame by the model's shadow on the floor. Pixels that
-// show the surface do not change. Sets all state it needs, and resets scissor, depth test and blending.
+// show the surface do not change. Sets all state it needs, and resets scissor, depth test and
+// blending.
 class ContactShadowPass {
  public:
   static Result<ContactShadowPass> create(const std::filesystem::path& shader_dir);

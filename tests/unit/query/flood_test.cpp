@@ -167,7 +167,8 @@ TEST(Flood, the_same_value_is_followed_across_seams_and_not_across_other_values)
 
 TEST(Flood, from_where_nothing_is_what_holds_nothing_is_connected) {
   const Surface torus = surface_of("torus", test::torus(40), 1024);
-  // Two rings of the torus are painted at x = 0. They divide the remaining unpainted area into two parts.
+  // Two rings of the torus are painted at x = 0. They divide the remaining unpainted area into two
+  // parts.
   const auto rings = [](glm::vec3 p) { return std::abs(p.x) < 0.06f ? 1 : 0; };
   expect_connected(torus, rings, [](glm::vec3 p) { return p.x >= 0.06f; });
 }
