@@ -152,8 +152,10 @@ SurfaceImageHandle GpuScene::add(SurfaceImage image) {
   return handle;
 }
 
-Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution,
-                                        std::shared_ptr<const TileMirror> mirror) {
+Result<LayerHandle> GpuScene::add_layer(
+    ModelHandle model_handle, ValueType type, int resolution,
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): moved
+    std::shared_ptr<const TileMirror> mirror) {
   STRATA_TRY(model(model_handle));
   if (resolution < kLowestResolution || resolution > kMaxResolution ||
       !std::has_single_bit(static_cast<unsigned>(resolution))) {
