@@ -190,7 +190,9 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
   };
   const purpose = (name) => async () => {
     await open(button(w.layers.new));
-    await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
+    await page
+      .getByRole("radio", { name: new RegExp(`^${name.replaceAll(/[()]/g, "\\$&")}`) })
+      .click();
   };
   /**
    * Waits until the stage and its frame have the window's shape, so a tap hits the visible content.
