@@ -197,11 +197,12 @@ std::shared_ptr<const mesh::ContactShadow> OpenRoom::contact_shadow(const Light&
 
 Result<Model> OpenRoom::update_model(Model model, const store::IdempotentResponse<Model>& answer) {
   auto updated = STRATA_TRY(services_.store.models().update(std::move(model), answer));
-  auto shadow = make_contact_shadow(updated.up);
+  const bool is_turned = updated.up != this->model().up;
+  auto shadow = is_turned ? make_contact_shadow(updated.up) : nullptr;
   run_on(strand_, [&] {
     {
       std::lock_guard lock(mutex_);
-      if (updated.up != model_.up) contact_shadow_ = std::move(shadow);
+      if (is_turned) contact_shadow_ = std::move(shadow);
       model_ = updated;
     }
     participants_part_->tell([&](Listener& l) { l.model_changed(updated); });
