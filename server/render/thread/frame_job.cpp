@@ -224,9 +224,7 @@ Result<void> FrameJob::start_samples(GpuScene& scene, ModelHandle model) {
         scene.memory().used_up(pixels * kSampledBytesPerPixel, "a refined picture"));
   samples_ = request.samples;
   mean_ = STRATA_TRY(Accumulation::create(request.width, request.height, scene.memory()));
-  sample_view_ = std::make_unique<View>();
-  sample_view_->model = model;
-  return start_sample(scene);
+  return start_sample(scene, model);
 }
 
 // Without memory or time, the frame has one sample.
@@ -252,8 +250,12 @@ bool FrameJob::has_layers(GpuScene& scene) const {
   });
 }
 
-Result<void> FrameJob::start_sample(GpuScene& scene) {
+Result<void> FrameJob::start_sample(GpuScene& scene, ModelHandle model) {
   const FrameRequest& request = task_.request;
+  if (!sample_view_) {
+    sample_view_ = std::make_unique<View>();
+    sample_view_->model = model;
+  }
   const glm::dvec2 offset =
       is_separate() ? sample_offset(sample_, samples_) : smooth_sample_offset(sample_, samples_);
   camera_ = jittered(request.camera, request.width, request.height, offset);
@@ -284,11 +286,7 @@ Result<bool> FrameJob::add_sample(GpuScene& scene, const View& view) {
   if (++sample_ < samples_) {
     // If the view was removed, no client waits for the frame.
     if (!task_.request.refinement) STRATA_TRY(scene.view(task_.request.view));
-    if (!sample_view_) {
-      sample_view_ = std::make_unique<View>();
-      sample_view_->model = view.model;
-    }
-    STRATA_TRY(start_sample(scene));
+    STRATA_TRY(start_sample(scene, view.model));
     return false;
   }
   auto pixels = STRATA_TRY(scene.readback().begin(rgba_bytes(frame_.rects.front())));

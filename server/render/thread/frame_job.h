@@ -40,7 +40,7 @@ class FrameJob {
   Result<void> start_samples(GpuScene& scene, ModelHandle model);
   void make_smooth(GpuScene& scene, const View& view);
   bool has_layers(GpuScene& scene) const;  // true if all layers are on the GPU
-  Result<void> start_sample(GpuScene& scene);
+  Result<void> start_sample(GpuScene& scene, ModelHandle model);
   Result<bool> add_sample(GpuScene& scene, const View& view);  // true after the last sample
   void measure(GpuScene& scene);
   Result<void> prepare(GpuScene& scene, View& view);
