@@ -1,5 +1,7 @@
 #include "support/gl_scene.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -212,6 +214,16 @@ StrokeBatch dab(const Camera& camera, double x, double y, double radius_px,
   stroke.radius_px = radius_px;
   stroke.value_bits = value_bits;
   return stroke;
+}
+
+void put(render::Frame& whole, const render::Frame& part) {
+  const std::uint8_t* from = part.pixels.data();
+  for (const auto& rect : part.rects)
+    for (int y = 0; y < rect.height; ++y, from += 4 * rect.width)
+      std::copy_n(from, 4 * rect.width,
+                  &whole.pixels[std::size_t{4} *
+                                static_cast<std::size_t>((rect.y + y) * whole.width + rect.x)]);
+  EXPECT_EQ(from, part.pixels.data() + part.pixels.size());
 }
 
 }  // namespace strata::test

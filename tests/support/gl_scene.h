@@ -66,6 +66,9 @@ class TestRenderer {
   std::unique_ptr<render::Renderer> renderer_;
 };
 
+// Copies the rectangles of `part` into `whole`, as a client does.
+void put(render::Frame& whole, const render::Frame& part);
+
 // Draws the depth of the whole mesh. The caller must have a current context.
 std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths,
                                                 const render::MeshBuffers& mesh,
