@@ -4,6 +4,7 @@
 //   STRATA_BINARY=build/bench/bin/strata node tests/bench/draw_edges.mjs OUTPUT.png
 import { writeFileSync } from "node:fs";
 import { Browser } from "../e2e/support/js/browser.mjs";
+import { pot_camera } from "../e2e/support/js/pot-camera.mjs";
 import { StrataServer } from "../e2e/support/js/strata-server.mjs";
 
 const kSamples = { 1: "1 sample", 5: "5 samples", 16: "16 samples" };
@@ -14,8 +15,8 @@ const kWidth = 1280,
 // The upper left corner of each crop in the frame.
 const kCrops = {
   silhouette: [312, 260],
-  "borders of classes": [560, 380],
-  "hairline crack": [700, 470],
+  "borders of classes": [560, 470],
+  "hairline crack": [400, 380],
 };
 
 const [output] = process.argv.slice(2);
@@ -31,10 +32,7 @@ try {
   await browser.sign_in(server, server.token);
   await page.setViewportSize({ width: kWidth, height: kHeight });
   const model = await server.json("GET", "/models/demo-pot");
-  const { bounds } = model;
-  const center = bounds.min.map((low, axis) => (low + bounds.max[axis]) / 2);
-  const size = Math.max(...bounds.min.map((low, axis) => bounds.max[axis] - low));
-  const camera = looking(center, size);
+  const camera = pot_camera(kWidth, kHeight);
   const frames = {};
   for (const samples of Object.keys(kSamples)) {
     const response = await fetch(`${server.url}/api/v1/models/${model.id}/frame`, {
@@ -55,52 +53,6 @@ try {
 } finally {
   await browser.close();
   await server.remove();
-}
-
-/** Returns a perspective camera in front of the model. */
-function looking(center, size) {
-  const distance = 1.9 * size,
-    near = 0.1 * size,
-    far = 10 * size,
-    half = Math.tan((20 * Math.PI) / 180);
-  // View space: x to the right, y up, z towards the viewer. The viewer looks along world y.
-  const view = [
-    1,
-    0,
-    0,
-    0,
-    0,
-    0,
-    -1,
-    0,
-    0,
-    1,
-    0,
-    0,
-    -center[0],
-    -center[2],
-    center[1] - distance,
-    1,
-  ];
-  const projection = [
-    kHeight / kWidth / half,
-    0,
-    0,
-    0,
-    0,
-    1 / half,
-    0,
-    0,
-    0,
-    0,
-    -(far + near) / (far - near),
-    -1,
-    0,
-    0,
-    (-2 * far * near) / (far - near),
-    0,
-  ];
-  return { view, projection, width: kWidth, height: kHeight };
 }
 
 /** Runs in the page. */

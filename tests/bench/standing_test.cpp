@@ -59,7 +59,7 @@ TEST(Standing, what_is_up_in_the_model_is_up_in_the_picture_and_its_front_is_see
     EXPECT_NEAR(above.x, middle.x, 0.01);
     EXPECT_LT(projected(camera, geometry.origin + 0.1 * fronts[k]).z, middle.z)
         << "the front is nearer";
-    // The axes are right-handed. An observer who sees the right side of the model has its front on
+    // The axes are right-handed. If the camera shows the right side of the model, the front is on
     // the left.
     EXPECT_LT(projected(camera, geometry.origin + 0.1 * fronts[k]).x, middle.x);
     EXPECT_GT(projected(camera, geometry.origin + 0.1 * glm::cross(ups[k], fronts[k])).x, middle.x);
