@@ -18,7 +18,7 @@ struct EditPart {
   uint place;
 };
 
-// A part that the stroke may touch. Bit i of `segments` stands for segments_per_bit segments,
+// A part that the stroke may touch. Bit i of `segments` means segments_per_bit segments,
 // starting at i * segments_per_bit.
 struct TouchedPart {
   uint part;

@@ -20,7 +20,7 @@ class Occupancy {
   // Clears all texels in constant time.
   void clear() { ++stamp_; }
 
-  // Returns true if the triangle lies in the window and all texels with centers inside it are free.
+  // Returns true if the triangle is inside the window and covers no center of an occupied texel.
   bool is_free(glm::vec2 a, glm::vec2 b, glm::vec2 c);
 
   // Occupies the texels with centers inside the triangle. With Overlap::refuse it occupies them

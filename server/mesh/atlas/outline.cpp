@@ -33,7 +33,7 @@ std::vector<glm::vec2> hull_of(std::vector<glm::vec2> points) {
   return hull;
 }
 
-// Rotates the outline so that its bounding box has the smallest area. One side of that box lies on
+// Rotates the outline so that its bounding box has the smallest area. One side of that box is on
 // an edge of the convex hull.
 void turn(Outline& outline) {
   const auto hull = hull_of(outline.segments);

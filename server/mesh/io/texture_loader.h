@@ -35,7 +35,7 @@ class TextureLoader {
 // image.
 void adopt_lone_picture(const InputFiles& files, TriangleMesh& mesh, std::vector<Repair>& repairs);
 
-// A texture named NAME.<UDIM>.EXT stands for the tiles 1001, 1002 and so on. The unit square (i, j)
+// A texture named NAME.<UDIM>.EXT means the tiles 1001, 1002 and so on. The unit square (i, j)
 // of the texture coordinates is in the file of tile 1001 + i + 10 j. Such a material is replaced by
 // one material for each tile that a triangle uses.
 class UdimTiles {

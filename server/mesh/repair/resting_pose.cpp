@@ -24,7 +24,7 @@ constexpr double kContact = 0.008;
 // as a share of the ways to drop the object; rarer poses are skipped
 constexpr double kUnlikely = 0.004;
 constexpr int kMaxPoses = 40;
-// cosine of the largest slope of a surface that lies on the ground
+// cosine of the largest slope of a surface that touches the ground
 constexpr double kLevel = 0.85;
 constexpr int kColumns = 128;               // per side, for the points of the hull
 constexpr int kCells = 48;                  // per side, for hollows
@@ -208,7 +208,7 @@ int next_of(const std::vector<HullFacet>& facets, int at) {
 }
 
 // Returns the breadth of the support, 0…1. It combines the share of the outline between the contact
-// points with the share that lies on the ground. A bust on its back has three contact points.
+// points with the share that touches the ground. A bust on its back has three contact points.
 // Upright it rests on its whole base.
 double support_share(const Shape& shape, const std::vector<glm::dvec3>& corners,
                      const HullFacet& facet) {

@@ -126,8 +126,8 @@ struct PreparedRay {
         const float* last = &(scale < 0 ? boxes.low : boxes.high)[axis][begin];
         const Doubles t0 = (Doubles{first[0], first[1]} - at) * scale,
                       t1 = (Doubles{last[0], last[1]} - at) * scale;
-        // 0 × infinity means that the ray lies in the face of the box. The face is then not a
-        // bound.
+        // 0 × infinity means that the ray is in the plane of a face of the box. The face is then
+        // not a bound.
         near = t0 > near ? t0 : near;
         far = t1 < far ? t1 : far;
       }

@@ -19,7 +19,7 @@ nlohmann::json to_json(const query::Statistics& statistics);
 nlohmann::json to_json(const room::SelectedArea& area);
 nlohmann::json to_json(const query::CrossTable& table);
 // Returns areas in m² with one line for each value of `rows` and one column for each value of
-// `columns`. `-` stands for texels where a layer has no value. The first cell names both layers.
+// `columns`. `-` means texels where a layer has no value. The first cell names both layers.
 std::string cross_table_csv(const query::CrossTable& table, const std::string& rows,
                             const std::string& columns);
 

@@ -21,7 +21,7 @@ class Tokens {
  public:
   explicit Tokens(Pool& pool) : pool_(pool) {}
 
-  // Makes a token for a user who may sign in. At the limit, a new session replaces the oldest
+  // Makes a token for a user who can sign in. At the limit, a new session replaces the oldest
   // session, but a new token for scripts is a `conflict`. With `hash`, returns an `unauthenticated`
   // error if it is not the hash of the present password. With `project`, a token for scripts is
   // valid only in that project, as viewer, annotator or curator; another role is `invalid`. Returns

@@ -91,7 +91,7 @@ async function check(language, { page }, screen) {
   checked.push(`${language} ${screen.name}`);
 }
 
-/** Selects a locked layer as a user who may not change it, with the brush. */
+/** Selects a locked layer with the brush, as a user without the right to change it. */
 async function locked_for_bea(language, site) {
   const w = texts_of(language);
   await bea.page.evaluate((chosen) => localStorage.setItem("strata.language", chosen), language);

@@ -39,7 +39,7 @@ const kFirstLight: Required<Light> = {
 };
 
 export interface AppearanceHost {
-  /** Null stands for the default surface images. */
+  /** Null means the default surface images. */
   send(looks: LookShown[] | null, light: Light): void;
   sendSection(planes: Plane[], moving: boolean): void;
   bounds(): Bounds | null;
