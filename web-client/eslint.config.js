@@ -1,4 +1,4 @@
-// Rules for the page and its tests that find faults; Prettier alone decides about form.
+// Lint rules that find mistakes in the page and its tests. Prettier alone formats the code.
 import eslint from "@eslint/js";
 import tseslint from "typescript-eslint";
 
@@ -17,7 +17,7 @@ export default tseslint.config(
         "error",
         { fixStyle: "inline-type-imports", disallowTypeAnnotations: false },
       ],
-      // Names of data are those of the contract and of the texts, so properties of types and of
+      // Data have the names that the contract and the texts use, so properties of types and of
       // object literals may have underscores.
       "@typescript-eslint/naming-convention": [
         "error",
@@ -25,7 +25,7 @@ export default tseslint.config(
           selector: ["variable", "parameter", "function"],
           format: ["camelCase", "PascalCase"],
           leadingUnderscore: "allow",
-          filter: { regex: "^_+$", match: false }, // what is not used
+          filter: { regex: "^_+$", match: false }, // unused parameters
         },
         {
           selector: ["classProperty", "parameterProperty", "classMethod", "classicAccessor"],

@@ -115,7 +115,7 @@ export const canBeTitle = ({ kind }: Pick<Column, "kind">): boolean =>
 
 /**
  * Returns the column whose values identify records for users: the chosen column, or otherwise the
- * best one. Returns null if no column can.
+ * best one. Returns null if no column can identify them.
  */
 export function labelColumn(table: Pick<Table, "columns" | "title_column">): Column | null {
   const chosen = table.columns.find(({ id }) => id === table.title_column);

@@ -191,7 +191,7 @@ export function withChoice(
   return [...others, own].filter((part) => part !== "").join(" and ");
 }
 
-/** Removes the parentheses of a condition that is the only one again. */
+/** Removes the parentheses around a condition that is now the only one of the filter. */
 function withoutParentheses(condition: string): string {
   const inner = condition.startsWith("(") && condition.endsWith(")") ? condition.slice(1, -1) : "";
   return inner !== "" && conditionsOf(inner)[0] === condition ? inner : condition;

@@ -71,8 +71,8 @@ export class StrataKioskStage extends LitElement {
     canvas.live {
       opacity: 1;
     }
-    /* Movement without visitors that does not load the server: all screens at this stop show the
-       same full-quality image. */
+    /* An animation while no visitor is present. The server draws no frames for it, because all
+       screens at this stop show the same full-quality image. */
     :host(.resting) :is(canvas, img) {
       animation: come-near 20s ease-in-out infinite alternate;
     }

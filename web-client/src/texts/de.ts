@@ -705,12 +705,12 @@ export const texts = {
     },
     along: "Blickrichtung der Karte",
     direction: {
-      "-z": "von oben (Koordinaten x, y)",
-      "+z": "von unten (Koordinaten x, y)",
-      "-y": "gegen y (Koordinaten x, z)",
-      "+y": "entlang y (Koordinaten x, z)",
-      "-x": "gegen x (Koordinaten y, z)",
-      "+x": "entlang x (Koordinaten y, z)",
+      "-z": "in Richtung −z (Koordinaten x, y)",
+      "+z": "in Richtung +z (Koordinaten x, y)",
+      "-y": "in Richtung −y (Koordinaten x, z)",
+      "+y": "in Richtung +y (Koordinaten x, z)",
+      "-x": "in Richtung −x (Koordinaten y, z)",
+      "+x": "in Richtung +x (Koordinaten y, z)",
     },
     paint: "Malen",
     working: "Wird gemalt …",
@@ -741,7 +741,8 @@ export const texts = {
     replace: "Ersetzen",
     same: "Die Ebene hat bereits denselben Inhalt.",
     unknown: (file) => `„${file}“ ist kein Raster für diese Ebene`,
-    known: "Wählen Sie eine .tif-, .png- oder .npy-Datei in der Größe der Ebene.",
+    known:
+      "Wählen Sie eine .tif-, .png- oder .npy-Datei mit derselben Breite und Höhe in Pixeln wie die Ebene.",
   },
 
   visibility: {
@@ -1907,7 +1908,10 @@ export const texts = {
         "Von jemand anderem geändert",
         "Jemand anderes hat dies gleichzeitig geändert. Prüfen Sie es noch einmal, und wiederholen Sie dann Ihre Änderung.",
       ],
-      413: ["Zu groß", "Die Datei oder Nachricht ist größer, als der Server annimmt."],
+      413: [
+        "Zu groß",
+        "Die Datei oder Nachricht ist zu groß für diesen Server. Senden Sie eine kleinere.",
+      ],
       429: ["Zu viele Anfragen", "Warten Sie einen Moment, und versuchen Sie es dann erneut."],
       502: [
         "Unerwartete Antwort",

@@ -227,7 +227,7 @@ export const texts = {
     },
     deleted_when: (ago: string, user: string | undefined) =>
       user === undefined ? `deleted ${ago}` : `deleted by ${user} ${ago}`,
-    erased_on: (date: string) => `erased on ${date}`,
+    erased_on: (date: string) => `will be deleted permanently on ${date}`,
     restore: "Restore",
     restore_of: (name: string) => `Restore ${name}`,
     restored: (name: string) => `“${name}” was restored.`,
@@ -675,12 +675,12 @@ export const texts = {
     },
     along: "Direction of the map",
     direction: {
-      "-z": "from above (coordinates x, y)",
-      "+z": "from below (coordinates x, y)",
-      "-y": "against y (coordinates x, z)",
-      "+y": "along y (coordinates x, z)",
-      "-x": "against x (coordinates y, z)",
-      "+x": "along x (coordinates y, z)",
+      "-z": "in the direction of −z (coordinates x, y)",
+      "+z": "in the direction of +z (coordinates x, y)",
+      "-y": "in the direction of −y (coordinates x, z)",
+      "+y": "in the direction of +y (coordinates x, z)",
+      "-x": "in the direction of −x (coordinates y, z)",
+      "+x": "in the direction of +x (coordinates y, z)",
     },
     paint: "Paint",
     working: "Painting…",
@@ -708,7 +708,8 @@ export const texts = {
     replace: "Replace",
     same: "The layer already has this content.",
     unknown: (file: string) => `“${file}” is not a raster for this layer`,
-    known: "Choose a .tif, .png or .npy file of the layer's size.",
+    known:
+      "Choose a .tif, .png or .npy file with the same width and height in pixels as the layer.",
   },
 
   visibility: {
@@ -777,7 +778,7 @@ export const texts = {
     widen: "Allow more records…",
     widen_title: (layer: string) => `Allow more records in “${layer}”?`,
     widen_lead: (highest: number) =>
-      `The layer can store keys up to ${formatCount(highest)}. Afterwards it can store all keys, but uses more memory. Its paint and history are kept.`,
+      `The layer can now store only keys up to ${formatCount(highest)}. After this change, it can store all keys, but uses more memory. Its paint and history are kept.`,
     widen_yes: "Allow",
     widened: "The layer can now store all keys.",
     saved_default: "Your current view is now the default for everyone.",
@@ -1846,7 +1847,7 @@ export const texts = {
         "Changed by someone else",
         "Somebody else changed this at the same time. Check it again, then repeat your change.",
       ],
-      413: ["Too large", "The file or message is larger than the server accepts."],
+      413: ["Too large", "The file or message is too large for this server. Send a smaller one."],
       429: ["Too many requests", "Wait a moment, then try again."],
       502: ["Unexpected answer", "The server's answer could not be read. Reload the page."],
       503: [

@@ -246,7 +246,7 @@ export const texts = {
     },
     deleted_when: (ago, user) =>
       user === undefined ? `eliminación: ${ago}` : `eliminación: ${user}, ${ago}`,
-    erased_on: (date) => `se borrará el ${date}`,
+    erased_on: (date) => `se eliminará definitivamente el ${date}`,
     restore: "Restaurar",
     restore_of: (name) => `Restaurar ${name}`,
     restored: (name) => `Se ha restaurado «${name}».`,
@@ -696,12 +696,12 @@ export const texts = {
     },
     along: "Dirección del mapa",
     direction: {
-      "-z": "desde arriba (coordenadas x, y)",
-      "+z": "desde abajo (coordenadas x, y)",
-      "-y": "en sentido contrario a y (coordenadas x, z)",
-      "+y": "en el sentido de y (coordenadas x, z)",
-      "-x": "en sentido contrario a x (coordenadas y, z)",
-      "+x": "en el sentido de x (coordenadas y, z)",
+      "-z": "en la dirección −z (coordenadas x, y)",
+      "+z": "en la dirección +z (coordenadas x, y)",
+      "-y": "en la dirección −y (coordenadas x, z)",
+      "+y": "en la dirección +y (coordenadas x, z)",
+      "-x": "en la dirección −x (coordenadas y, z)",
+      "+x": "en la dirección +x (coordenadas y, z)",
     },
     paint: "Pintar",
     working: "Pintando…",
@@ -732,7 +732,7 @@ export const texts = {
     replace: "Sustituir",
     same: "La capa ya tiene ese mismo contenido.",
     unknown: (file) => `«${file}» no es un ráster para esta capa`,
-    known: "Elija un archivo .tif, .png o .npy del tamaño de la capa.",
+    known: "Elija un archivo .tif, .png o .npy con el mismo ancho y alto en píxeles que la capa.",
   },
 
   visibility: {
@@ -1889,7 +1889,10 @@ export const texts = {
         "Cambiado por otra persona",
         "Otra persona ha cambiado esto al mismo tiempo. Compruébelo otra vez y repita su cambio.",
       ],
-      413: ["Demasiado grande", "El archivo o mensaje es mayor de lo que el servidor acepta."],
+      413: [
+        "Demasiado grande",
+        "El archivo o mensaje es demasiado grande para este servidor. Envíe uno más pequeño.",
+      ],
       429: ["Demasiadas solicitudes", "Espere un momento e inténtelo de nuevo."],
       502: [
         "Respuesta inesperada",

@@ -1,4 +1,4 @@
-// The rows of the help, loaded with it: keys and gestures, and what they do.
+// The rows of the help: keys and gestures, with their effects. They are loaded with the help.
 
 export const help = {
   key_names:

@@ -1,5 +1,5 @@
-// All texts of the page, in this person's language. Texts of the server (problems, steps of jobs)
-// are English in every language.
+// All texts of the page, in the user's language. Texts of the server (problems, steps of jobs) are
+// always English.
 //
 // English is the reference: `Texts` (`shape.ts`) is derived from it, so a translation that misses a
 // text, has an extra one or takes other arguments does not compile.
@@ -9,8 +9,8 @@ import { sayOwnProblemsIn } from "../core/problems";
 import type { FirstTexts, HelpTexts, LaterTexts, Texts } from "./shape";
 
 /**
- * The number of arguments of each text. TypeScript allows a function to omit arguments; a
- * translation that omits one has lost information.
+ * The number of arguments of each text. TypeScript allows a function to omit arguments, but a
+ * translation without one of them would lack information.
  */
 type Arity<T> = T extends (...args: infer Arguments) => unknown
   ? Arguments["length"]
@@ -54,13 +54,13 @@ let loadedLanguage: PageLanguage = "en";
 export const loadHelp = async (): Promise<HelpTexts> => (await helpLoads[loadedLanguage]()).help;
 
 /**
- * Set by loadTexts(), which runs before the import of all modules that show texts. Those of
- * `LaterTexts` are missing until loadLaterTexts(), which runs before the import of the parts that
- * are loaded later: `later-texts.test.ts` checks that no other module reads them.
+ * loadTexts() sets the texts, before the page imports the modules that show them. Members of
+ * `LaterTexts` are missing until loadLaterTexts() has added them, before the page imports the parts
+ * that it loads later. `later-texts.test.ts` checks that no other module reads these members.
  */
 export let texts: Texts;
 
-/** Loads the texts of one language. `chosen`: by the user, not by the browser's languages. */
+/** Loads the texts of one language. `chosen` is whether the user, not the browser, selected it. */
 export async function loadTexts(
   language: PageLanguage,
   chosen: boolean,

@@ -106,7 +106,7 @@ export const laterTexts = {
     group_removed: "Role removed.",
   },
   expressions: {
-    computed: (layer: string) => `“${layer}” is computed.`,
+    computed: (layer: string) => `“${layer}” was computed.`,
     names: "Names to use",
     holds: (area: string, share: string) => `True on ${area}, ${share} of the surface.`,
     known: (area: string, share: string) => `Has a value on ${area}, ${share} of the surface.`,

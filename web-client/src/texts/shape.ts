@@ -1,8 +1,8 @@
 // The shape of the page's texts, derived from English.
 
 /**
- * The shape of the texts without their wording. Lists keep their length: each line of the help
- * exists in each language.
+ * The shape of the texts without their wording. Lists have the same length in each
+ * language, so no line of the help can be missing.
  */
 type Shape<T> = T extends string
   ? string
@@ -14,10 +14,10 @@ type Shape<T> = T extends string
 
 export type HelpTexts = Shape<typeof import("./help-en").help>;
 
-/** Of all parts of the page that are shown first. */
+/** The texts of all parts that the page shows first. */
 export type FirstTexts = Shape<typeof import("./en").texts>;
 
-/** Of the parts of the page that are loaded later. */
+/** The texts of the parts that the page loads later. */
 export type LaterTexts = Shape<typeof import("./later-en").laterTexts>;
 
 export type Texts = FirstTexts & LaterTexts;

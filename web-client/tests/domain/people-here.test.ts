@@ -66,7 +66,7 @@ describe("people at a model", () => {
       false,
       true,
     ]);
-    // two messages have crossed; the function must not run forever
+    // two users followed each other at the same time; the function must not run forever
     const ring = [viewer("b", "bea", { following: "c" }), viewer("c", "carl", { following: "b" })];
     expect(leadsBack(ring, "b", "a")).toBe(false);
   });

@@ -77,7 +77,7 @@ describe("the length of a line that is being drawn", () => {
     );
     answer();
     await settle();
-    expect(measure.metres).toBeNull(); // the length misses the segment to the pointer
+    expect(measure.metres).toBeNull(); // the length of the segment to the pointer is unknown
     answer();
     await settle();
     expect(measure.metres).toBe(15);

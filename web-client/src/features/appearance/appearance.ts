@@ -27,8 +27,8 @@ import { texts } from "../../texts";
 
 export const kMostLooksShown = 4;
 /**
- * The fill light and the weak layers keep tool marks visible under painted layers, and keep detail
- * in the shadows.
+ * The reduced opacity of layers keeps tool marks visible below the paint. The fill light keeps
+ * detail visible in the shadows.
  */
 const kFirstLight: Required<Light> = {
   mode: "museum",

@@ -35,7 +35,7 @@ import { texts } from "../../texts";
 
 type Method = "unique" | "equal" | "quantile" | "smooth";
 const kPatterns = ["solid", "hatch", "dots", "outline"] as const;
-const kAngles = [45, 135, 0, 90]; // angles of hatches, used in rotation
+const kAngles = [45, 135, 0, 90]; // angles of the hatches of successive classes
 const kMostCategories = 30;
 
 /** Returns whether the layer has classes, or records with columns. */

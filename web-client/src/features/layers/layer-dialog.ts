@@ -1,5 +1,5 @@
 // <strata-layer-dialog>: creates a layer or, with `layer`, changes its name, classes and colors.
-// Its terms are those of users who study the object.
+// It uses the terms of users who study the object.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";

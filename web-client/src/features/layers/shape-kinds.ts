@@ -4,7 +4,7 @@ import { readNumber } from "../../core/locale";
 import type { Model, ShapeRecipe } from "../../core/types";
 import { texts } from "../../texts";
 
-/** The number of rays per point for openness. */
+/** The number of rays per point for ambient occlusion. */
 export const kRays = { least: 16, most: 1024, usual: 64 } as const;
 
 export type ShapeKind = ShapeRecipe["kind"];

@@ -107,8 +107,8 @@ export class Measuring {
     return this.profile ? lengthOf(this.profile.parts) : null;
   }
   /**
-   * Whether the length along the surface has a meaning. The nearest points to a line through the
-   * object are separate patches, whose length has none.
+   * Whether the length along the surface is meaningful. If a line passes through the object, its
+   * nearest surface points form separate patches, and their length is meaningless.
    */
   get hasWay(): boolean {
     return this.profile?.way !== "nearest" || this.profile.parts.length === 1;

@@ -1,5 +1,5 @@
-// <strata-brush-panel>: the value that the selected painting tool paints in the selected layer, the
-// width of the brush, and its reach.
+// <strata-brush-panel>: the value that the selected painting tool paints in the selected layer, and
+// the options of the tool, such as the width of the brush and the extent of a fill.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,7 +1,7 @@
 // The pointers of other participants on the surface, in this view. Positions arrive a few times a
 // second, and the page animates between them. To find whether the surface hides a position, the
-// page asks the server for the hit of a ray through its pixel. It asks about one position at a
-// time.
+// page requests the surface point at the pixel of the position from the server. It sends one such
+// request at a time.
 
 import { newId } from "../../core/ids";
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../../math/camera";

@@ -150,7 +150,7 @@ export class Reviews {
     this._host.changed();
   }
 
-  /** Shows the layer from its author's camera. */
+  /** Shows the layer from the camera of the stroke's author. */
   goTo(layer: Layer, { camera }: WaitingStroke): void {
     const { layers, view } = this._host;
     layers.select(layer);

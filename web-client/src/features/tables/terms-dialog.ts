@@ -175,7 +175,7 @@ export class StrataTermsDialog extends LitElement {
     }
   }
 
-  /** the list may have changed since the preview */
+  /** Shows the refusal. The list may have changed since the preview. */
   private refuse(error: ApiError): void {
     if (error.problem.rows) this._report = error.problem.rows;
     else this._problem = error.message;

@@ -105,7 +105,7 @@ describe("the activity of a model", () => {
     activity.outdated();
     vi.advanceTimersByTime(200);
     await settle();
-    expect(asked).toHaveLength(4); // the server may not have saved the second event before
+    expect(asked).toHaveLength(4); // the server may not have saved the second change yet
     vi.advanceTimersByTime(2900);
     await settle();
     expect(asked).toHaveLength(5);
