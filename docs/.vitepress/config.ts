@@ -1,4 +1,4 @@
-// The guide: the Markdown files of this folder as a site, which the server shows at /guide.
+// Builds the guide, a site of the Markdown files in this folder. The server serves it at /guide.
 import { fileURLToPath } from "node:url";
 import { transformerStyleToClass } from "@shikijs/transformers";
 import { defineConfig } from "vitepress";
@@ -10,7 +10,8 @@ import { alignedByClass, linksWithinTheGuide } from "./markdown";
 const file = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 const classes = transformerStyleToClass({ classPrefix: "code-" });
 
-// The order of the side bar. A page that is missing here, or there, fails the build.
+// The order of the pages in the side bar. The build fails if a page is missing in this list or in
+// the folder.
 const howTo = {
   "Work on the surface": ["use-the-page", "paint-a-layer", "measure", "import-maps"],
   "Keep records": ["keep-records", "use-lists-of-terms", "attach-files"],
@@ -54,7 +55,7 @@ export default defineConfig({
   base: "/guide/",
   head: [["link", { rel: "icon", href: "/favicon.svg", type: "image/svg+xml" }]],
   cleanUrls: true,
-  // A style element that would stop transitions while the theme changes is not allowed.
+  // With this option, VitePress would add a style element, which the security policy forbids.
   appearance: { disableTransition: false },
   srcExclude: ["developer/**"],
   metaChunk: true,

@@ -1,4 +1,4 @@
-// How the Markdown of the guide differs from what VitePress makes of it.
+// Changes the way in which VitePress renders the Markdown of the guide.
 import { posix } from "node:path";
 import type { MarkdownRenderer } from "vitepress";
 
@@ -9,8 +9,8 @@ function isOutside(page: string, target: string): boolean {
 }
 
 /**
- * Pages of the guide link to files of the source that are not part of the guide, for readers of the
- * repository. In the guide these links become plain text.
+ * Replaces links to files outside the guide by plain text. These links are for readers of the
+ * repository.
  */
 export function linksWithinTheGuide(md: MarkdownRenderer): void {
   md.core.ruler.push("links-within-the-guide", (state) => {
@@ -27,7 +27,7 @@ export function linksWithinTheGuide(md: MarkdownRenderer): void {
   });
 }
 
-/** Aligns the cells of tables by a class, because a style would break the security policy. */
+/** Aligns cells of tables with a class, because the security policy forbids style attributes. */
 export function alignedByClass(md: MarkdownRenderer): void {
   md.core.ruler.push("aligned-by-class", (state) => {
     for (const token of state.tokens) {

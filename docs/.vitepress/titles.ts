@@ -1,4 +1,4 @@
-// Entries of the side bar, with the titles that the pages have.
+// Makes the entries of the side bar from the titles of the pages.
 import { readdirSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
@@ -16,7 +16,7 @@ export function titled(folder: string, pages: string[]): { text: string; link: s
   });
 }
 
-// Refuses a guide with pages that no side bar leads to.
+// Throws an error if the side bar does not list a page.
 export function checkAllListed(): void {
   for (const [folder, seen] of listed)
     for (const file of readdirSync(`${docs}/${folder}`))

@@ -1,5 +1,5 @@
-// The server's content security policy allows no script and no style inside of a page. What
-// VitePress writes into its pages moves to files here.
+// The server's content security policy forbids scripts and styles inside pages. This file moves the
+// scripts and styles that VitePress writes into its pages to separate files.
 import { createHash } from "node:crypto";
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -33,7 +33,7 @@ export function withoutInline(codeStyles: () => string): (site: SiteConfig) => v
               /<script(?![^>]*\ssrc=)[^>]*>([\s\S]*?)<\/script>/g,
               (_, code: string) => `<script src="${asset(code, "js")}"></script>`,
             )
-            // What these say, theme/strata.css says.
+            // theme/strata.css replaces these styles.
             .replace(/ style="[^"]*"/g, "")
             .replace("</head>", `${styles}</head>`),
         );

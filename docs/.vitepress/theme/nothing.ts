@@ -1,2 +1,3 @@
-// In place of the search by a service of others, which VitePress brings and this guide does not use.
+// Replaces the search service of another provider, which VitePress includes and the guide does not
+// use.
 export default {};
