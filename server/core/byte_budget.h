@@ -15,7 +15,7 @@ class ByteBudget {
   explicit ByteBudget(std::uint64_t total) : total_(total) {}
 
   // Reserves the bytes until the last copy of the result is destroyed. Returns the error `busy` if
-  // the other reservations leave too little.
+  // the other reservations leave too little of the budget.
   Result<std::shared_ptr<const void>> take(std::uint64_t bytes) {
     std::uint64_t held = held_->load();
     do {

@@ -62,11 +62,11 @@ std::ostream& operator<<(std::ostream& out, ErrorCode code);
 struct Error {
   ErrorCode code = ErrorCode::malformed;
   std::string title;    // short, the same for all failures of this kind: "Value out of range"
-  std::string detail;   // this failure, and what to do
+  std::string detail;   // describes this failure, and what to do
   std::string field{};  // path of the invalid field, like a JSON pointer; may be empty
   // These members describe a mistake in a text in a formal language (expression/expression.h). They
-  // are the number of characters before it, the number of wrong characters if known, corrections
-  // (the most likely one first), and the stable name of the kind of mistake.
+  // are the number of characters before the mistake, the number of wrong characters if known,
+  // corrections (the most likely one first), and the stable name of the kind of mistake.
   std::optional<std::size_t> offset{};
   std::size_t length = 0;
   std::vector<std::string> suggestions{};

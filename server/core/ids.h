@@ -40,7 +40,7 @@ class Id {
   std::int64_t number_ = 0;
 };
 
-// Converts the numbers of a request.
+// Converts numbers from a request to ids.
 template <class Id>
 std::vector<Id> ids_of(std::span<const std::int64_t> numbers) {
   std::vector<Id> ids;

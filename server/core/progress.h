@@ -14,8 +14,8 @@ namespace strata {
 // `cancelled()` becomes true, the worker soon returns `cancelled_problem()`. Thread-safe.
 class Progress {
  public:
-  // Maps later reports to the part [from, to] of the whole task. So a step does not depend on its
-  // position in the task.
+  // Maps later reports to the part [from, to] of the whole task. So the code of a step does not
+  // depend on its position in the task.
   void begin_stage(double from, double to) {
     std::lock_guard lock(mutex_);
     from_ = from;

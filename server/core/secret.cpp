@@ -16,7 +16,7 @@ std::string random_token() {
 }
 
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
-  // Compares hashes, so the time shows neither the length nor the position of the first difference.
+  // Compares hashes, so the running time reveals neither the lengths nor where the texts differ.
   const Sha256 hash_a = sha256(a), hash_b = sha256(b);
   return sodium_memcmp(hash_a.data(), hash_b.data(), hash_a.size()) == 0;
 }

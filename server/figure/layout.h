@@ -36,8 +36,8 @@ class SheetLayout {
   int drawing_height() const { return height_; }
   glm::dvec2 drawing_mm() const { return sheet_.drawing.size; }
 
-  // `north` is the direction of north on the paper (y down). It has no value if north is too steep
-  // to the paper. `place_labels` makes the labels.
+  // `north` is the direction of north on the paper (y down). It has no value if the north direction
+  // is too steep to the paper. `place_labels` makes the labels.
   Sheet finish(double scale, const std::optional<glm::dvec2>& north,
                const std::vector<Label>& labels) const;
 

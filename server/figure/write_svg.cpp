@@ -1,5 +1,5 @@
-// Writes sheets as SVG, in millimeters. Groups have names and text is text, so users can edit the
-// file. (cairo's SVG draws letters as shapes.)
+// Writes sheets as SVG, in millimeters. Groups have names, and text stays text, so users can edit
+// the file. (cairo's SVG draws letters as shapes.)
 
 #include <fstream>
 

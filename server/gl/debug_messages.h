@@ -20,8 +20,8 @@ class DebugMessages {
   std::atomic<int> errors_{0};
 };
 
-// Checks the allocation before this call. Returns an Error `out_of_memory` that names `what` if the
-// driver had no memory for `bytes`.
+// Checks the allocation that precedes this call. Returns an Error `out_of_memory` that names `what`
+// if the driver had no memory for `bytes`.
 Result<void> check_memory(std::string_view what, std::size_t bytes);
 
 }  // namespace strata::gl

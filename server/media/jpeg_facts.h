@@ -8,7 +8,7 @@ namespace strata {
 // Facts from the segments before the pixels of a JPEG. `orientation` is Exif's number for the turn
 // and the mirroring from the stored rows to the upright image: 1…8, 1 by default. A progressive
 // image must be decoded completely at any requested size. Adobe programs mark their images, and
-// store CMYK inks inverted: 255 means no ink.
+// store CMYK values inverted: 255 means 0 %.
 struct JpegFacts {
   int orientation = 1;
   bool progressive = false;

@@ -55,7 +55,7 @@ ssize_t append_bytes(void* vector, const char* bytes, std::size_t count) {
 
 void check_size(std::span<const std::uint8_t> rgba, int width, int height) {
   if (width < 1 || height < 1 || rgba.size() != std::size_t(width) * std::size_t(height) * 4)
-    throw std::invalid_argument("A picture's pixels do not have its size.");
+    throw std::invalid_argument("The number of pixels does not match the size of the picture.");
 }
 
 Result<PictureInfo> inspect_jpeg(std::span<const std::uint8_t> bytes, int largest_side,
@@ -76,7 +76,7 @@ Result<PictureInfo> begin_png(PngReader& reader, std::span<const std::uint8_t> b
   return sized_picture(PictureFormat::png, reader.image.width, reader.image.height, largest_side);
 }
 
-// Converts CMYK inks to RGBA in place.
+// Converts CMYK pixels to RGBA in place.
 void show_inks(std::vector<std::uint8_t>& pixels, bool inverted) {
   for (std::size_t i = 0; i + 3 < pixels.size(); i += 4) {
     const unsigned paper = inverted ? pixels[i + 3] : 255u - pixels[i + 3];

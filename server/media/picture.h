@@ -14,13 +14,13 @@ namespace strata {
 // Thread-safe.
 //
 // Supported files:
-// - JPEG: also gray and CMYK. Inks are converted without their color profile.
-// - PNG: all.
+// - JPEG: also gray and CMYK. CMYK is converted without its color profile.
+// - PNG: all variants.
 // - TIFF: the first page; gray, color tables, RGB, CMYK and YCbCr with up to 16 bits, in strips or
 //   tiles, with lossless, JPEG or fax compression.
 // - WebP: still images.
 // - BMP: without run-length compression.
-// - TGA: all.
+// - TGA: all variants.
 // Only the upper 8 bits of 16-bit values are used.
 
 // RGBA8 in sRGB, top row first. Alpha is not premultiplied.
@@ -61,8 +61,8 @@ Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes,
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes,
                                int largest_side = kMaxPictureSide);
 
-// Like decode_picture, but may halve a JPEG repeatedly to save memory. Its longer side keeps at
-// least `side` pixels.
+// Like decode_picture, but may halve a JPEG repeatedly to save memory. Its longer side has at least
+// `side` pixels.
 Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side);
 
 struct JpegSettings {

@@ -154,7 +154,7 @@ Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t
       std::free);
   if (!pixels) return damaged_picture(format, stbi_failure_reason());
   if (width != info.width || height != info.height)
-    return damaged_picture(format, "its header contradicts itself");
+    return damaged_picture(format, "its header is inconsistent");
   const std::size_t size = std::size_t(width) * std::size_t(height) * 4;
   return Picture{width, height, {pixels.get(), pixels.get() + size}};
 }

@@ -34,7 +34,7 @@ Result<Picture> decode_webp(std::span<const std::uint8_t> bytes, int largest_sid
   const auto info = STRATA_TRY(inspect_webp(bytes, largest_side));
   WebPDecoderConfig config;
   if (!WebPInitDecoderConfig(&config))
-    return damaged_picture(PictureFormat::webp, "libwebp is of another version");
+    return damaged_picture(PictureFormat::webp, "the version of libwebp does not match");
   Picture picture{info.width, info.height, {}};
   picture.rgba.resize(std::size_t(info.width) * std::size_t(info.height) * 4);
   config.output.colorspace = MODE_RGBA;

@@ -161,7 +161,7 @@ class PictureWriter::Png : public PictureWriter::File {
 
 PictureWriter::PictureWriter(PictureFormat format, int width, int height, JpegSettings jpeg)
     : row_bytes_(std::size_t{4} * static_cast<std::size_t>(std::max(width, 0))) {
-  if (width < 1 || height < 1) throw std::invalid_argument("A picture has a pixel at least.");
+  if (width < 1 || height < 1) throw std::invalid_argument("A picture needs at least one pixel.");
   if (format == PictureFormat::jpeg)
     file_ = std::make_unique<Jpeg>(width, height, jpeg);
   else
@@ -173,7 +173,7 @@ PictureWriter::PictureWriter(PictureWriter&&) noexcept = default;
 
 void PictureWriter::put(std::span<const std::uint8_t> rgba) {
   if (rgba.size() % row_bytes_ != 0)
-    throw std::invalid_argument("A picture is written in whole rows.");
+    throw std::invalid_argument("Each call must write whole rows.");
   for (std::size_t at = 0; at < rgba.size(); at += row_bytes_) file_->put(rgba.data() + at);
 }
 

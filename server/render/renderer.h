@@ -64,7 +64,7 @@ struct WrittenTile {
 };
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
-  // The model-space box of the written blocks, from which changed screen rectangles follow.
+  // The model-space box of the written blocks. It determines the changed screen rectangles.
   glm::vec3 written_min{0}, written_max{0};
   // The time from the selection of the blocks until the texels are written. With EditPath::compute
   // it includes the read-back of the written texels.

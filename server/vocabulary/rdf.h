@@ -21,7 +21,7 @@ struct Triple {
 };
 
 // The base IRI for texts without a base. Relative IRIs in such a text are read as IRIs that begin
-// with it.
+// with this base.
 inline constexpr std::string_view kRelativeBase = "http://relative.invalid/";
 
 // Reads a graph with libraptor2, triple by triple, until `sink` returns false. Never fetches or

@@ -6,10 +6,10 @@
 
 // The default light. It consists of three soft lights and a sky that is brighter at the top. The
 // key light comes from the upper left, the fill light from the right, and the rim light from
-// behind. On a plane that faces the eye it is 0.97, so layers have the colors of their legends.
-// Light above that value is reduced to a third, so bright stone keeps its detail. The light from
-// all around changes slowly over a surface and is computed at the vertices. `openness` is the share
-// of the sky that reaches a vertex.
+// behind. On a plane that faces the eye the light is 0.97, so layers have the colors of their
+// legends. Light above that value is reduced to a third, so bright stone keeps its detail. The
+// light from all around changes slowly over a surface and is computed at the vertices. `openness`
+// is the share of the sky that reaches a vertex.
 float light_from_around(vec3 normal, float openness, MeshUniforms mesh) {
   float fill = max(0.0, dot(normal, mesh.fill_light.xyz) * 0.71 + 0.29);
   float sky = 0.5 + 0.5 * dot(normal, mesh.up.xyz);

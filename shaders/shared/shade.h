@@ -23,7 +23,7 @@ const float kPatternPixels = 7.0;         // between lines or dots if the palett
 const float kPatternClosestPixels = 6.0;  // closer lines or dots: every 2nd, 4th … is drawn
 const float kPatternGround = 0.3;         // opacity between lines or dots
 const float kHatchShare = 0.4;            // the line's share of the spacing
-const float kDotRadius = 0.32;            // in spacings
+const float kDotRadius = 0.32;            // as a share of the spacing
 const float kOutlinePixels = 2.0;         // width of the border around a value
 
 // One layer of a view. `type` has the values of strata::ValueType.

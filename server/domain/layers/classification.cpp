@@ -18,7 +18,7 @@ std::vector<NumberClass> classify(std::span<const double> numbers, ClassMethod m
                              ? sorted.front() * (1 - share) + sorted.back() * share
                              : sorted[i * sorted.size() / n];
     if (limit > limits.back() && limit < sorted.back()) limits.push_back(limit);
-    // A frequent largest number forms the last class.
+    // If the largest number is frequent, it forms the last class alone.
     if (method == ClassMethod::quantile && limit == sorted.back() && limit > limits.back())
       limits.push_back(limit);
   }

@@ -18,8 +18,8 @@ struct NumberClass {
   double from = 0, to = 0;
   std::uint64_t count = 0;
 };
-// Divides `numbers` (finite, in any order) into at most `count` ascending classes. Quantiles leave
-// out empty classes. If all numbers are equal, they form one class.
+// Divides `numbers` (finite, in any order) into at most `count` ascending classes. The method
+// `quantile` omits empty classes. If all numbers are equal, they form one class.
 std::vector<NumberClass> classify(std::span<const double> numbers, ClassMethod method, int count);
 
 struct TextClass {

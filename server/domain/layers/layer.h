@@ -32,7 +32,7 @@ struct LayerFormula {
     bool operator==(const Input&) const = default;
   };
   std::vector<Input> inputs;  // by slug
-  bool stale = true;          // the values are out of date, according to this copy
+  bool stale = true;          // the values are out of date, as far as this copy shows
 };
 
 // The origin of values that were computed and not painted.
@@ -63,7 +63,7 @@ struct Layer {
   // Edits of users below curator are provisional until a curator accepts or rejects them.
   bool review = false;
   Visibility visibility = Visibility::everyone;
-  int order = 0;  // layers are drawn in ascending order, so the highest number is on top
+  int order = 0;  // drawn in ascending order: the layer with the highest number is on top
   // For database layers: the table of the project whose keys the texels hold.
   std::optional<TableId> table;
   std::optional<LayerFormula> formula;

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t kRevisionVersion = 1;
 constexpr std::uint8_t kTileVersion = 129;
 constexpr std::size_t kHeaderBytes = 2;
-constexpr int kZstdLevel = 1;  // 700 MB/s on tiles; already shrinks sparse paint 17-fold
+constexpr int kZstdLevel = 1;  // 700 MB/s on tiles; compresses sparse paint 17-fold
 
 constexpr std::size_t mask_bytes() { return sizeof(TileMask::words); }
 
@@ -35,7 +35,7 @@ Result<std::vector<std::uint8_t>> decompress(std::uint8_t version, int width, st
   };
   if (bytes.size() < kHeaderBytes) return damaged("is too short.");
   if (bytes[0] != version) return damaged("has an unknown version.");
-  if (bytes[1] != width) return damaged("has another texel width than its layer.");
+  if (bytes[1] != width) return damaged("has a different texel width than its layer.");
   std::vector<std::uint8_t> raw(raw_bytes);
   const std::size_t n = ZSTD_decompress(raw.data(), raw.size(), bytes.data() + kHeaderBytes,
                                         bytes.size() - kHeaderBytes);

@@ -39,8 +39,8 @@ class TileMirror {
   void assign(TileMap tiles, std::int64_t sequence);
 
   // Acquire before an edit is passed to the GPU. Release after `put` has stored the result, or
-  // after the edit was refused. Between these times, the GPU may be ahead of the mirror. The result
-  // may outlive the mirror.
+  // after the edit was refused. Between these times, the tiles on the GPU may be newer than those
+  // of the mirror. The result may outlive the mirror.
   std::shared_ptr<const void> hold() const;
   bool held() const { return *holds_ > 0; }
 

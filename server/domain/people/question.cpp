@@ -57,7 +57,7 @@ void Question::check() {
     end({ErrorCode::timed_out,
          "Question takes too long",
          "The server stops a question after " + std::to_string(limits_.time.count() / 1000) +
-             " seconds. This includes the time in which it answered others. Choose a "
+             " seconds. This includes the time for the questions of other users. Choose a "
              "smaller area, a coarser layer or a shorter condition, or try again later.",
          {}});
   if (turns_) turns_->check(place_);
@@ -69,7 +69,7 @@ void Question::spend(std::uint64_t steps) {
   if (limits_.steps == 0 || all <= limits_.steps) return;
   end({ErrorCode::invalid,
        "Question too large",
-       "This takes " + in_millions(all) +
+       "The answer takes " + in_millions(all) +
            " million steps (one step is one part of the condition at one texel). The limit is " +
            in_millions(limits_.steps) +
            " million. Choose a smaller area (`within`), a coarser layer or a shorter condition.",

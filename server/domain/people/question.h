@@ -45,7 +45,7 @@ class Question : public std::enable_shared_from_this<Question> {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Users share `turns` fairly. If `turns` is null, users do not share.
+  // Users share `turns` fairly. If `turns` is null, the question never waits.
   Question(std::string asker, QuestionLimits limits, std::shared_ptr<QuestionTurns> turns);
 
   const std::string& asker() const { return asker_; }
@@ -58,7 +58,7 @@ class Question : public std::enable_shared_from_this<Question> {
   // client.
   void let_take_time() { has_deadline_ = false; }
 
-  // Stops waiting for turns. Call when other users wait for this question.
+  // Stops waiting for turns. Call when other users wait for the end of this question.
   void skip_turns() { takes_turns_ = false; }
 
   // Throws QuestionEnded if the question has ended. Waits during a turn of another user.

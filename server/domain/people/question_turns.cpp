@@ -22,8 +22,8 @@ void QuestionTurns::leave(Place& place) {
   place.state = Place::State::away;
   place.paused = false;
   --askers_.at(place.asker).places;
-  // Keeps the time of a user who had more time than the others, until the others have had as much.
-  // So a user cannot reset the time by asking again immediately.
+  // Keeps the entry of a user who had more time than the others, until the others have had as much.
+  // So a user cannot reset the time by sending a new question immediately.
   std::erase_if(askers_, [&](const auto& each) {
     return each.second.places == 0 && each.second.served <= now_;
   });

@@ -35,7 +35,7 @@ class QuestionTurns {
     bool over = false;  // the question no longer waits
   };
 
-  void enter(Place& place);  // returns in the turn of the question, or when it is over
+  void enter(Place& place);  // returns when the turn of the question begins, or when it is over
   void leave(Place& place);
   // Call from any thread that works on an entered question. If a turn of another question is due,
   // waits for the next turn of this question.

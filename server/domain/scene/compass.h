@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// The directions of the map for a model. `east` and `north` are axes of the model, as on a map if z
-// is up, and always with east × north = up.
+// The directions of the map for a model. `east` and `north` are axes of the model, x and y if z is
+// up. East × north is always the up direction.
 struct Compass {
   explicit Compass(const Model& model);
   glm::dvec3 east{1, 0, 0}, north{0, 1, 0};

@@ -30,7 +30,7 @@ std::optional<Unit> parse_unit(std::string_view name);
 
 // Facts about the atlas, for the response to GET /models/{model}.
 struct AtlasReport {
-  // The surface per texel of a layer. It determines the precision of painting.
+  // The surface area per texel of a layer. It determines the precision of painting.
   struct TexelSize {
     int resolution = 0;
     double area_mean = 0, area_max = 0;  // unit²
@@ -51,7 +51,7 @@ struct AtlasReport {
   double stretch_p99 = 0;
   // The largest surface area of one texel at lowest_resolution, in unit².
   double texel_area_max = 0;
-  // Ascending from lowest_resolution. Empty for models that were imported before this was measured.
+  // Ascending from lowest_resolution. Empty for models imported before the sizes were measured.
   std::vector<TexelSize> texel_sizes;
   // Empty if 60 % or more of the texels are used, and in older models.
   std::vector<Limit> limits{};

@@ -16,12 +16,12 @@ enum class ToolShape { disc, square, texture };
 
 // One dispatched batch of a stroke's points. A swept tool connects consecutive points, and a single
 // point is a dab. A square is aligned with the axes of the window. The swept area is the union of
-// the squares along the segment. The same applies to a texture. It moves and scales continuously
-// along the segment, and paints each point of the window that it covers at any time. (Relative to
-// the moving shape, the point moves along a straight line, even if the radius changes. The point is
-// painted if this line crosses a cell of the shape.)
+// the squares along the segment. The same applies to a texture. The texture moves and scales
+// continuously along the segment, and paints each point of the window that it covers at any time.
+// (Relative to the moving shape, the point moves along a straight line, even if the radius changes.
+// The point is painted if this line crosses a cell of the shape.)
 struct StrokeBatch {
-  // World coordinates. The pixels of `path` are those of its width × height.
+  // In world coordinates. The pixels of `path` refer to the camera's width × height.
   Camera camera;
   std::vector<glm::dvec2> path;  // window pixels, origin top left; 1…4096 points
   ToolShape shape = ToolShape::disc;
@@ -35,8 +35,8 @@ struct StrokeBatch {
   std::vector<double> widths;
   bool through = false;  // also paint hidden surface, without a depth test
   // How much nearer than the depth buffer a texel is assumed to be, in window depth (0…1), as in
-  // the paper. If absent, the bias depends on the size of the model and the slope of the visible
-  // surface. It does not depend on the planes of the camera.
+  // the TEA paper. If absent, the bias depends on the size of the model and the slope of the
+  // visible surface. It does not depend on the planes of the camera.
   std::optional<double> fixed_depth_bias;
   // Above 0, at most 90. Surface at a more oblique angle is not painted. The angle is between the
   // direction to the eye and the surface normal in the pixel of the texel. If absent, there is no

@@ -22,7 +22,7 @@ struct SurfaceImage {
   std::string sha256;       // of the encoded image, in lowercase hex
   double opacity = 1;
   bool visible = true;
-  int order = 0;  // images are blended in ascending order, so the highest number is on top
+  int order = 0;  // blended in ascending order: the image with the highest number is on top
   std::int64_t version = 1;
 };
 

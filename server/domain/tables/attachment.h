@@ -18,7 +18,7 @@ struct Attachment {
   std::string media_type;  // determined from the bytes of the file
   std::uint64_t bytes = 0;
   std::string sha256;  // hexadecimal
-  // Of a readable image, before the rotation in Exif.
+  // Of a readable image, before the rotation that its Exif data requests.
   std::optional<int> width, height;
   std::string user;
   std::chrono::system_clock::time_point time;

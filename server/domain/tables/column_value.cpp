@@ -281,9 +281,8 @@ Result<json> parse_value(const Column& column, std::string_view text, bool decim
       if (!features)
         return refuse(
             column,
-            lines
-                ? "lines as `3 LINESTRING Z (0 0 1, 2.5 0 1)`, the model's id first, with semicolons between"
-                : "points as `3 POINT Z (0 0 1)`, the model's id first, with semicolons between",
+            lines ? "lines as `3 LINESTRING Z (0 0 1, 2.5 0 1)` (model 3), separated by semicolons"
+                  : "points as `3 POINT Z (0 0 1)` (model 3), separated by semicolons",
             field);
       return check_value(column, to_json(*features), field);
     }

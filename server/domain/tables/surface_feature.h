@@ -14,8 +14,8 @@
 
 namespace strata {
 
-// A line (a crack, which is paid by the meter) or a point (a sample) of a record on a model, in
-// addition to texels. Columns of kind `line` and `point` hold lists of features: `[{"model": 3,
+// A line (a crack, whose repair is paid by the meter) or a point (a sample) of a record on a model,
+// in addition to texels. Columns of kind `line` and `point` hold lists of features: `[{"model": 3,
 // "coordinates": [[x, y, z], …]}]`. Coordinates are world coordinates in the unit of the model. The
 // points of a line are so close that the surface between them is straight.
 struct SurfaceFeature {

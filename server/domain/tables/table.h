@@ -63,7 +63,7 @@ struct Column {
   std::optional<double> minimum, maximum;  // integer and numeric
   int order = 0;
   Visibility visibility = Visibility::everyone;
-  bool hidden = false;  // dropped; the values stay for undo and for reading the past
+  bool hidden = false;  // dropped; the values stay for undo and for past states of the table
 };
 
 // A table of a project. It holds the records for the keys in database layers, on all models of the
@@ -92,16 +92,16 @@ inline constexpr int kMaxChoices = 1000;
 // The maximum bytes of a unit, a choice, a label or a comment.
 inline constexpr std::size_t kMaxColumnTextLength = 2000;
 
-// A row, identified by its key. `values` are by column id. A missing entry has no value.
+// A row, identified by its key. `values` are by column id. A column without an entry has no value.
 struct Record {
   std::int64_t key = 0;
   std::int64_t version = 1;
   std::map<ColumnId, nlohmann::json> values;
 };
 
-// Checks that the properties of a column match: choices, target and limits belong to its kind, and
-// the default is a valid value. Normalizes the default. The Error contains the field of the column
-// ("choices", "default").
+// Checks that the properties of a column are consistent: its kind allows its choices, target and
+// limits, and the default is a valid value. Normalizes the default. The Error contains the field of
+// the column ("choices", "default").
 Result<void> check_column(Column& column);
 Result<void> check_labels(const Labels& labels, const std::string& field = "labels");
 // Checks texts in other languages, each of at most `longest` bytes.

@@ -11,8 +11,8 @@
 
 namespace strata {
 
-// A term of a term list (flaking, below coming-off), as in files. It refers to other terms by their
-// codes.
+// A term as in the file of a term list, such as `flaking` with the parent `coming-off`. It refers
+// to other terms by their codes.
 struct Term {
   int line = 0;            // its line in the text, for CSV
   std::string code;        // unique in the list, not empty
@@ -48,8 +48,8 @@ struct TermList {
   std::set<std::string> columns;
   std::vector<TermMistake> mistakes;  // the first kMaxTermMistakes
   std::size_t rows = 0;               // number of terms, including those with mistakes
-  // For SKOS: number of additional broader terms and labels in a language, which a term list cannot
-  // hold.
+  // For SKOS: the number of broader terms and of labels in one language that were left out, because
+  // a term list holds only one of each.
   std::size_t left_out = 0;
 };
 

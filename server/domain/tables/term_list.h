@@ -60,7 +60,7 @@ std::vector<bool> terms_with(std::span<const ListedTerm> terms, std::string_view
 // keys.
 inline constexpr std::size_t kMaxTermColors = 4096;
 Palette terms_palette(std::span<const ListedTerm> terms);
-// Returns whether a layer with a term list takes its colors from the terms. This is so if the
+// Returns whether a layer with a term list takes its colors from the terms. This is the case if the
 // palette has no points and no column.
 bool takes_term_colors(const Palette& palette);
 

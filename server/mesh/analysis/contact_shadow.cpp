@@ -13,10 +13,10 @@ namespace {
 constexpr int kSize = ContactShadow::kSize;
 constexpr int kMargin = 20;  // texels around the model, for the soft border
 constexpr int kModel = kSize - 2 * kMargin;
-constexpr int kFade = 4;  // texels at the border of the map, over which the shadow ends
+constexpr int kFade = 4;  // texels at the border of the map over which the shadow fades out
 
-// The shadow is the sum of three: of the foot, of what is just above the floor, and of the whole
-// model. Heights are shares of the model's extent on the floor.
+// The sum of three shadows: of the foot, of the parts just above the floor, and of the whole model.
+// Heights are shares of the model's extent on the floor.
 struct Part {
   double height;  // parts of the model above it have no effect
   double spread;  // standard deviation of the blur, in texels

@@ -11,7 +11,7 @@
 namespace strata::mesh {
 
 // The soft shadow of a model on a floor under its lowest point: a square map of the light that the
-// model keeps from the floor. Positions are in model space.
+// model blocks. Positions are in model space.
 struct ContactShadow {
   static constexpr int kSize = 128;  // texels on each side
 

@@ -12,7 +12,7 @@ namespace strata::mesh {
 namespace {
 
 constexpr double kMostGap = 0.01;  // as a share of the outline's length
-// A surface with more open ends is in pieces. The search for matching ends takes quadratic time.
+// Gaps between more open ends stay open. The search for matching ends takes quadratic time.
 constexpr std::size_t kMostOpenEnds = 2000;
 constexpr std::size_t kTrianglesAtOnce = 1 << 16;
 constexpr double kParallel = 1e-12;

@@ -32,7 +32,7 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
   for (int i = 0; i < iterations; ++i) {
     std::fill(sum.begin(), sum.end(), glm::vec3(0));
     std::fill(weight.begin(), weight.end(), 0.f);
-    // Every edge counts once for each of its triangles, in the order of the triangles. Sums of
+    // Every edge is added once for each of its triangles, in the order of the triangles. Sums of
     // floats depend on their order, and the atlas depends on these sums.
     for (std::size_t c = 0; c < triangles.size(); ++c) {
       const std::uint32_t a = triangles[c], b = triangles[c % 3 == 2 ? c - 2 : c + 1];

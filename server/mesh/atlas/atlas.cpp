@@ -102,7 +102,7 @@ tl::unexpected<Error> no_room(std::size_t charts, int resolution) {
 }
 
 // Returns the area of a face on the surface divided by its area in the plane. The result is
-// proportional to the surface area that a texel of the face holds.
+// proportional to the surface area that a texel of the face covers.
 float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane,
                  std::uint32_t face) {
   const glm::vec2* p = &plane[3 * std::size_t{face}];

@@ -17,7 +17,7 @@ struct Atlas {
   std::vector<Repair> repairs = {};
 };
 
-// Keeps the file's own UVs if they can carry layers. All UVs must be inside one tile. Every
+// Keeps the file's own UVs if they are suitable for layers. All UVs must be inside one tile. Every
 // triangle with area must have an area in UV space, except for up to 0.1 % of the surface. At least
 // 99.5 % of the covered texels at `lowest_resolution` must have one owner. The rest is reported as
 // `overlap`. Triangles that violate these rules are moved to free texels if they are at most 10 %

@@ -12,8 +12,8 @@
 namespace strata::mesh {
 namespace {
 
-// No single order packs every set of charts best, so several orders are tried. The orders differ
-// less with more charts, so fewer orders are then tried.
+// No single order packs every set of charts best, so several orders are tried. With more charts,
+// their results differ less, so fewer orders are tried.
 enum Order : std::uint8_t { longer_side, box_area, half_perimeter, area, diagonal };
 constexpr std::array<std::uint8_t, 5> kOrders{longer_side, half_perimeter, box_area, diagonal,
                                               area};
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> ordered(std::span<const ChartShape> shapes, std::uint
 // The row where the search for a chart's position begins. Nothing is free below the position of an
 // earlier chart with the same shape. There is rarely free space below the positions of the last
 // charts of similar size, or of any size if no chart is similar. With many charts, the search
-// assumes no free space there. Otherwise it would read the whole atlas for each chart.
+// assumes that no space is free there. Otherwise it would read the whole atlas for each chart.
 class Floors {
  public:
   explicit Floors(std::size_t charts)

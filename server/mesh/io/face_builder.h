@@ -60,7 +60,7 @@ class FaceBuilder {
 
   Result<void> add_triangle(const Corner& a, const Corner& b, const Corner& c, bool has_uv) {
     if (mesh_.triangle_count() >= max_triangles_) {
-      return refuse_file("The file makes more than " + std::to_string(max_triangles_) +
+      return refuse_file("The faces of the file form more than " + std::to_string(max_triangles_) +
                          " triangles. Reduce the mesh, or split it into several models.");
     }
     mesh_.triangles.insert(mesh_.triangles.end(), {a.position, b.position, c.position});

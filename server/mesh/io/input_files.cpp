@@ -14,7 +14,7 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::string_view kTaken =
-    "send PLY, OBJ, STL, glTF or GLB, alone, with its textures, or as a zip of them";
+    "send a PLY, OBJ, STL, glTF or GLB file, alone, with its textures, or in a zip archive";
 
 std::string_view last_part(std::string_view path) {
   const auto slash = path.find_last_of("/\\");

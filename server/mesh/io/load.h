@@ -30,7 +30,7 @@ struct LoadOptions {
   double weld_distance = 0;  // in file units; vertices within this distance are also joined
 };
 
-// Returns true if a file that needed this repair had a fault. Joining equal vertices does not
+// Returns true if this repair means that the file had a fault. Joining equal vertices does not
 // indicate a fault, because some formats always repeat vertices.
 bool is_fault(const Repair& repair);
 

@@ -108,7 +108,7 @@ class PlyBinarySource {
   PlyFault fault_ = PlyFault::none;
 };
 
-// ASCII values are separated by blanks, not by lines, because some writers fold long lists. If
+// ASCII values are separated by blanks, not by lines, because some writers wrap long lists. If
 // there are exactly as many lines as elements, the rest of a line after an element's last value is
 // skipped. MeshLab writes more words than the header has properties.
 class PlyAsciiSource {

@@ -37,7 +37,7 @@ Result<VertexProperty> read_vertex_property(std::span<const std::uint8_t> file,
 // Reads one number for each vertex of a PLY or OBJ, in the order of the vertices, from a CSV with
 // one column. A first line that is not a number is a heading. An empty line or nan is a vertex
 // without a value. The extension of `filename` determines the scan's format. Fails with `invalid`
-// and the line number for a faulty line, for different counts, and for other formats.
+// and the line number for a faulty line, if the counts differ, and for other formats.
 Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
                                        const std::string& filename, std::string_view csv,
                                        Progress& progress);

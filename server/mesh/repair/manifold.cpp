@@ -110,7 +110,7 @@ class Manifold {
     std::vector<HalfEdge> sides;
   };
 
-  // Returns true if the side belongs to a fin with two free other sides. Fins are joined last.
+  // Returns true if the side belongs to a fin whose two other sides are free. Fins are joined last.
   bool is_loose(const HalfEdge& side) const {
     const std::uint32_t other = next_corner(side.corner);
     return mate_[other] == kNone && mate_[next_corner(other)] == kNone;

@@ -128,7 +128,7 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
     if (too_many())
       return refuse("Triangles overlap in the texture: " + percent(before) +
                     " of the covered texels at " + std::to_string(lowest_resolution) +
-                    " have more than one owner; " + percent(kMaxOverlap) + " may.");
+                    " have more than one owner. The limit is " + percent(kMaxOverlap) + ".");
   }
   if (progress.cancelled()) return cancelled_problem();
   if (faults.area > 0 || !numbers_of(faults).empty()) {

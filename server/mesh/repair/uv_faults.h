@@ -10,7 +10,7 @@
 
 namespace strata::mesh {
 
-// The reasons why the texture coordinates of a triangle cannot carry a layer.
+// The reasons why the texture coordinates of a triangle cannot be used for layers.
 enum class UvFault : std::uint8_t { none, not_finite, outside, no_area, overlap };
 constexpr int kUvFaults = 5;
 std::string_view words_of(UvFault fault);  // "lie outside the unit square"

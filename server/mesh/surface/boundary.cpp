@@ -27,8 +27,8 @@ std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometr
 BoundaryDistance::BoundaryDistance(const Geometry& geometry) {
   const auto edges = boundary_edges(geometry);
   if (edges.empty()) return;
-  // The triangles follow a curve through space, and their edges do too. The search tree needs no
-  // other order.
+  // The triangles are sorted along a curve through space, and so are their edges. The search tree
+  // needs no other order.
   auto rims = std::make_shared<Geometry>();
   rims->origin = geometry.origin;
   for (const auto& edge : edges)

@@ -38,7 +38,7 @@ template <class Key>
 using Keys = std::array<Key, kWidth>;
 
 // Vectors that process several boxes at the same time. Compilers do not vectorize this code
-// automatically, because they keep branches.
+// automatically, because they keep its branches.
 template <class Number>
 struct LanesOf {
   typedef Number Type __attribute__((vector_size(16)));

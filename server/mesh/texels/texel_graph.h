@@ -17,8 +17,8 @@ namespace strata::mesh {
 // one side to the texels of the other. They also run within an island that is thinner than a texel.
 // Texels are numbered as in the arrays of the map: 64 * slot + y * 8 + x.
 //
-// A gap within an island that is narrower than a texel does not separate its sides. An island
-// without a surface texel connects nothing.
+// A gap narrower than a texel within an island does not separate the texels on its two sides. An
+// island without a surface texel connects nothing.
 struct TexelGraph {
   std::vector<std::uint64_t> to_right,
       // per slot: bits of the texels that are connected to their right or upper neighbor

@@ -16,8 +16,8 @@ namespace strata::mesh {
 // The triangle of every surface texel of an atlas at one resolution, and the texel's position in
 // the triangle. It is used for painting values that are computed from the mesh. The same code
 // determines the texels and slots of the SurfaceMap at that resolution, so they are identical. This
-// data is made when needed and then discarded, because it takes 8 bytes per texel and painting with
-// a brush does not need it.
+// data is made when needed and then discarded, because it takes 8 bytes per texel and brushes do
+// not need it.
 struct TexelOwners {
   int resolution = 0;
   int blocks_per_side = 0;

@@ -30,7 +30,7 @@ inline double linear_of_srgb(double value) {
 
 // Colors given as real numbers have the range 0…1 in some files and 0…255 in others, and no header
 // specifies the range. They are read as 0…1 until a channel exceeds 1. Then the stored colors are
-// rescaled. Each of their channels was 0 or about 1 of 255.
+// rescaled, because each of their channels was at most 1 of 255.
 class RealColorScale {
  public:
   // `stored` has the colors packed before. A color without alpha is opaque.

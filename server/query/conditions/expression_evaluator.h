@@ -26,7 +26,7 @@ struct BoundExpression {
 
 // Returns the surface texels of the map where the condition is true. Gutter texels, and texels
 // where the condition is unknown, are never included. For a layer with another resolution, the
-// layer texel that contains the center of the map texel counts. Returns an `invalid` error at
+// layer texel that contains the center of the map texel is used. Returns an `invalid` error at
 // `field` for a layer that is not in `layers`. `within` restricts the evaluation to these texels;
 // null means all texels. Runs on up to `threads` threads. Throws QuestionEnded before the
 // evaluation begins if the cost exceeds the limit of the current question

@@ -10,8 +10,8 @@ namespace strata::query {
 // Polygons and MultiPolygons), in their order. Reads the properties that are numbers, texts, or
 // true and false (as 1 and 0). Skips features without a geometry, and coordinates after x and y.
 // Returns a `malformed` error, or an `invalid` error with the path in the text, for text that is
-// not GeoJSON, for points and lines, and for rings of fewer than three points. The same holds for
-// more than kMaxMapPoints, kMaxMapFeatures or kMaxMapColumns.
+// not GeoJSON, for points and lines, and for rings of fewer than three points. Texts with more than
+// kMaxMapPoints, kMaxMapFeatures or kMaxMapColumns are `invalid`, too.
 Result<FeatureMap> parse_geojson(std::string_view text);
 
 }  // namespace strata::query

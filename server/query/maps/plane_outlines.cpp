@@ -25,8 +25,8 @@ constexpr std::size_t kBytesOfCorner = 400;    // memory of GEOS and the rings, 
 constexpr std::size_t kBytesOfTriangle = 110;  // memory to build the rims and the lookup
 
 // Assigns labels to texels. Texels with the same label have one class, and their surface faces the
-// same side of the plane. Without this, the rings of a surface that folds over itself in the plane
-// would cancel the area that they enclose.
+// same side of the plane. Without labels, the rings of a surface that folds over itself in the
+// plane would cancel the area that they enclose.
 class Labels {
  public:
   Labels(const LayerView& view, const mesh::SurfaceMap& map, const ValueClasses& classes,

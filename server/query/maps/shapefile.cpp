@@ -157,7 +157,7 @@ class Reader {
         return refuse(
             memory.complaint("Record " + std::to_string(i + 1) + " of the .shp cannot be read"));
       if (shape->nSHPType == SHPT_NULL) {
-        if (++skipped_ > kMaxSkipped) return refuse("Most of its records have no shape.");
+        if (++skipped_ > kMaxSkipped) return refuse("Too many records of the .shp have no shape.");
         continue;
       }
       STRATA_TRY(keep(*shape, table.get(), i));

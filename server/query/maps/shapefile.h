@@ -12,7 +12,7 @@ namespace strata::query {
 struct ShapefileParts {
   std::span<const std::uint8_t> shp;
   std::span<const std::uint8_t> dbf;  // empty: no attributes
-  // the encoding of the texts, as a name or a number; if empty, the one in the .dbf, or detected
+  // the encoding of the texts, as a name or a number; if empty, it is read from the .dbf or guessed
   std::string_view cpg;
   std::string_view prj;  // the coordinate system as WKT
 };

@@ -8,7 +8,7 @@
 
 namespace strata::query {
 
-// Finds the pixel of an image at a position in the plane; nothing outside the image.
+// Finds the pixel of an image at a position in the plane. Finds nothing outside the image.
 class PixelFinder {
  public:
   PixelFinder(int width, int height, const WorldFile& world);

@@ -17,7 +17,7 @@ namespace strata::query {
 
 // The layers that are visible where several layers overlap.
 
-enum class Cover { nothing, some, all };  // how much of the layers below a value hides
+enum class Cover { nothing, some, all };  // the part of the layers below that a value hides
 
 struct LayerCover {
   std::function<Cover(double value)> of;  // called on several threads

@@ -20,7 +20,7 @@ namespace strata::query {
 // colors of the scan, if it has any. Each layer has a property with its name and type (float for
 // f16), and a property `<layer>_valid`, 1 or 0. A name that has a meaning in PLY files (x, red)
 // gets the prefix `layer_`. A vertex on a seam has one texel on each side, and the first valid
-// texel counts.
+// texel is used.
 class VertexPly {
  public:
   VertexPly(std::shared_ptr<const mesh::Geometry> geometry, std::vector<LayerView> layers,

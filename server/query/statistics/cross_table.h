@@ -27,8 +27,8 @@ struct CrossTable {
 
 // Counts the surface texels of `map` where at least one of the layers has a value. `within`
 // restricts the texels; null means all texels. For a layer with another resolution, the layer texel
-// that contains the center of the map texel counts. Returns an `invalid` error for a floating-point
-// layer, or for one with more than kMaxCrossTableSide values.
+// that contains the center of the map texel is used. Returns an `invalid` error for a
+// floating-point layer, or for one with more than kMaxCrossTableSide values.
 Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns,
                                   const mesh::SurfaceMap& map, const TexelSelection* within,
                                   double metres_per_unit);

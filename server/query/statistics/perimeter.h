@@ -24,9 +24,9 @@ struct Perimeters {
 // Measures the borders of valid texels. `within` restricts the texels; null means all texels. An
 // open edge of the mesh is a border. A seam of the atlas is not a border.
 //
-// The edges of texels would be up to 41 % too long. By the Cauchy-Crofton formula, the length of a
-// curve is proportional to the number of lines that cross it. Lines through texels in 8 directions
-// are counted. Each line is weighted by its spacing and its share of the directions, both on the
+// A sum of texel edges is up to 41 % too long. By the Cauchy-Crofton formula, the length of a curve
+// is proportional to the number of lines that cross it. Lines through texels in 8 directions are
+// counted. Each line is weighted by its spacing and its share of the directions, both on the
 // surface itself, so stretched texels count with their true size (Boykov and Kolmogorov, "Computing
 // geodesics and minimal surfaces via graph cuts", ICCV 2003). The error of straight borders is at
 // most 2 %. For areas a few texels wide, and along seams, the error may be about one texel.

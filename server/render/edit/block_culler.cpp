@@ -49,8 +49,8 @@ constexpr std::size_t kSubtreesForThreads = 32;
 // takes as long as painting it.
 constexpr std::size_t kWholeLevel = 1;
 
-// Returns the sides of the tool's box in the window, as planes through the eye. Rejecting a sphere
-// by one of them takes a tenth of the time of computing its exact box.
+// Returns the sides of the tool's box in the window, as planes through the eye. A test of a sphere
+// against one of them takes a tenth of the time that is needed for its exact box.
 std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip, int width,
                                    int height) {
   const glm::dmat4 rows = glm::transpose(clip);

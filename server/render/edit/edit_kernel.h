@@ -19,7 +19,7 @@ struct KernelResult {
   std::size_t tested_blocks = 0;
 };
 
-// Runs the texture editing and padding algorithms of the paper, as in shaders/edit_pass.comp: a
+// Runs the texture editing and padding algorithms (TEA and TPA), as in shaders/edit_pass.comp. A
 // gutter texel has the position of its owner. Reads the surface map in main memory and does not use
 // GL. Uses up to `threads` threads. Each thread culls and tests the blocks of one tile at a time,
 // so no list of all blocks is stored.

@@ -28,7 +28,7 @@ struct EditedTiles {
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written parts
 };
 
-// Runs the texture editing and padding algorithms of the paper in one compute dispatch
+// Runs the texture editing and padding algorithms (TEA and TPA) in one compute dispatch
 // (shaders/edit_pass.comp) over the parts that EditCuller listed.
 class EditPass {
  public:

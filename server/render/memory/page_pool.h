@@ -13,9 +13,9 @@ namespace strata::render {
 
 using PageId = std::uint32_t;  // chunk, slice and cell (shaders/shared/pages.h)
 
-// Stores the tiles of all layers with one texel width. It is the paper's texture manager with pages
-// instead of whole textures. A chunk is a texture array of 2048 x 2048 slices, each of 16 x 16
-// pages, with a second array for the valid flags. Each chunk has twice as many slices as the
+// Stores the tiles of all layers with one texel width. It is the TEA paper's texture manager with
+// pages instead of whole textures. A chunk is a texture array of 2048 x 2048 slices, each of 16 x
+// 16 pages, with a second array for the valid flags. Each chunk has twice as many slices as the
 // previous one. Chunks are never copied or moved. A chunk without used pages can be dropped to free
 // its memory for other pools. A later chunk reuses its number.
 class PagePool {

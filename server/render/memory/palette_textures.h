@@ -15,7 +15,7 @@ std::uint32_t packed(const Rgba& color);  // red is in the low byte
 
 // Palettes on the GPU. Linear palettes are rows of one texture. The points of stepped and
 // categorical palettes are in one storage buffer, because thresholds and keys must be exact.
-// Entries are kept while there is room.
+// Entries stay until there is no more room.
 class PaletteTextures {
  public:
   static Result<PaletteTextures> create();

@@ -19,8 +19,8 @@ class TileReader {
                                    gl::ReadbackPool& readback);
 
   static std::size_t bytes_per_tile(const PagePool& pool);  // of a tile in the read-back
-  // Allocates memory to read up to `pages` pages at a time. It is the only step of a read that can
-  // fail, so call it before the pages are changed.
+  // Allocates memory to read up to `pages` pages at a time. This is the only step of a read that
+  // can fail, so call it before the pages are changed.
   Result<gl::Readback> make_room(const PagePool& pool, std::size_t pages) const;
   // Starts to read pages, which keep their order. `room` must be large enough.
   void begin(const PagePool& pool, std::span<const PageId> pages, gl::Readback& room);

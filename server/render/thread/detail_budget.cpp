@@ -11,10 +11,10 @@ constexpr double kNsSoftware = 40, kNsHardware = 1;
 // The time of smaller drawings depends less on triangles than on the other costs of a frame.
 constexpr std::size_t kFewTriangles = 50'000;
 constexpr double kShareOfNew = 0.2;
-// For the samples of a frame after the first, in addition to its other time.
+// The time limit for the samples of a frame after the first one.
 constexpr double kSmoothBudgetMs = 4;
 constexpr double kNsPerPixel = 0.5;  // estimate before the first such frame, on a GPU
-// After a slow time, frames get more samples again after some hundred frames.
+// After a slow frame, this factor brings back more samples within some hundred frames.
 constexpr double kForgotten = 0.998;
 
 }  // namespace

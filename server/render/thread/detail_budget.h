@@ -7,7 +7,7 @@ namespace strata::render {
 
 // Chooses a model's level of detail while the camera moves, and the number of samples of a frame.
 // It takes the finest level, and the most samples, that can be drawn within a few milliseconds. The
-// times of earlier drawings on this GPU give the estimates.
+// estimates are based on the times of earlier drawings on this GPU.
 class DetailBudget {
  public:
   DetailBudget() = default;

@@ -8,10 +8,10 @@
 
 namespace strata::render {
 
-// Disables the draws of clusters that the depth drawn so far hides. It runs on the GPU. Indirect
-// draws read the list, so the CPU reads nothing back. A cluster with a visible pixel always keeps
-// its draw. Clusters are not culled by their cones of normals, because scans are open and their
-// back sides are visible.
+// Disables the draws of clusters that are hidden by the depth drawn so far. Runs on the GPU.
+// Indirect draws read the list, so the CPU reads nothing back. A cluster with a visible pixel
+// always keeps its draw. Clusters are not culled by their cones of normals, because scans are open
+// and their back sides are visible.
 class ClusterCuller {
  public:
   static Result<ClusterCuller> create(const std::filesystem::path& shader_dir);

@@ -7,7 +7,7 @@
 namespace strata::render {
 namespace {
 
-// The eye is above the floor: nothing shows the floor from below.
+// Returns whether the eye is above the floor. The shadow is not visible from below.
 bool is_above(const mesh::ContactShadow& shadow, const Camera& camera, const glm::dvec3& origin) {
   const glm::dvec3 up(shadow.up);
   if (is_orthographic(camera))

@@ -14,19 +14,19 @@
 
 namespace strata::render {
 
-// Around the part of the floor that the shadow covers.
+// Returns a box around the part of the floor that the shadow covers.
 FrameRequest::Box box_of(const mesh::ContactShadow& shadow);
 
-// Darkens the background of a frame by the model's shadow on the floor. Pixels that
-// show the surface do not change. Sets all state it needs, and resets scissor, depth test and
+// Darkens the background of a frame with the model's shadow on the floor. Pixels that show the
+// surface do not change. Sets all state it needs, and resets scissor, depth test and
 // blending.
 class ContactShadowPass {
  public:
   static Result<ContactShadowPass> create(const std::filesystem::path& shader_dir);
 
-  // `target`: the frame and the depth of its surface, of `width` × `height` pixels, for `camera`.
-  // `rect`: the part to draw, with its origin at the top left. Draws nothing if the eye is below
-  // the floor.
+  // `target` contains the frame and the depth of its surface, `width` × `height` pixels, for
+  // `camera`. `rect` is the part to draw, with its origin at the top left. Draws nothing if the eye
+  // is below the floor.
   Result<void> draw(const std::shared_ptr<const mesh::ContactShadow>& shadow, const Camera& camera,
                     const glm::dvec3& origin, const gl::Framebuffer& target, int width, int height,
                     const PixelRect& rect);
@@ -41,7 +41,7 @@ class ContactShadowPass {
   gl::Program program_;
   gl::VertexArray no_vertices_{"contact shadow"};
   StreamBuffer uniforms_{"contact shadow uniforms"};
-  std::vector<Entry> entries_;  // of 16 KiB each, while a view has the shadow
+  std::vector<Entry> entries_;  // 16 KiB each, kept while a view has the shadow
 };
 
 }  // namespace strata::render

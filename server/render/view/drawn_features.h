@@ -20,10 +20,10 @@ inline constexpr double kLineWidth_px = 3, kPointWidth_px = 10, kFeatureCasing_p
 inline constexpr double kFeatureMargin_px = kPointWidth_px / 2 + kFeatureCasing_px + 1;
 
 // The largest distance below the visible surface at which a mark's point is still visible. It is
-// perpendicular to that surface, and the larger of two limits: a number of pixels of the camera's
-// window, and a length on the model. A line is stored as points. Between them, the surface can rise
-// above the line by half a pixel of the view in which the line was drawn. A share of the line's
-// length, and for long lines a share of the model's size, bounds this height.
+// measured perpendicular to that surface. It is the larger of two limits: a number of pixels of the
+// camera's window, and a length on the model. A line is stored as points. Between them, the surface
+// can rise above the line by half a pixel of the view in which the line was drawn. A share of the
+// line's length, and for long lines a share of the model's size, bounds this height.
 struct FeatureReach {
   double pixels = 1;
   double model_size = 0;  // diagonal of its box, in world units

@@ -116,7 +116,7 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
 }
 
 // Plans batches in drawing order. If the chunks of a layer do not fit into one batch, the layer is
-// in several batches. Each of its texels belongs to one of them.
+// in several batches. Each texel of the layer is shaded by one batch.
 std::vector<ShadePass::Batch> ShadePass::plan(std::span<const ShadeInput::Layer> layers) {
   std::vector<Batch> batches(1);
   for (const ShadeInput::Layer& layer : layers) {

@@ -11,8 +11,8 @@ namespace strata::mesh {
 
 enum GltfMode : std::uint64_t { kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6 };
 
-// The decompressed content of one primitive. It has each vertex used by its triangles once, in the
-// order of first use.
+// The decompressed content of one primitive. Each vertex that the triangles use appears in it once,
+// in the order of first use.
 struct GltfPrimitive {
   GltfDocument::Values positions, uvs, colors;  // uvs and colors: one per position, or empty
   std::vector<std::uint32_t> indices;           // into these vertices
@@ -36,8 +36,8 @@ struct GltfRemarks {
 };
 
 // Returns nothing for a primitive without triangles, which is counted. Fails like `refuse_file` for
-// content with no clear meaning that glTF or KHR_mesh_quantization do not allow. Also fails for
-// counts that differ, indices out of range, and more vertices than max_triangles can use.
+// content that glTF and KHR_mesh_quantization do not allow and that has no clear meaning. Also
+// fails for counts that differ, indices out of range, and more vertices than max_triangles can use.
 Result<std::optional<GltfPrimitive>> read_gltf_primitive(GltfDocument& document,
                                                          const nlohmann::json& source,
                                                          const GltfMaterial& material,

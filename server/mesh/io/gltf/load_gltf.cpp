@@ -182,7 +182,7 @@ class GltfReader {
     if (!primitive) return tl::unexpected(primitive.error());
     if (!*primitive || (*primitive)->most_triangles() == 0) return {};
     const std::uint64_t triangles = (*primitive)->most_triangles(), count = instances.count();
-    // A few bytes can request any number of copies, so their size is checked before they are made.
+    // A few bytes can request any number of copies, so the size of the copies is checked first.
     // Some triangles of strips only connect other triangles.
     const std::uint64_t room =
         max_triangles_ - std::min<std::uint64_t>(loaded_.mesh.triangle_count(), max_triangles_);
