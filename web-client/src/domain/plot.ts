@@ -53,8 +53,8 @@ export interface Plot {
 
 const kCharacterPx = 6.4; // width of a character in a tick label
 const kTickSpacePx = { x: 48, y: 22 };
-const kTopPx = 24; // room for the label of the y axis
-const kBottomPx = 38; // room for the ticks and the label of the x axis
+const kTopPx = 24; // space for the label of the y axis
+const kBottomPx = 38; // space for the ticks and the label of the x axis
 const kRightPx = 14;
 // The range of heights divided by the distance. A flatter curve is noise and is not magnified.
 const kLeastSlope = 1e-5;

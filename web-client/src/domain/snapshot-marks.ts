@@ -37,7 +37,7 @@ export function marksOf(timeline: Timeline, snapshots: readonly Snapshot[]): Sna
     const isLeft = mark.place > kToLeft;
     const before = apart[index - 1];
     const after = apart[index + 1];
-    // A mark with its name on the left shares the room with the previous mark if the name of that
+    // A mark with its name on the left shares the space with the previous mark if the name of that
     // mark is on the right.
     const share = before && before.place <= kToLeft ? 2 : 1;
     const room = isLeft

@@ -1,5 +1,5 @@
 // The camera of a stop in the kiosk's window. A saved view has a different aspect ratio than most
-// kiosk screens, and room around the object. The kiosk shows only the part of the object inside the
+// kiosk screens, and empty space around the object. The kiosk shows only the part of the object inside the
 // saved window, in the middle of its own window.
 
 import type { Bounds, CameraMessage, OrbitCamera, Place } from "../math/camera";
@@ -7,7 +7,7 @@ import { kHalfFieldTangent } from "../math/camera";
 import { placeLike } from "../math/fit-to-window";
 import { add, length, scale, transform, type Vec3 } from "../math/vector";
 
-const kMargin = 1.02; // the bounding box already leaves some room around the object
+const kMargin = 1.02; // the bounding box already leaves some space around the object
 const kRounds = 4; // sufficient to find the middle
 
 /**

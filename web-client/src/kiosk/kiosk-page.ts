@@ -150,7 +150,7 @@ export class StrataKiosk extends LitElement {
     `;
   }
 
-  /** Shows a text next to the tapped point, above it if there is room. */
+  /** Shows a text next to the tapped point, above it if there is enough space. */
   private place({
     title,
     about,

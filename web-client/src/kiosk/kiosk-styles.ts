@@ -479,7 +479,7 @@ export const kioskStyles = css`
      passers-by. */
   .panel.resting {
     padding-top: 0;
-    /* room for the invitation */
+    /* space for the invitation */
     padding-bottom: calc(2.2 * var(--rim) + 1.25 * var(--target) + 2em);
     background: none;
     box-shadow: none;

@@ -167,7 +167,7 @@ export class KioskShow {
 
   /**
    * Sets the size in CSS pixels and the number of window pixels per CSS pixel. The size may change
-   * between stops, because their texts need different amounts of room. A running camera movement
+   * between stops, because their texts need different amounts of space. A running camera movement
    * continues.
    */
   setViewport(width: number, height: number, scale: number): void {

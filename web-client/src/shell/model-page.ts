@@ -361,7 +361,7 @@ export class StrataModelPage extends LitElement {
       }`;
   }
 
-  /** Makes room for the model. In a narrow window, the panel closes. */
+  /** Closes the panel in narrow windows, where it covers the model. */
   private makeRoom(): void {
     if (window.innerWidth <= kNarrow) this._panelShown = false;
   }

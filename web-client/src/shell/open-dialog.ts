@@ -27,7 +27,7 @@ export interface PageHost {
   seesToKiosks: boolean;
   /** Replaces the open dialog. Null closes it. */
   show(dialog: OpenDialog | null): void;
-  /** Makes room for the model. */
+  /** Closes the side panel if it covers the model. */
   aside(): void;
   /** Shows a tab of the side panel. Null shows or hides the panel. */
   panel(tab: PanelTab | null): void;

@@ -35,7 +35,7 @@ export interface Box extends Size {
 /**
  * Returns the top left corner of a box next to a bar, aligned with an element in that bar. The box
  * is right, left, below or above, at the first position that fits. If no position fits, the box is
- * below or above, on the side with more room, with a height of at most `mostHeight`.
+ * below or above, on the side with more space, with a height of at most `mostHeight`.
  */
 export function besideBar(
   thing: Box,
