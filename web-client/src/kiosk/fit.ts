@@ -1,6 +1,6 @@
 // The camera of a stop in the kiosk's window. A saved view has a different aspect ratio than most
-// kiosk screens, and empty space around the object. The kiosk shows only the part of the object inside the
-// saved window, in the middle of its own window.
+// kiosk screens, and empty space around the object. The kiosk shows only the part of the object
+// inside the saved window, in the middle of its own window.
 
 import type { Bounds, CameraMessage, OrbitCamera, Place } from "../math/camera";
 import { kHalfFieldTangent } from "../math/camera";
