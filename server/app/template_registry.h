@@ -35,7 +35,7 @@ std::string name_in(const std::string& name, const std::optional<protocol::Label
 Labels labels_with(const std::string& name, const std::optional<protocol::Labels>& labels);
 
 // Returns the tables of the template for the store, with labels in a language. Slugs are always
-// English, so scripts work in every language. Refuses the same errors as load().
+// English, so scripts work in every language. Returns the same errors as load().
 Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, ProjectId project_id,
                                                 const std::optional<std::string>& language);
 

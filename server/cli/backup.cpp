@@ -101,7 +101,7 @@ int restore(const BackupOptions& options) {
   }();
   if (!facts) return report(facts.error());
   if (options.check_only) {
-    std::cout << "whole: " << summary(*facts) << std::endl;
+    std::cout << "complete: " << summary(*facts) << std::endl;
     return 0;
   }
   const auto known = store::newest_migration(install_dirs().migrations);
@@ -110,8 +110,8 @@ int restore(const BackupOptions& options) {
     return report({ErrorCode::conflict,
                    "Newer backup",
                    "The backup has schema " + std::to_string(facts->schema_version) +
-                       ", this program knows " + std::to_string(*known) +
-                       ": restore it with the version that wrote it, or a later one.",
+                       ", but this program only knows schemas up to " + std::to_string(*known) +
+                       ". Restore it with the version that wrote it, or with a later one.",
                    {}});
   const auto done = [&]() -> Result<void> {
     const ProgressLine line(progress);
@@ -120,7 +120,8 @@ int restore(const BackupOptions& options) {
   }();
   if (!done) return report(done.error());
   std::cout << "restored " << summary(*facts)
-            << "\nevery table is what was backed up; the server may be started on it" << std::endl;
+            << "\nevery table equals the backup; you can start the server with this data"
+            << std::endl;
   return 0;
 }
 
@@ -146,7 +147,7 @@ Command add_restore(CLI::App& app) {
   command->add_option("folder", options->folder, "Folder of a backup made by `strata backup`")
       ->required();
   command->add_flag("--check", options->check_only,
-                    "Check that the backup is complete; restore nothing");
+                    "Only check that the backup is complete, without restoring it");
   return [options] { return restore(*options); };
 }
 

@@ -34,12 +34,12 @@ Result<app::DemoStory> make(store::Store& store, const DemoOptions& options) {
 
 Command add_demo(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "demo", "Create the demo project: a generated pot with the work of two made-up people");
+      "demo", "Create the demo project: a generated pot with the work of two fictional people");
   auto options = std::make_shared<DemoOptions>();
   add_data_options(*command, options->data);
-  command->add_flag("--if-empty", options->if_empty, "Only if the site has no model yet");
+  command->add_flag("--if-empty", options->if_empty, "Do nothing if the site has a model");
   auto* pot_only = command->add_flag("--pot-only", options->pot_only,
-                                     "Only the pot with two painted layers, without the story");
+                                     "Create only the pot with two painted layers");
   command
       ->add_flag("--reset", options->reset,
                  "Erase the pot of the demo with everything on it, and create it again")

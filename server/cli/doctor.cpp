@@ -76,7 +76,7 @@ void check_schema(Report& report, const store::DatabaseState& state) {
     report.bad("Schema", versions,
                "The database is newer: start the version of Strata that wrote it, or a later one.");
   else if (state.schema_version < state.known_version)
-    report.good("Schema", versions + ": brought up to date by the next start");
+    report.good("Schema", versions + ": the next start updates it");
   else
     report.good("Schema", "version " + std::to_string(state.schema_version));
 }
@@ -99,7 +99,7 @@ void check_database(Report& report, const DataOptions& options) {
   if (state.running) return check_connection(report, state.dsn, where + ", a server is running");
   if (state.trouble) return report.bad("PostgreSQL", state.trouble->title, state.trouble->detail);
   if (state.version == 0)
-    return report.good("PostgreSQL", "installed; " + where + " is made at the first start");
+    return report.good("PostgreSQL", "installed; the first start creates the " + where);
   report.good("PostgreSQL", std::to_string(state.version) + ", " + where + ", not running");
 }
 

@@ -29,7 +29,7 @@ Result<void> create(store::Store& store, const KioskOptions& options) {
   std::optional<std::chrono::seconds> lifetime;
   if (options.days > 0) lifetime = std::chrono::hours(24 * options.days);
   const auto made = STRATA_TRY(store.kiosks().create(tour.id, options.name, "owner", lifetime));
-  std::cout << "For " << made.kiosk.name << ", told this once:\n"
+  std::cout << "Link for " << made.kiosk.name << ", printed only once:\n"
             << options.url << "/kiosk/" << made.secret << std::endl;
   return {};
 }
@@ -63,13 +63,13 @@ Command add_kiosk(CLI::App& app) {
   auto options = std::make_shared<KioskOptions>();
   auto* made = add_subcommand(*parent, options, "create", "Create a link; it is printed only once");
   made->add_option("tour", options->tour, "MODEL/TOUR, by slug or id")->required();
-  made->add_option("--name", options->name, "Name of the place of the screen")->required();
+  made->add_option("--name", options->name, "Name of the screen, for example its location")
+      ->required();
   made->add_option("--days", options->days, "Days until it expires (default: never)")
       ->check(CLI::Range(1, 3650));
   made->add_option("--url", options->url, "Address of the server, for the link")
       ->capture_default_str();
-  add_subcommand(*parent, options, "list",
-                 "List all links, with the last contact of their screens");
+  add_subcommand(*parent, options, "list", "List all links, and when each screen was last seen");
   const auto add_of_one = [&](const char* name, const char* what) {
     add_subcommand(*parent, options, name, what)
         ->add_option("id", options->kiosk, "Id from `list`")

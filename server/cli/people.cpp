@@ -61,7 +61,7 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
   const auto link =
       store.tokens().create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
-  std::cout << "For " << person.name << ", to choose a password within 7 days:\n"
+  std::cout << "Link for " << person.name << " to choose a password, valid for 7 days:\n"
             << options.url << "/join#" << link->secret << std::endl;
   return {};
 }
@@ -240,7 +240,7 @@ Command add_user(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator", "none"}));
   role->add_option("--project", options->project,
-                   "Role in this project, if it is higher than the role in all projects");
+                   "Change only the role in this project; the higher of both roles applies there");
   add_password(*add_named("password", "Print a link to choose a new password, or set a password",
                           changing(renew)),
                options);
@@ -248,8 +248,8 @@ Command add_user(CLI::App& app) {
   add_named("enable", "Enable a disabled account", disabling(false));
   add_named(
       "remove",
-      "Delete an account. Its edits stay, under a name without meaning. If a server runs, disable the account a minute "
-      "before, or delete it on the page",
+      "Delete an account. Its edits stay, under an anonymous name. If a server is running, disable the account a minute "
+      "before, or delete the account on the page",
       changing(remove_person));
   return choosing<PeopleOptions>(parent, options, std::move(works));
 }

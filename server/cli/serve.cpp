@@ -98,8 +98,8 @@ Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
   if (!is_loopback(address.host))
     return fail(
         ErrorCode::forbidden, "Listen address not allowed",
-        "Passwords and responses would not be encrypted, so SQL is available only on loopback "
-        "(127.0.0.1). From other computers, use an SSH tunnel: ssh -L 5433:127.0.0.1:5433 HOST.",
+        "SQL connections are not encrypted, so --sql-listen accepts only loopback addresses, such as "
+        "127.0.0.1:5433. From other computers, use an SSH tunnel: ssh -L 5433:127.0.0.1:5433 HOST.",
         "--sql-listen");
   return store::Cluster::SqlListen{address.host, address.port};
 }
@@ -239,7 +239,7 @@ int run(ServeOptions options) {
 
   if ((*database)->cluster) (*database)->cluster->watch();
   wait_for_end(ending);
-  log::info("stopping: no new edits, saving what is under way");
+  log::info("stopping: the server refuses new edits and saves the edits in progress");
   (*server)->stop();
   rooms.drain();
   return 0;
@@ -293,27 +293,27 @@ Command add_serve(CLI::App& app) {
   command
       ->add_option(
           "--bin-days", options->trash_days,
-          "Days for which deleted layers and models stay in the trash; 0 erases them at once")
+          "Days for which deleted layers and models stay in the trash; 0: erase immediately")
       ->envname("STRATA_BIN_DAYS")
       ->check(CLI::Range(0, kMaxTrashDays))
       ->capture_default_str();
   add_timeout(*command, "head-timeout", options->timeouts.head,
-              "Seconds for the first request head, from the connection on");
+              "Seconds from the connection to the end of the first request head");
   add_timeout(*command, "idle-timeout", options->timeouts.idle,
-              "Seconds for the next request head and for the reply to a ping");
+              "Seconds to wait for the next request head, and for the reply to a ping");
   add_timeout(*command, "stall-timeout", options->timeouts.stall,
-              "Seconds without progress in a body or an answer");
+              "Seconds without progress in a request body or a response");
   add_timeout(*command, "recheck-every", options->timeouts.recheck,
               "Seconds between checks whether a connected user is still signed in");
   command
       ->add_option("--samples-at-rest", options->samples_at_rest,
-                   "Samples for each pixel of a picture that nothing changes; 1 refines no picture")
+                   "Samples for each pixel of a frame while nothing changes; 1: no refinement")
       ->envname("STRATA_SAMPLES_AT_REST")
       ->check(CLI::Range(1, render::kMaxSamples))
       ->capture_default_str();
   command
       ->add_option("--samples-in-motion", options->smooth_samples,
-                   "Samples for each pixel of a frame while the camera moves; 0 takes 5 on a fast "
+                   "Samples for each pixel of a frame while the camera moves; 0: 5 on a fast "
                    "GPU, otherwise 1")
       ->envname("STRATA_SAMPLES_IN_MOTION")
       ->check(CLI::Range(0, render::kMaxSmoothSamples))

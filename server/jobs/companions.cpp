@@ -33,7 +33,7 @@ std::optional<fs::path> below(const fs::path& folder, std::string_view reference
   return std::nullopt;
 }
 
-// Returns the longest end of the line that is a file, because names may contain spaces and may
+// Returns the longest end of the line that names a file, because names may contain spaces and may
 // follow options.
 std::optional<fs::path> file_at_end(const fs::path& folder, std::string_view words) {
   for (words = trimmed(words, kAroundNames); !words.empty(); words = trimmed(words, kAroundNames)) {

@@ -12,10 +12,10 @@ namespace strata::jobs {
 
 namespace {
 
-// The message of a part of a stage, because stages of `progress` cannot be nested.
+// The message for a part of a stage, because stages of `progress` cannot be nested.
 constexpr const char* kShading = "Shading the model";
 
-// Ignores all Errors except a cancellation: a model without light from all around is still valid.
+// Ignores all Errors except a cancellation: a model without baked light is still valid.
 Result<void> unless_cancelled(const Result<void>& baked) {
   if (baked || baked.error().code != ErrorCode::cancelled) return {};
   return tl::unexpected(baked.error());

@@ -32,8 +32,8 @@ Picture empty_picture(int resolution) {
   return {resolution, resolution, std::vector<std::uint8_t>(4 * side * side)};
 }
 
-// Returns an image of the covered part of the surface. Off the surface no cover is defined, so it
-// continues around the islands like the colors.
+// Returns an image of the covered part of the surface. Off the surface the cover is undefined, so
+// the cover of the islands is continued around them, like the colors.
 Picture cover_of(const TileMap& colors, const mesh::SurfaceMap& map) {
   Picture cover = empty_picture(map.resolution);
   const int tiles = map.resolution / kTileSize;

@@ -46,7 +46,7 @@ struct ShapeRecipe {
 // missing, does not belong to the kind, or is out of range for the model. The Error names the
 // member (`compute.radius_mm`).
 Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model);
-// Returns the format of the body of POST …/layers and of the journal.
+// Returns the recipe in the format of the body of POST …/layers and of the journal.
 nlohmann::json to_json(const ShapeRecipe& recipe);
 
 // Return the unit of the values ("mm", "1/m²", "°", ""), and a description of the values and of

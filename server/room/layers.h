@@ -41,7 +41,7 @@ class Layers {
   // that the layer does not widen to, and for a computed layer.
   virtual Result<Layer> widen(const Layer& layer, ValueType type,
                               const store::IdempotentResponse<Layer>& answer = {}) = 0;
-  // Permanent.
+  // Erases the layer permanently.
   virtual Result<void> erase(LayerId id, const store::IdempotentResponse<>& answer = {}) = 0;
   // Move a layer into the Trash and restore it. Listeners are notified of a restored layer as if it
   // were new.

@@ -29,7 +29,7 @@ struct PictureRequest {
   // With `at`: by layer, the texels that waited for review at that time. They are drawn hatched.
   // Without `at`, the texels that wait at present are drawn hatched.
   std::map<LayerId, TileMap> provisional{};
-  bool on_floor = true;  // with the model's contact shadow, in the light that has one
+  bool on_floor = true;  // draw the model's contact shadow, if the light has one
   int samples = 1;       // per pixel: render::FrameRequest::samples
   // Per band of 2 million pixels: render::FrameRequest::samples_time.
   std::chrono::milliseconds samples_time{0};

@@ -48,9 +48,9 @@ struct StoreInfo {
 
 // All durable data. All calls block the calling thread, are thread-safe and take a connection from
 // the pool. If the database is unreachable, they try to reconnect, and then return an `unavailable`
-// error ("Database unavailable"). A failed constraint is a `conflict` error, an unknown id
-// `not_found`, and an outdated `version` `stale`. A change stores the response for the caller in
-// the same transaction (IdempotentResponse).
+// error ("Database unavailable"). A failed constraint gives a `conflict` error, an unknown id gives
+// `not_found`, and an outdated `version` gives `stale`. A change stores the response for the caller
+// in the same transaction (IdempotentResponse).
 class Store {
  public:
   // Connects and applies the missing migrations in `migrations_dir`. Returns an error if the schema

@@ -15,7 +15,7 @@ namespace strata::stream {
 // 1. The newest camera replaces older ones. `dropped` counts the cameras that were replaced before
 //    they were drawn.
 // 2. At most one draw is in progress, and at most `window` frames are drawn but not acknowledged.
-//    Without credit, nothing is drawn. Changes are kept and drawn when credit returns.
+//    Until an acknowledgment arrives, changes are only kept, and are drawn later.
 // 3. All changes are eventually drawn, because a failed draw returns its changes.
 // 4. Without a change, nothing is drawn. A camera that equals the current one only changes the
 //    camera number of later frames.

@@ -33,7 +33,7 @@ class LinkPace {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kMaxWait{100}, kShortWait{50}, kLongDelay{50};
-  // The delay is the shortest of the last one to two of these periods.
+  // The delay is the shortest time in the current and the previous of these periods.
   static constexpr std::chrono::seconds kDelayKept{15};
   static constexpr std::chrono::milliseconds kRoomy{400};
   // For full color: the longest time of a frame at rest, and of the bytes of a moving frame.

@@ -26,14 +26,14 @@ struct StreamContext {
 // One view of one client: converts cameras and changes to encoded frames. Follows the flow rules of
 // docs/developer/architecture/streaming.md:
 // - The newest camera replaces older ones. Frames contain the camera's number.
-// - At most `window` frames are sent but not acknowledged. Without credit nothing is drawn, and
-//   changes are drawn when credit returns.
+// - At most `window` frames are sent but not acknowledged. At this limit, nothing is drawn until an
+//   acknowledgment arrives. Changes in the meantime are drawn then.
 // - Without a change nothing is sent.
 // - After frames of a moving camera, a full-quality frame follows within 250 ms of the last input.
 // - Quality never decreases during painting.
 // - Viewers with the same frame share its drawing and its encoding.
 // - Over a slow link, frames of a moving camera are reduced (stream/link_pace).
-// - Onlookers do not delay a user who moved the camera or edited recently
+// - Users who only watch do not delay a user who moved the camera or edited recently
 //   (render/thread/frame_queue).
 // Thread-safe. Calls `send` on encoder threads, in frame order, and `refused` on the GPU thread,
 // but never both at the same time.
@@ -55,8 +55,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   ~Viewer();
 
   void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);
-  // Reports an edit of this view's user. For some time, this view is drawn before those of
-  // onlookers, as after a camera.
+  // Reports an edit of this view's user. For some time, this view is drawn before the views of
+  // users who only watch, as after a movement of the camera.
   void acts();
   // With `past`, frames show the model after this edit. Without a value, they show the newest
   // state.

@@ -33,7 +33,7 @@ using Place = StoryPlaces::Place;
 
 constexpr const char* kLayer = "condition";
 
-// A stroke in an area that is not painted in the story and where the wall is intact, so each stroke
+// A stroke in an area that the story leaves unpainted and where the wall is intact, so each stroke
 // is visible.
 struct RecordedStroke {
   bool by_curator = false;
@@ -102,7 +102,7 @@ struct DemoAnnotators::Scene {
     return {random_uuid(), who.author, layer.id, {}, {{"by", "the demo"}}, {}};
   }
 
-  // Undoes all strokes of the two demo users. Strokes of other users on top of them remain.
+  // Undoes all strokes of the two demo users. Other users' strokes over them stay.
   void undo_all() {
     for (Annotator* who : {&lena, &marco})
       for (; who->strokes > 0; --who->strokes) {

@@ -38,7 +38,7 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
   query::LayerCover cover;
   cover.tells_values = lists_values(palette);
   if (!palette.column.empty()) {
-    // For colors of records, some colors may be transparent.
+    // Some of the colors of the records may be transparent.
     cover.of = [opacity](double) {
       return opacity > 0 ? query::Cover::some : query::Cover::nothing;
     };

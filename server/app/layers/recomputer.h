@@ -14,8 +14,8 @@
 
 namespace strata::app {
 
-// Computes automatic layers again when their inputs have changed. An input is an edit, a record or
-// another computed layer. Computes one layer after the other. A computation blocks edits of the
+// Computes automatic layers again when their inputs have changed. Inputs are edits, records and
+// other computed layers. Computes one layer after the other. A computation blocks edits of the
 // model, so `attempt` first waits for a second without edits. It waits at most ten times. Polls the
 // database once a second, so a restart loses no change. Retries failures at increasing intervals.
 // Also counts the surface of layers that were never counted (store::Layers::to_sum), such as layers

@@ -38,13 +38,16 @@ Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
   for (const std::string& name : names)
     if (name.size() > kMaxNameLength)
       return fail(ErrorCode::invalid, "Name too long",
-                  "\"" + name.substr(0, 60) + "…\" is too long for a legend entry.", "attribute");
+                  "\"" + name.substr(0, 60) + "…\" is longer than " +
+                      std::to_string(kMaxNameLength) + " bytes. Shorten the name.",
+                  "attribute");
   Layer changed = layer;
   changed.palette = keys.extended();
   changed.palette_of_terms = false;
   if (changed.palette.points.size() > kMaxPoints)
     return fail(ErrorCode::invalid, "Too many names",
-                "A legend can have at most " + std::to_string(kMaxPoints) + " entries.",
+                "A legend can have at most " + std::to_string(kMaxPoints) +
+                    " entries. Use a map with fewer names.",
                 "attribute");
   STRATA_TRY(room.layers().update(std::move(changed)));
   return {};

@@ -361,8 +361,8 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
     const auto state = route.state ? route.state(request) : std::nullopt;
     return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
   };
-  // Comparing the states first avoids unnecessary work. A tag of the state depends on `Accept`. `*`
-  // matches any existing entity, so it can be compared only afterwards.
+  // Compares the states first to avoid unnecessary work. A tag of the state depends on `Accept`.
+  // `*` matches any existing entity, so it can be compared only afterwards.
   const auto before = state_now();
   if (before && known != "*" && names_tag(known, *before))
     return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));

@@ -16,7 +16,7 @@ void add(std::string& text, std::string_view name, std::string_view type, std::s
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   std::string text =
-      "# HELP strata_http_requests_total HTTP answers by class of status.\n# TYPE strata_http_requests_total counter\n";
+      "# HELP strata_http_requests_total HTTP responses by class of status code.\n# TYPE strata_http_requests_total counter\n";
   for (std::size_t i = 1; i < metrics.requests.size(); ++i)
     text += "strata_http_requests_total{status=\"" + std::to_string(i) + "xx\"} " +
             std::to_string(metrics.requests[i].load()) + "\n";
@@ -36,14 +36,15 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   gauge("strata_questions_under_way", "Questions that are being answered.",
         gauges.questions_under_way);
   gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
-  gauge("strata_memory_bytes", "Main memory that open models hold.", gauges.memory_bytes);
+  gauge("strata_memory_bytes", "Main memory that open models use.", gauges.memory_bytes);
   counter("strata_edits_applied_total", "Edits that became visible.", metrics.edits.applied);
   counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits.saved);
-  counter("strata_edits_unsaved_total", "Edits that were visible and had to be taken back.",
+  counter("strata_edits_unsaved_total", "Visible edits that could not be saved and were undone.",
           metrics.edits.unsaved);
   counter("strata_edits_refused_total", "Edits that were refused.", metrics.edits.refused);
-  counter("strata_frames_sent_total", "Encoded pictures sent to viewers.", metrics.frames_sent);
-  counter("strata_frame_bytes_sent_total", "Bytes of the pictures.", metrics.frame_bytes_sent);
+  counter("strata_frames_sent_total", "Encoded frames sent to viewers.", metrics.frames_sent);
+  counter("strata_frame_bytes_sent_total", "Bytes of the encoded frames.",
+          metrics.frame_bytes_sent);
   counter("strata_messages_received_total", "WebSocket messages received.",
           metrics.messages_received);
   counter("strata_messages_refused_total", "WebSocket messages refused.", metrics.messages_refused);

@@ -33,8 +33,8 @@ std::string problems_html() {
   std::string page = std::string(kBegin) +
                      "<h1>Problems of the Strata API</h1><p>Every error is an "
                      "<code>application/problem+json</code> (RFC 9457). Its <code>type</code> is "
-                     "one of these; programs decide by it. The words of <code>title</code> and "
-                     "<code>detail</code> may change.</p><table><thead><tr>"
+                     "one of these values. Programs must use it, because the texts of "
+                     "<code>title</code> and <code>detail</code> may change.</p><table><thead><tr>"
                      "<th scope=\"col\">Type</th><th scope=\"col\">Status</th>"
                      "<th scope=\"col\">Meaning</th><th scope=\"col\">What to do</th>"
                      "</tr></thead><tbody>";

@@ -155,7 +155,7 @@ Result<void> check_source_download(const Request& request, const Model& model) {
       ErrorCode::forbidden, "Download not allowed",
       "To download the files of this scan, you need the role " +
           std::string(name(model.source_download)) +
-          " or a higher role in its project. A curator can change this (`source_download`).");
+          " or a higher role in its project. Curators can allow other roles (`source_download`).");
 }
 
 Response job_response(const RouteContext& context, JobId job) {

@@ -165,7 +165,7 @@ Result<std::string> Authenticator::session_for_token(const std::string& token,
   if (by_link) return *by_link;
   auto principal = STRATA_TRY(identify_token(token));
   if (!principal) return unknown_secret();
-  // Sessions and tokens cannot create a session because it would outlive them.
+  // A session or token cannot create a session, because the new session could outlive it.
   if (principal->secret != 0 || principal->is_script || principal->kiosk)
     return fail(ErrorCode::forbidden, "Cannot sign in with this token",
                 "You cannot sign in with a token for scripts. Scripts send it as "
@@ -183,8 +183,9 @@ Result<std::string> Authenticator::session_for_link(const std::string& link,
   auto session = STRATA_TRY(store_.tokens().redeem_owner_link(link, kSessionLifetime, agent));
   if (!session)
     return fail(ErrorCode::unauthenticated, "Link is not valid",
-                "This sign-in link does not exist or was revoked. The server prints a valid link "
-                "when it starts.",
+                "This sign-in link does not exist, has expired or was revoked. If the owner has a "
+                "password, sign in with it. Otherwise, restart the server, which then prints a new "
+                "link.",
                 "link");
   return *session;
 }

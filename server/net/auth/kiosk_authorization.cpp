@@ -77,7 +77,7 @@ Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk,
   return tables.contains(table->id);
 }
 
-// Checks whether the kiosk can see the addressed entity. Each check covers one kind of entity.
+// A path parameter, and the check whether the kiosk can see the entity that it names.
 struct Place {
   const char* param;
   Result<bool> (*is_own)(const RouteContext& context, const KioskPass& kiosk,

@@ -10,9 +10,9 @@ struct ByteRange {
   std::uint64_t begin = 0, end = 0;  // excluding `end`
 };
 
-// The range that a Range header requests from a content of `bytes` bytes (RFC 9110, 14.2).
-// `requested_range` ignores other units, several ranges and malformed ranges, as the RFC allows. It
-// then returns the whole content. It returns nothing if no requested byte exists (416).
+// The range that a Range header requests from a content of `bytes` bytes (RFC 9110, 14.2). For
+// other units, several ranges and malformed ranges, `requested_range` returns the whole content, as
+// the RFC allows. It returns nothing if no requested byte exists (416).
 struct RequestedRange {
   ByteRange range;
   bool is_part = false;

@@ -86,7 +86,7 @@ struct BrotliStream {
 
 namespace {
 
-constexpr std::size_t kMinBytes = 1024;  // a smaller text fits into one packet anyway
+constexpr std::size_t kMinBytes = 1024;  // a shorter text fits into one packet anyway
 
 bool is_text(std::string_view content_type) {
   const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));

@@ -209,7 +209,7 @@ Result<std::string> requested_language(const Request& request) {
   std::string language = to_lower(request.query_or("lang", {}));
   if (language.size() > kMaxLength)
     return fail(ErrorCode::invalid, "Invalid language",
-                "`lang` must be a language such as `es` or `de-AT`, with at most 35 characters.",
+                "`lang` must be a language tag of at most 35 characters, such as `es` or `de-AT`.",
                 "lang");
   return language;
 }

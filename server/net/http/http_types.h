@@ -69,8 +69,8 @@ struct Request {
   bool by_tls = false;  // the connection uses TLS
   // The original If-None-Match. `headers` contains it without codings (net/http/compression.h).
   std::string known_tags{};
-  // The query contains `as=kiosk`. The kiosk's cookie is then the only valid one. It is ignored
-  // otherwise.
+  // The query contains `as=kiosk`. The kiosk's cookie is then the only valid one. Without
+  // `as=kiosk`, that cookie is ignored.
   bool as_kiosk = false;
 
   std::string_view header(std::string_view lower_case_name) const;  // empty if absent

@@ -87,7 +87,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   ProjectId project_id() const { return room_->model().project_id; }
   const std::string& user() const { return principal_.user; }
   Role role() const { return principal_.role; }  // the user's role in the project
-  // Sends a message about the site or the project, if the session has been welcomed. Any thread.
+  // Sends a message about the site or the project, if the client has sent `hello`. Any thread.
   void tell(const protocol::ServerMessage& message);
 
   // --- room::Listener

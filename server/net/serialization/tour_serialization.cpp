@@ -148,7 +148,7 @@ Result<void> check_class_names(const nlohmann::json& all, const nlohmann::json& 
   return {};
 }
 
-// Reads each entity that the tours name once.
+// Reads each entity only once, even if the tours name it several times.
 class Seen {
  public:
   static Result<Seen> of(const RouteContext& context, ModelId model_id, Role role) {

@@ -18,9 +18,9 @@
 
 namespace strata::net {
 
-// A completion handler with one type for every read and write. With different types, each HTTP and
-// WebSocket operation would compile TLS again. That took longer than compiling all other units of
-// the module.
+// A completion handler with one type for every read and write. With different types, the compiler
+// would compile the TLS code again for each HTTP and WebSocket operation. That took longer than
+// compiling all other units of the module.
 class IoDone {
  public:
   template <class Handler>

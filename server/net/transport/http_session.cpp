@@ -203,7 +203,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (error == http::error::header_limit) {
       refusal = problem_response({ErrorCode::head_too_large,
                                   "Header too large",
-                                  "The header of a request can have at most 8 KiB.",
+                                  "The header of a request can have at most 8 KiB. Shorten the "
+                                  "address or the headers.",
                                   {}});
     } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
                error != http::error::end_of_stream && error != http::error::partial_message) {
@@ -309,7 +310,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   static Error too_large(std::uint64_t max_body) {
     return {ErrorCode::too_large, "Body too large",
-            "This address accepts at most " + std::to_string(max_body) + " bytes.", "body"};
+            "This address accepts a body of at most " + std::to_string(max_body) +
+                " bytes. Send a smaller file, or less data in each request.",
+            "body"};
   }
 
   static void remove_body_file(const Request& request) {

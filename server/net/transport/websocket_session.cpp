@@ -31,8 +31,8 @@ constexpr seconds kClosing{5};
 constexpr std::size_t kMaxMessage = 4u << 20;
 constexpr std::size_t kMaxQueuedTexts = 4096;
 constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-// The limits that follow from the client's credit: 3 frames of 16 rectangles for each of 4 views,
-// or whole frames of the largest size.
+// The limits for frames that the client has not acknowledged: 3 frames of 16 rectangles for each of
+// 4 views, or whole frames of the largest size.
 constexpr std::size_t kMaxQueuedFrames = 256;
 constexpr std::size_t kMaxQueuedFrameBytes = 64u << 20;
 

@@ -13,7 +13,7 @@ namespace {
 
 std::uint64_t tile_bytes(const TileData& tile) { return sizeof(TileData) + tile.values.size(); }
 
-// Returns the bytes of the tiles that only `snapshot` holds, and not `newest`.
+// Returns the size in bytes of the tiles that are in `snapshot` but not in `newest`.
 std::uint64_t own_bytes(const TileMirror::Snapshot& snapshot,
                         const std::optional<TileMirror::Snapshot>& newest) {
   std::uint64_t bytes = 0;

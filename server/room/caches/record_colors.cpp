@@ -84,7 +84,7 @@ Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store,
 
 RecordColors::Found RecordColors::find(const Request& request) {
   std::lock_guard lock(mutex_);
-  // Drops the entries whose palette or highlight only this cache still holds, because no view
+  // Drops the entries whose palette or highlight is only referenced by this cache, because no view
   // requests them.
   std::erase_if(entries_, [](const auto& entry) {
     const Request& cached = entry->request;

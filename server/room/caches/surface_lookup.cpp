@@ -5,7 +5,7 @@
 namespace strata::room {
 
 std::shared_ptr<const mesh::SearchTree> SurfaceLookup::tree() {
-  const Question::Aside aside;  // questions of other users share the result
+  const Question::Aside aside;  // questions of other users use the result, too
   std::call_once(tree_once_, [&] { tree_ = std::make_shared<const mesh::SearchTree>(geometry_); });
   return tree_;
 }

@@ -45,7 +45,7 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   // while nothing is being painted, because painting needs the map on the GPU.
   bool drop_oldest();
   // Drops maps of at least `at_least_bytes` that were unused since `since`. Returns false if there
-  // is no such map. The same restriction applies.
+  // is no such map. Like `drop_oldest`, call it only while nothing is being painted.
   bool drop_unused(Clock::time_point since, std::uint64_t at_least_bytes);
   void stop() { progress_.cancel(); }
 

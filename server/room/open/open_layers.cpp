@@ -48,7 +48,7 @@ Result<Layer> OpenRoom::LayersPart::create(Layer layer,
   layer.model_id = room_.model_id_;
   STRATA_TRY(check_layer(layer, room_.model()));
   auto created = room_.exclusively<Layer>([this, layer, answer, columns]() -> Result<Layer> {
-    // The GPU comes first. If it refuses the layer, the database stays unchanged.
+    // Adds the layer on the GPU first. If that fails, the database stays unchanged.
     LayerState state = new_state(layer);
     auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
     if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
@@ -175,7 +175,7 @@ Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
                 "type");
   return room_.exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
     const auto held = STRATA_TRY(room_.state(to_string(layer.id)));
-    // The GPU comes first, as for a new layer. No edit is pending, so the mirror equals the
+    // Changes the GPU first, as for a new layer. No edit is pending, so the mirror equals the
     // journal.
     TileMirror::Snapshot content = held.mirror->snapshot();
     for (auto& [address, tile] : content.tiles)
@@ -221,8 +221,8 @@ Result<void> OpenRoom::LayersPart::put_in_trash(LayerId id,
 
 Result<void> OpenRoom::LayersPart::unload(LayerId id,
                                           const std::function<Result<void>()>& in_store) {
-  // Runs in the order of edits, because no edit of the layer may reach a journal that has deleted
-  // the layer.
+  // Runs in the order of edits, because no edit of the layer may be written to the journal after
+  // the layer was deleted.
   return room_.exclusively<void>([this, id, in_store]() -> Result<void> {
     STRATA_TRY(in_store());
     run_on(room_.strand_, [&] {

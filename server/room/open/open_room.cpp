@@ -64,7 +64,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
     const LayerId id = state.layer.id;
     room->layers_.emplace(id, std::move(state));
   }
-  auto mirrors = services.memory.reserve(room->mirror_bytes(), "what its layers hold");
+  auto mirrors = services.memory.reserve(room->mirror_bytes(), "the content of the model's layers");
   if (!mirrors) return tl::unexpected(mirrors.error());
   room->mirrors_share_ = std::move(*mirrors);
   auto gpu = fill_gpu(services.renderer, {room->geometry_, room->coarser_}, room->layer_states());
@@ -75,7 +75,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   const auto restyle = [weak = std::weak_ptr<OpenRoom>(room)] {
     auto open = weak.lock();
     if (!open) return;
-    // This is the GPU thread, and styles_changed must run on the strand.
+    // This code runs on the GPU thread, but styles_changed must run on the strand.
     const Strand strand = open->strand_;
     boost::asio::post(strand,
                       [open = std::move(open)] { open->participants_part_->styles_changed(); });

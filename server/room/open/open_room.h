@@ -91,7 +91,7 @@ class OpenRoom final : public Room,
   RecordFeatures& record_features() const { return *record_features_; }
   PastLayers& past_layers() const { return *past_layers_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
-  // of the model in `light`; null: none
+  // the contact shadow of the model in `light`; null: no shadow
   std::shared_ptr<const mesh::ContactShadow> contact_shadow(const Light& light) const;
   std::optional<LayerState> layer_state(LayerId id) const;
 

@@ -121,7 +121,7 @@ void EditPipeline::edit(EditRequest request, Applied applied, Saved saved) {
                       "The database does not accept edits at the moment. You can still view the "
                       "model. Try again shortly."));
   if (parts_.memory.exceeded())
-    return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
+    return saved(tl::unexpected(parts_.memory.used_up(0, "the data of an edit")));
   running_[request.id].user = request.author.user;
   waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
   step();
@@ -136,8 +136,8 @@ void EditPipeline::when_idle(Work work) {
 // --- look-up in the journal
 
 // Sends one question at a time to the journal, for all edits that have arrived. If `verify_` is
-// set, also asks whether the journal ends at the sequence that the room expects. If the last
-// question failed, asks this only when an edit waits for it.
+// set, the room also compares the end of the journal with the sequence that it expects. If the last
+// question failed, a comparison starts only when an edit waits for it.
 void EditPipeline::ask_journal() {
   if (asking_) return;
   const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
@@ -550,7 +550,7 @@ void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
   answer(pending.event.id, pending.saved, pending.event.answer);
 }
 
-// Does not roll back while the room is paused, because its reads and uploads must not see a change.
+// Does not roll back while the room is paused, because the room then reads and uploads its layers.
 void EditPipeline::roll_back_when_answered() {
   if (!failure_ || in_flight_ > 0 || busy_ || (paused_ && !closed_)) return;
   for (const Pending& pending : pending_)

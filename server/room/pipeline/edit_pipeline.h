@@ -55,9 +55,9 @@ class PipelineHost {
 
 // Orders the edits of one room. First, the pipeline looks up an edit in the journal, which may
 // contain it from an earlier connection. Then it sends strokes to the GPU in the order of their
-// sequences, several at a time. Some edits are computed from the tile mirror (fill, polygon,
-// import, undo, restore). They wait until the earlier strokes are read back, and are applied when
-// the GPU has them. The pipeline compares the read-back with the mirror once. The difference
+// sequences, several at a time. Other edits are computed from the tile mirror (fill, polygon,
+// import, undo, restore). They wait until the earlier strokes are read back, and are applied after
+// their upload to the GPU. The pipeline compares the read-back with the mirror once. The difference
 // determines the revision in the journal, the counts, and the change on screen.
 //
 // The mirrors are always correct: they contain the edits in the journal and those on the way to it.

@@ -15,7 +15,7 @@ namespace strata::room {
 
 // The texels of a layer that wait for review, as the content of a layer of u8. The value is 1 if
 // the texel waits, and there is no value elsewhere. A texel waits if the newest edit in force that
-// wrote it waits, even if that edit has erased it.
+// wrote it waits for review, even if that edit erased the texel.
 
 // Reads these texels from the journal. Blocks.
 Result<TileMap> read_provisional(store::Store& store, const Layer& layer);

@@ -32,7 +32,7 @@ Error damaged(const fs::path& folder, const std::string& why) {
   return {ErrorCode::invalid, "Backup damaged", folder.string() + ": " + why, {}};
 }
 
-// A folder that is being written. The destructor deletes it unless it was kept.
+// A folder that is being written. The destructor deletes the folder unless `keep_as` succeeded.
 class Unfinished {
  public:
   explicit Unfinished(fs::path folder) : folder_(std::move(folder)) {}
@@ -87,9 +87,9 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
   const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(
       PQconninfoParse(dsn.c_str(), &error), &PQconninfoFree);
   if (!options) {
-    const std::string why = error ? error : "not understood";
+    const std::string why = error ? error : "It cannot be parsed.";
     PQfreemem(error);
-    return fail(ErrorCode::malformed, "Unexpected database content", why, "--database");
+    return fail(ErrorCode::malformed, "Invalid connection string", why, "--database");
   }
   std::string shown, password;
   for (const PQconninfoOption* option = options.get(); option->keyword; ++option) {
@@ -177,7 +177,7 @@ Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progres
   for (const Relation& table : tables) all += table.bytes;
   for (const Relation& table : tables) {
     if (progress.cancelled()) return cancelled_problem();
-    progress.report(double(done) / double(all), "Reading it over");
+    progress.report(double(done) / double(all), "Reading the tables");
     // Add up 60 bits of a hash of each row. The order of the rows has no effect on the sum, and two
     // equal rows do not cancel each other.
     auto sum = STRATA_TRY(connection.query_once(
@@ -248,7 +248,8 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
   try {
     if (manifest.at("format").get<int>() != kFormat)
       return fail(ErrorCode::invalid, "Newer backup format",
-                  folder.string() + " was written by a newer version of this program.");
+                  folder.string() +
+                      " was written by a newer version of Strata. Restore it with that version.");
     BackupFacts facts;
     facts.made = manifest.at("made").get<std::string>();
     facts.schema_version = manifest.at("schema_version").get<std::int64_t>();
@@ -332,7 +333,7 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   facts.server_version = state.text(0, 3);
 
   // Read the contents before the dump, because sequences are not part of a snapshot. The sequences
-  // in the dump then have these values or later ones.
+  // in the dump then have the values that were read here, or later ones.
   progress.begin_stage(0, 0.4);
   STRATA_TRY(read_contents(connection, facts, progress));
   progress.begin_stage(0.4, 0.9);
@@ -352,9 +353,9 @@ Result<BackupFacts> check_backup(const fs::path& folder, Progress& progress) {
   BackupFacts found;
   STRATA_TRY(read_dump(folder / kDump, found, progress));
   if (found.bytes != facts.bytes)
-    return tl::unexpected(damaged(folder, std::string(kDump) + " has " +
-                                              std::to_string(found.bytes) + " bytes; " +
-                                              std::to_string(facts.bytes) + " were written."));
+    return tl::unexpected(
+        damaged(folder, std::string(kDump) + " has " + std::to_string(found.bytes) +
+                            " bytes, but " + std::to_string(facts.bytes) + " bytes were written."));
   if (found.sha256 != facts.sha256)
     return tl::unexpected(damaged(
         folder, std::string(kDump) + " has changed since it was written: its checksum differs."));

@@ -31,13 +31,13 @@ struct BackupFacts {
 };
 
 // Backs up the state of the database at one moment, even while a server writes to it. The folder
-// must not exist. It appears only after everything was written and read once, so an existing folder
-// is complete. Returns a `conflict` error if the folder exists, and `storage_full` if the disk is
-// full.
+// must not exist. It appears only after the whole backup was written and checked, so an existing
+// folder is complete. Returns a `conflict` error if the folder exists, and `storage_full` if the
+// disk is full.
 Result<BackupFacts> write_backup(const std::string& dsn, const std::filesystem::path& folder,
                                  Progress& progress);
 
-// Checks that the folder contains a backup with an unchanged dump, byte for byte. Returns a
+// Checks that the folder contains a backup, and that no byte of its dump has changed. Returns a
 // `not_found` error if the folder contains no backup, and `invalid` if the backup is damaged.
 Result<BackupFacts> check_backup(const std::filesystem::path& folder, Progress& progress);
 

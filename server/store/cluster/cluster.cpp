@@ -84,7 +84,7 @@ struct Cluster::Impl {
   std::optional<SqlListen> sql;
   int lock_fd = -1;
 
-  // The keeper thread runs every fork and wait; other threads queue tasks for it.
+  // Only the keeper thread forks and waits for child processes; other threads queue tasks for it.
   std::thread keeper;
   std::mutex mutex;
   std::condition_variable changed;
@@ -275,8 +275,8 @@ struct Cluster::Impl {
                          user, log_file, SIGINT);
       if (!child) return tl::unexpected(child.error());
       postmaster = *child;
-      // Replaying the log after a crash may take minutes. It has no limit, because either it
-      // succeeds or the postmaster ends.
+      // After a crash, PostgreSQL may replay its log for minutes. The wait has no limit, because
+      // the replay either succeeds or ends the postmaster.
       while (running()) {
         if (owns_data() && PQping(dsn("postgres").c_str()) == PQPING_OK) return {};
         std::this_thread::sleep_for(10ms);

@@ -16,7 +16,7 @@ namespace strata::store {
 // describes the other pitfalls.
 class Cluster {
  public:
-  // The state of a folder. Reading the state does not create, start or change anything.
+  // The state of a folder. `inspect` does not create, start or change anything.
   struct State {
     // major version of the PostgreSQL that made the data; 0 if there is no data yet
     int version = 0;

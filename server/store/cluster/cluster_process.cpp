@@ -130,7 +130,7 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   std::vector<char*> environment;
-  // PGDATA, PGPORT… are for other programs
+  // leave out variables such as PGDATA and PGPORT, which are meant for other programs
   for (char** variable = environ; *variable; ++variable)
     if (std::strncmp(*variable, "PG", 2) != 0) environment.push_back(*variable);
   environment.push_back(nullptr);
@@ -151,7 +151,7 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
     if (dup2(nothing, 0) < 0 || dup2(output, 1) < 0 || dup2(output, 2) < 0) _exit(126);
     for (int fd = 3; fd < 4096; ++fd) close(fd);
     if (!become(user)) _exit(126);
-    prctl(PR_SET_PDEATHSIG, death_signal);  // after setuid, which clears it
+    prctl(PR_SET_PDEATHSIG, death_signal);  // after setuid, which clears this setting
     if (getppid() != parent) _exit(126);    // the parent died before prctl
     umask(0077);
     if (chdir("/") != 0) _exit(126);

@@ -31,8 +31,8 @@ Result<std::filesystem::path> find_programs(int expected_major);
 Result<void> give_folder(const std::filesystem::path& folder, const DatabaseUser& user);
 
 // Forks and runs a program as `user`, and returns its pid. Output is appended to `log`. The program
-// has no other open files, default signal handlers, and a separate process group, so Ctrl-C reaches
-// only the server. It receives `death_signal` when the calling thread ends.
+// has default signal handlers and no other open files. It is in a separate process group, so Ctrl-C
+// reaches only the server. It receives `death_signal` when the calling thread ends.
 Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
                     const std::filesystem::path& log, int death_signal);
 

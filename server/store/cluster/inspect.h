@@ -8,7 +8,7 @@
 
 namespace strata::store {
 
-// The state of a database. Reading the state does not change anything.
+// The state of a database. `inspect_database` does not change anything.
 struct DatabaseState {
   std::string server_version, encoding;
   std::int64_t schema_version = 0;  // 0 if no migration was applied yet

@@ -21,10 +21,10 @@ Result<std::vector<Migration>> read_migrations(const std::filesystem::path& fold
 
 // Applies the missing migrations. Each file is one transaction, which inserts its version row
 // first. An advisory lock allows any number of servers to start at the same time. Returns an error
-// for a database with a version that is not in `known`, because it is newer than this program, and
-// for one whose applied files differ from `known`. The file format and the table
-// `schema_migrations` are those of dbmate. The checksums are in a separate table, because dbmate
-// has none. Returns the present version.
+// if the database has a version that is not in `known`, because it is then newer than this program,
+// or if an applied file differs from `known`. The file format and the table `schema_migrations` are
+// those of dbmate. It has no checksums, so they are in a separate table. Returns the present
+// version.
 Result<std::int64_t> migrate(PgConnection& connection, const std::vector<Migration>& known);
 
 }  // namespace strata::store

@@ -77,8 +77,8 @@ Result<void> admit_readers(const std::string& dsn, const fs::path& password_file
          "; "
          "ALTER DEFAULT PRIVILEGES IN SCHEMA analysis GRANT SELECT ON TABLES TO " +
          role + "; ";
-  // Revoke the functions that store data or block other sessions. All roles may call them in a new
-  // database.
+  // Revoke the right to call functions that store data or block other sessions. In a new database,
+  // all roles may call them.
   sql +=
       "DO $$ DECLARE f regprocedure; BEGIN FOR f IN SELECT p.oid::regprocedure FROM pg_proc p "
       "WHERE p.pronamespace = 'pg_catalog'::regnamespace AND p.proname ~ '^(lo_|lowrite|loread|pg_(try_)?advisory_|pg_notify)' "

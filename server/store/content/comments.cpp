@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kMaxTextLength = 10'000;  // characters
 
-// The visibility of a thread is that of its layer, which may be in the Trash. This also works for a
-// comment that the same statement has just made.
+// The visibility of a thread is that of its layer, which may be in the Trash. The expression also
+// works for a comment that the same statement has just made.
 constexpr auto kCommentVisibility = sql(
     "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) "
     "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "
@@ -119,7 +119,7 @@ Result<Comments::Page> page_of(Result<PgResult> total, Result<PgResult> rows) {
 }  // namespace
 
 Result<Comments::Page> Comments::of_model(ModelId model_id, Role seen_by, const Query& query) {
-  // Clients receive times in milliseconds, so `since` includes changes of that millisecond.
+  // Clients receive times in milliseconds, so `since` includes all changes in its millisecond.
   constexpr auto kMatchingComments = sql(
       " FROM comments c JOIN comments first ON first.id = coalesce(c.thread_id, c.id) WHERE c.model_id = $1"
       " AND ($2::text IS NULL OR ($2 = 'resolved') = (first.resolved IS NOT NULL))"
@@ -182,8 +182,8 @@ Result<Comment> Comments::create(const Comment& comment,
       auto first = STRATA_TRY(load_thread(connection, *comment.thread, Lock::keep));
       model_id = first.model_id;
     }
-    // Locked, so that the later of two concurrent transactions counts the comment of the earlier
-    // one.
+    // Lock the model, so that two concurrent transactions cannot exceed the limit of comments
+    // together.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(model_id)));
     if (model.rows() == 0) return no_such("model", to_string(model_id));

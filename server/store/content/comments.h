@@ -76,8 +76,8 @@ class Comments {
   // thread. Returns an `invalid` error for a text that is blank or too long, and for a reply to a
   // reply. Returns a `conflict` error for too many comments.
   Result<Comment> create(const Comment& comment, const IdempotentResponse<Comment>& answer = {});
-  // Changes the text and the resolution if the version is the present version. A thread that is
-  // already resolved keeps the user who resolved it first.
+  // Changes the text and the resolution if `comment.version` is the current version. A thread that
+  // is already resolved keeps the user who resolved it first.
   Result<Comment> update(const Comment& comment, const IdempotentResponse<Comment>& answer = {});
   // The effect on a thread of deleting one of its comments: the comments that are erased, and the
   // first comment if it stays without its text.
@@ -86,8 +86,8 @@ class Comments {
     std::vector<CommentId> gone;
     std::optional<Comment> left;
   };
-  // Deletes the comment if the version is the present version. Returns a `conflict` error if the
-  // comment is already deleted and kept for its replies.
+  // Deletes the comment if `comment.version` is the current version. Returns a `conflict` error if
+  // the comment is already deleted and kept for its replies.
   Result<Removal> remove(const Comment& comment, const IdempotentResponse<Removal>& answer = {});
 
  private:

@@ -35,8 +35,8 @@ class Jobs {
   explicit Jobs(Pool& pool) : pool_(pool) {}
 
   // Called when a server starts: marks the unfinished jobs of the previous server as lost, and
-  // deletes jobs that ended more than kDaysKept days ago. Returns the newest `most` of the other
-  // jobs, newest first.
+  // deletes jobs that ended more than kDaysKept days ago. Returns at most `most` of the other jobs,
+  // newest first.
   Result<std::vector<StoredJob>> take_over(int most);
   Result<void> begin(const StoredJob& job);  // `not_found` if the project does not exist
   // Writes the end of a job. A job that a transaction has marked as done stays done.

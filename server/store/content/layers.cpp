@@ -66,7 +66,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.resolution = static_cast<int>(row.integer());
   layer.unit = row.text();
   layer.description = row.text();
-  // A damaged palette must not hide the paint of its layer.
+  // A layer with a damaged palette is still shown, in default colors.
   layer.palette = palette_from_json(row.json())
                       .value_or(default_palette(layer.type, layer.kind == LayerKind::database));
   layer.opacity = row.real();

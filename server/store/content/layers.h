@@ -36,8 +36,8 @@ class Layers {
   Result<Layer> update(Layer layer, const IdempotentResponse<Layer>& answer = {});
   // Deletes the layer permanently. Users move it to the Trash instead.
   Result<void> remove(LayerId id, const IdempotentResponse<>& answer = {});
-  // Converts the content and its whole history to a type for larger keys or values, if the version
-  // is the present version. The type of the layer must be able to widen to it (widens_to).
+  // Converts the content and its whole history to a type for larger keys or values, if
+  // `layer.version` is the current version. `widens_to` must allow the conversion.
   Result<Layer> widen(const Layer& layer, ValueType type,
                       const IdempotentResponse<Layer>& answer = {});
   // Returns the current sequences, by id, of the tables that the formula of the layer reads.
@@ -50,8 +50,8 @@ class Layers {
   // computed longest ago are first.
   Result<std::vector<Layer>> to_recompute();
   Result<std::vector<Layer>> of_table(TableId table_id, Role seen_by);
-  // Returns the layers whose tiles must be counted again, because an edit was stored without their
-  // sums.
+  // Returns the layers whose tiles must be counted again, because an edit was stored without the
+  // sums of its tiles.
   Result<std::vector<Layer>> to_sum();
   // Stores the sums of all tiles of the layer that have a value. The layer must not be edited
   // during this call.

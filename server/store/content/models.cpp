@@ -270,7 +270,8 @@ Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
     if (layer.rows() > 0)
       return fail(ErrorCode::conflict, "Tables belong to project",
                   "The keys of the layer " + layer.text(0, 0) +
-                      " belong to a table of the current project of the model.",
+                      " belong to a table of the model's current project. Erase this "
+                      "layer before you move the model to another project.",
                   "project");
     return now;
   });

@@ -85,7 +85,7 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
                                      const IdempotentResponse<NamedPart>& answer) {
   STRATA_TRY(check_part(part));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
-    // Locked, so that the later of two concurrent transactions counts the part of the earlier one.
+    // Lock the model, so that concurrent transactions cannot exceed the limit together.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(part.model_id)));
     if (model.rows() == 0) return no_such("model", to_string(part.model_id));
@@ -115,8 +115,8 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
 
 namespace {
 
-// Returns the error for an update or deletion without effect, if the part does not exist or has
-// another version.
+// Returns the error for an update or deletion that had no effect, because the part does not exist
+// or has another version.
 tl::unexpected<Error> missed(const Result<PgResult>& known, const NamedParts::Kind& kind,
                              const NamedPart& part) {
   if (!known) return tl::unexpected(known.error());

@@ -56,10 +56,10 @@ class NamedParts {
   // Creates a part. The store sets id, slug, time and version. Returns a `malformed` error for an
   // empty name, and `conflict` for too many parts.
   Result<NamedPart> create(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
-  // Changes name, text and content, if the version is the present version. The slug does not
+  // Changes name, text and content, if `part.version` is the current version. The slug does not
   // change, so links stay valid.
   Result<NamedPart> update(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
-  // Deletes the part if the version is the present version.
+  // Deletes the part if `part.version` is the current version.
   Result<void> remove(const NamedPart& part, const IdempotentResponse<>& answer = {});
 
  private:

@@ -26,7 +26,7 @@ class Projects {
   Result<std::vector<Project>> all();
   Result<Project> find(const std::string& ref);
   Result<Project> create(Project project, const IdempotentResponse<Project>& answer = {});
-  // Changes the project if the version is the present version, and returns it with version + 1.
+  // Changes the project if its version is the current one, and returns it with version + 1.
   Result<Project> update(Project project, const IdempotentResponse<Project>& answer = {});
   // Deletes the project. Returns a `conflict` error while it has models, and for `default`.
   Result<void> remove(ProjectId id, const IdempotentResponse<>& answer = {});
@@ -34,8 +34,8 @@ class Projects {
   // case, and then by id.
   Result<std::size_t> names_until(const NamedId& place, std::span<const NamedId> sorted);
   // Returns a text that changes whenever the models, layers, surface images, views, tables or
-  // records of the project change. It does not depend on edits, comments and members. For
-  // comparison only.
+  // records of the project change. It does not depend on edits, comments or members. The text is
+  // only meant for comparison.
   Result<std::string> state(ProjectId id);
   // Returns the project's activity without the lines about layers that the role does not see. The
   // cost of a page does not depend on the length of the history. An unknown project or model has no

@@ -113,7 +113,7 @@ Result<SurfaceImage> SurfaceImages::create(const SurfaceImage& image,
   STRATA_TRY(check_surface_image(image));
   const Content content = content_of(picture);
   const auto work = [&](PgConnection& connection) -> Result<SurfaceImage> {
-    // Locked, so that the later of two concurrent transactions counts the image of the earlier one.
+    // Lock the model, so that concurrent transactions cannot exceed the limit together.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
                                              Params().id(image.model_id)));
     if (model.rows() == 0) return no_such("model", to_string(image.model_id));

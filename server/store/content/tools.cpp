@@ -65,8 +65,8 @@ Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
   STRATA_TRY(check_text(tool.slug, "slug"));
   const auto cells = bytes_of(shape);
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
-    // Locked, so that the later of two concurrent transactions counts the tool of the earlier one.
-    // Reading is not blocked.
+    // Lock the table, so that two concurrent transactions cannot exceed the limit together. The
+    // lock does not block readers.
     STRATA_TRY(connection.query("LOCK TABLE tool_shapes IN SHARE ROW EXCLUSIVE MODE"));
     auto count =
         STRATA_TRY(connection.query("SELECT count(*) FROM tool_shapes WHERE deleted IS NULL"));

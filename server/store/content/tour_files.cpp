@@ -37,7 +37,8 @@ Result<void> check_room(PgConnection& connection, NamedPartId tour_id, std::int6
   if (used.integer(0, 0) >= TourFiles::kMaxFiles)
     return fail(ErrorCode::conflict, "Too many files",
                 "A tour can have at most " + std::to_string(TourFiles::kMaxFiles) +
-                    " files. The server deletes files that the tour has not used for a day.");
+                    " files. Remove some files from the tour. The server deletes files that the "
+                    "tour has not used for a day.");
   if (used.integer(0, 1) + more_bytes > TourFiles::kMaxBytes)
     return fail(ErrorCode::conflict, "Files too large",
                 "The files of a tour can be at most " + std::to_string(TourFiles::kMaxBytes >> 20) +
@@ -56,7 +57,7 @@ Result<TourFile> TourFiles::add(NamedPartId tour_id, const NewTourFile& file,
   const Content content = STRATA_TRY(content_of(file.file, {}));
   const auto work = [&](PgConnection& connection) -> Result<TourFile> {
     STRATA_TRY(keep_blob(connection, content, {}));
-    // Locked, so that the later of two concurrent transactions counts the file of the earlier one.
+    // Lock the tour, so that concurrent transactions cannot exceed the limits together.
     auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
                                             Params().id(tour_id)));
     if (tour.rows() == 0) return no_such("tour", to_string(tour_id));

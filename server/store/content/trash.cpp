@@ -176,8 +176,8 @@ Result<TrashRestored> Trash::restore(const TrashEntry& entry,
                                      const IdempotentResponse<TrashRestored>& answer) {
   const bool is_layer = entry.kind == Kind::layer;
   return change(pool_, answer, [&](PgConnection& connection) -> Result<TrashRestored> {
-    // Lock the model of a layer first. Before the commit, it must not be moved to the Trash, or get
-    // a layer with this slug.
+    // Lock the model of a layer first. Until the commit, the model must not be moved to the Trash,
+    // or get a layer with this slug.
     if (is_layer) {
       auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
                                                Params().id(entry.model_id)));

@@ -90,8 +90,8 @@ Result<std::vector<std::int64_t>> Journal::undoable(LayerId layer_id, const std:
 }
 
 // Returns the batches that the newest undo disabled, unless a later edit of the user is in force.
-// Strokes that a redo restored are older than the undo, so undo, undo, redo, redo works. Only a
-// curator can restore rejected edits.
+// Strokes that a redo restored are older than the undo, so the order undo, undo, redo, redo works.
+// Only a curator can restore rejected edits.
 Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std::string& user,
                                                     bool pending_only) {
   STRATA_TRY(check_text(user, "user"));
@@ -111,7 +111,7 @@ Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std:
 
 Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    // Times are shown in milliseconds, so a time that was read from an edit must include that edit.
+    // Clients get times in milliseconds. The state at the time of an edit must include the edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM edits "
         "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
@@ -148,7 +148,7 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
                                 mentions_them("record ->> 'reason'"));
   for (const char* statement :
        {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
-        // Decisions of a review contain the user of the edits, and the reason as a text. Other
+        // Decisions of a review contain the author of the edits, and the reason as a text. Other
         // records are not searched, because they may be large.
         "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
         "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",

@@ -40,7 +40,7 @@ struct JournalEntry {
   // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
   std::string op;
   nlohmann::json record;  // the edit as requested
-  nlohmann::json answer;  // the response to the caller; a repeated `id` gets it again
+  nlohmann::json answer;  // the response to the caller, also for a later request with the same `id`
   std::chrono::system_clock::time_point time;
   struct Revision {
     TileAddress tile;

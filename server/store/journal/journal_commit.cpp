@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kBytesPerInsert = 8u << 20;
 constexpr int kTilesASide = 16384 / kTileSize;
 
-// A message that fails these checks can never be written. The database makes all other checks.
+// An entry that fails these checks can never be written. The database makes all other checks.
 Result<void> check(const JournalEntry& entry) {
   STRATA_TRY(check_texts({{&entry.user, "user"}, {&entry.op, "op"}}));
   STRATA_TRY(check_json(entry.record, "record"));
@@ -29,7 +29,7 @@ struct Span {
   std::int64_t first, last;
 };
 
-// Returns the range of sequences of each model; they must be consecutive.
+// Returns the range of sequences of each model. The sequences of a model must be consecutive.
 Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const> entries) {
   std::map<ModelId, Span> spans;
   for (const JournalEntry* entry : entries) {

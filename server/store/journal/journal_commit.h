@@ -10,14 +10,14 @@ namespace strata::store {
 
 struct CommitFailure {
   Error problem;
-  // a retry may succeed, as after a failure of the connection or the disk, or a deadlock
+  // true if a retry may succeed, as after a failure of the connection or the disk, or a deadlock
   bool transient;
 };
 
 // Writes the entries in one transaction: the journal rows, the edits that they enable and disable,
 // their tile revisions, and the sequences of model and layers. An entry must follow the last entry
-// of the model. Another sequence is a `conflict`, so an edit that depends on an unsaved edit can
-// never be stored.
+// of the model. An entry with any other sequence is a `conflict`, so an edit that depends on an
+// unsaved edit can never be stored.
 tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
                                                  std::span<const JournalEntry* const> entries);
 

@@ -32,7 +32,7 @@ struct HistoryPage {
   std::int64_t total = 0;
 };
 
-// The last sequence of a model, and the rows of the given messages that the journal contained after
+// The last sequence of a model, and the rows with the given ids that the journal contained after
 // that sequence was read.
 struct JournalState {
   std::int64_t last_sequence = 0;
@@ -79,16 +79,16 @@ class Journal {
   Result<ReviewQueue> review_queue(LayerId layer_id, const std::optional<std::string>& user,
                                    int limit, int offset, std::int64_t after = 0);
   // Returns the edits that a decision affects: edits that wait for review and are in force, or, for
-  // `reopen`, edits that were accepted or rejected. Batches of a stroke belong together, so naming
-  // one batch selects all.
+  // `reopen`, edits that were accepted or rejected. If the caller names one batch of a stroke, the
+  // result contains all batches of the stroke.
   Result<std::vector<UnderReview>> under_review(LayerId layer_id, Decision decision,
                                                 const Reviewees& which);
   // Counts the edits of a model over time (timeline.cpp).
   Result<Timeline> timeline(ModelId model_id, const TimelineQuery& query);
-  // Returns the nearest strokes and other edits: up to `from` if `backward`, otherwise after it.
+  // Returns the strokes and other edits nearest to `from`: after it, or if `backward`, up to it.
   Result<TimelineSteps> timeline_steps(ModelId model_id, const std::vector<LayerId>& layers,
                                        std::int64_t from, bool backward, int limit);
-  // Returns the steps that repeated undo and redo would change, in that order (undo_steps.cpp).
+  // Returns the steps that repeated undo and redo would change, in the order of these changes.
   Result<UndoSteps> undo_steps(ModelId model_id, const std::string& user, const UndoQuery& query);
   Result<std::int64_t> last_sequence(ModelId model_id);
   // Returns the sequence of the last edit up to a time (text as in core/text/timestamp.h), or 0

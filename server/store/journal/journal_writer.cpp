@@ -13,7 +13,7 @@
 
 namespace strata::store {
 
-// Named: a member of a class must not have a type of an unnamed namespace.
+// Not in the unnamed namespace, because it is the type of a class member.
 struct WaitingEntry {
   JournalEntry entry;
   JournalWriter::Done done;
@@ -101,8 +101,8 @@ struct JournalWriter::Impl {
       waiting.done(result);
       bytes = waiting.bytes;
     }
-    // `waiting` is destroyed before it counts as answered: after a drain, the caller may destroy
-    // objects that it refers to.
+    // Destroy `waiting` before the entry counts as answered: after a drain, the caller may destroy
+    // the objects that `waiting` refers to.
     std::lock_guard lock(mutex);
     waiting_bytes -= bytes;
     ++answered;
@@ -173,8 +173,8 @@ struct JournalWriter::Impl {
   }
 
   // Commits each entry in a separate transaction, because one entry of the group can never be
-  // written. Later entries of the same model fail too, because they depend on it. (A lower sequence
-  // means that the caller has started again.)
+  // written. Later entries of the same model fail too, because they depend on that entry. (A lower
+  // sequence means that the caller has started again.)
   tl::expected<void, CommitFailure> one_by_one(std::deque<WaitingEntry>& group) {
     struct Broken {
       std::int64_t sequence;

@@ -18,9 +18,9 @@ PgArray ids_of(const std::vector<LayerId>& layers) {
   return ids;
 }
 
-// Times are shown in milliseconds, so a time that was read from an edit must include that edit. The
-// query returns one row for each interval, author and layer. The rows of an interval are joined in
-// memory, so the number of intervals limits the result.
+// Clients receive times in milliseconds. The state at the time of an edit must include the edit.
+// The query returns one row for each interval, author and layer. The rows of an interval are joined
+// in memory, so the number of intervals limits the result.
 constexpr const char* kCells =
     "WITH seen AS MATERIALIZED (SELECT time, sequence, layer_id, user_name FROM edits WHERE model_id = $1 AND layer_id = any($2) "
     "AND time >= coalesce($3::timestamptz, '-infinity') AND time < coalesce($4::timestamptz, 'infinity') + interval '1 millisecond'), "

@@ -24,7 +24,7 @@ struct Timeline {
       std::int64_t edits = 0;
     };
     std::vector<Share> people;    // the kMaxNamed users with the most edits, in descending order
-    std::int64_t others = 0;      // number of further people
+    std::int64_t others = 0;      // number of other users
     std::vector<LayerId> layers;  // the kMaxNamed layers with the most edits, in descending order
   };
   static constexpr int kMaxNamed = 3;

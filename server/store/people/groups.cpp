@@ -56,8 +56,8 @@ Result<GroupDetail> load_detail(PgConnection& connection, GroupId id) {
   for (int i = 0; i < projects.rows(); ++i)
     detail.projects.push_back(
         {projects.text(i, 0), projects.text(i, 1), read_role(projects, i, 2)});
-  // Count the users who have no role of the same rank from another source: from the site, from the
-  // project, or from another group.
+  // Count the users who have no role of the same or a higher rank from another source: from the
+  // site, from the project, or from another group.
   auto losing = STRATA_TRY(connection.query(
       "SELECT count(*) FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1 AND "
       "u.disabled IS NULL AND EXISTS (SELECT 1 FROM project_groups g WHERE g.group_id = $1 AND "
@@ -106,7 +106,7 @@ Result<void> check_spelling(const std::string& name) {
   return check_text(name, "name");
 }
 
-// Locks the users, and returns each user once.
+// Locks the users, and returns each user once, even if `names` contains a name several times.
 Result<std::vector<Person>> lock_people(PgConnection& connection,
                                         const std::vector<std::string>& names, const char* field) {
   std::vector<Person> people;
@@ -133,7 +133,8 @@ Result<void> check_not_too_full(PgConnection& connection, GroupId group_id, cons
                                            Params().id(group_id)));
   if (count.integer(0, 0) > Groups::kMaxPeople)
     return fail(ErrorCode::conflict, "Too many people",
-                "A group can have at most " + std::to_string(Groups::kMaxPeople) + " people.",
+                "A group can have at most " + std::to_string(Groups::kMaxPeople) +
+                    " people. Create another group for the other people.",
                 field);
   return {};
 }
@@ -243,7 +244,7 @@ Result<std::vector<std::string>> Groups::remove(GroupId id, const std::string& b
     STRATA_TRY(act_as(connection, by));
     STRATA_TRY(lock_group(connection, id));
     auto people = STRATA_TRY(people_in(connection, id));
-    // Delete the roles first, so that the activity of the projects lists their end.
+    // Delete the roles first, so that the activity of each project lists the end of its role.
     for (const char* sql :
          {"DELETE FROM project_groups WHERE group_id = $1", "DELETE FROM groups WHERE id = $1"})
       STRATA_TRY(connection.query(sql, Params().id(id)));

@@ -56,7 +56,7 @@ struct GroupChange {
   std::vector<std::string> add{}, remove{};
 };
 
-// The changed object, and the users whose roles changed. Their roles must be read again.
+// The changed object, and the users whose roles changed. The caller must read their roles again.
 template <class Changed>
 struct Regrouped {
   Changed now;
@@ -77,8 +77,8 @@ class Groups {
   // Returns an `invalid` error for a name that is empty or too long, and for an unknown user.
   // Returns a `conflict` error for a name that is taken, and for too many groups or users.
   Result<GroupDetail> create(const std::string& name, const std::vector<std::string>& people);
-  // Returns the same errors as `create`. Adding a member, or removing a user who is not a member,
-  // has no effect.
+  // Returns the same errors as `create`. It is no error to add a user who is already a member, or
+  // to remove a user who is not a member.
   Result<Regrouped<GroupDetail>> change(GroupId id, const GroupChange& change,
                                         const std::string& by);
   // Removes the group and its roles.

@@ -14,7 +14,7 @@ constexpr auto kKiosks = sql(
     "k.expires, k.last_seen, k.revoked, k.wants_reload, k.phone FROM kiosks k JOIN tours t ON t.id = k.tour_id "
     "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id ");
 constexpr auto kGoodKiosk = sql("(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))");
-// Older links are no longer listed, and are deleted when the next link is made.
+// Links that ended over 30 days ago are not listed. The next new link deletes them.
 constexpr auto kListedKiosk = sql(
     "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')");
 
@@ -100,7 +100,7 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
   STRATA_TRY(check_name(name));
   STRATA_TRY(check_texts({{&user, "user"}}));
   return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
-    // Locked, so that the later of two concurrent transactions counts the link of the earlier one.
+    // Lock the tour, so that concurrent transactions cannot exceed the limit together.
     auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
                                             Params().id(tour_id)));
     if (tour.rows() == 0) return no_such("tour", to_string(tour_id));

@@ -61,8 +61,8 @@ class Kiosks {
   // Finds a kiosk by its own secret, or by its secret for phones. Returns nothing if the secret is
   // unknown, expired or revoked.
   Result<std::optional<Kiosk>> find(const std::string& secret);
-  // Records the time at which the kiosk was running, to the minute. `loaded` means that its page
-  // was loaded just now, which completes a requested reload.
+  // Records that the kiosk is running now, to the minute. `loaded` means that its page was loaded
+  // just now, which completes a requested reload.
   Result<void> seen(KioskId id, bool loaded);
   Result<void> revoke(KioskId id);       // no effect if it is already revoked
   Result<Kiosk> ask_reload(KioskId id);  // `conflict` if revoked or expired

@@ -17,7 +17,8 @@ Result<void> check_password(std::string_view password, std::string_view user,
   };
   if (password.size() > kMaxPasswordLength)
     return fail(ErrorCode::invalid, "Password too long",
-                "A password can have at most " + std::to_string(kMaxPasswordLength) + " bytes.",
+                "A password can have at most " + std::to_string(kMaxPasswordLength) +
+                    " bytes. Choose a shorter password.",
                 field);
   const auto characters =
       std::ranges::count_if(password, [](char c) { return (c & 0xc0) != 0x80; });

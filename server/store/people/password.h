@@ -17,8 +17,8 @@ Result<void> check_password(std::string_view password, std::string_view user,
                             const std::string& field);
 
 // Hashes the password with Argon2id (RFC 9106) from libsodium, with 64 MiB and two passes, in about
-// 60 ms on one core. The result contains salt and costs. Two hashes are computed at a time. Returns
-// a `too_many_requests` error if too many calls are waiting.
+// 60 ms on one core. The result contains the salt and the cost parameters. Computes at most two
+// hashes at a time. Returns a `too_many_requests` error if too many calls are waiting.
 Result<std::string> hash_password(std::string_view password);
 // Returns true if the password matches the hash. Takes the same time for an empty `hash`, so that
 // the time does not reveal which names exist.

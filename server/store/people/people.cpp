@@ -65,7 +65,7 @@ bool is_ascii(const std::string& text) {
 }
 
 Result<Person> load_person(PgConnection& connection, const std::string& name, bool lock) {
-  // Names are ASCII. Another letter must not match a name because of its lower case.
+  // Names are ASCII. The lower case of a letter outside ASCII must not match a name.
   if (!is_ascii(name) || !check_text(name, "user")) return no_such("person", name);
   constexpr auto kRead = sql("SELECT ", kPersonColumns,
                              " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL");
@@ -474,7 +474,7 @@ Result<std::optional<Principal>> Tokens::find(const std::string& secret) {
       pool_.read([&](PgConnection& connection) { return find_secret(connection, secret); }));
   if (!found) return std::optional<Principal>();
   const Principal& principal = found->principal;
-  // Recording the use is optional, because the secret is valid even if nothing can be written.
+  // Ignore a failure to record the use, because the secret is valid even if nothing can be written.
   if (!found->is_fresh &&
       (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
     (void)pool_.write([&](PgConnection& connection) {

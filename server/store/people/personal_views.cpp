@@ -20,11 +20,13 @@ Result<nlohmann::json> PersonalViews::find(const std::string& user, ModelId mode
 Result<void> PersonalViews::keep(const std::string& user, ModelId model_id,
                                  const nlohmann::json& layers) {
   STRATA_TRY(check_json(layers, "layers"));
-  // PostgreSQL writes a space after every comma and colon, so only half of the limit is always
-  // short enough.
+  // PostgreSQL writes a space after every comma and colon, so its text may be up to twice as long
+  // as this one.
   if (layers.dump().size() > kMaxBytes / 2)
     return fail(ErrorCode::too_large, "Settings too large",
-                "The personal settings of one model can be at most 512 KiB large.", "layers");
+                "The personal settings of one model can be at most 512 KiB large. Reset "
+                "the settings of some layers.",
+                "layers");
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done =
         layers.empty()

@@ -55,8 +55,10 @@ Error problem_of(std::string_view sqlstate, std::string_view message) {
     return {ErrorCode::busy, "Database overloaded",
             "PostgreSQL is out of resources (" + what + "). Try again shortly.", ""};
   if (sqlstate == "23505")
-    return {ErrorCode::conflict, "Already exists",
-            "Something with this name or id already exists (" + what + ").", ""};
+    return {
+        ErrorCode::conflict, "Already exists",
+        "Something with this name or id already exists (" + what + "). Choose another name or id.",
+        ""};
   if (sqlstate == "23503")
     return {ErrorCode::conflict, "Conflict",
             "This refers to something that does not exist, or it is still in use (" + what + ").",
@@ -249,7 +251,7 @@ Result<void> PgConnection::each_row(const char* sql, const Params& params,
     if (status == PGRES_SINGLE_TUPLE) {
       outcome = on_row(owner);
       if (!outcome) {
-        close("the rest was not wanted");
+        close("the remaining rows are not needed");
         return outcome;
       }
     } else if (status != PGRES_TUPLES_OK) {

@@ -18,7 +18,7 @@ namespace {
 
 using Op = Expression::Op;
 
-// Days as doubles distinguish milliseconds for some 100 000 years.
+// Days that are stored as doubles are exact to a millisecond for about 100 000 years.
 constexpr const char* kToEndOfDay = "0.99999999";
 
 enum class Kind { number, truth, text, time, keys, features };
@@ -175,8 +175,8 @@ class Writer {
                   e, mistake::kUnknownColumn, corrected(table, e, step));
   }
 
-  // Returns the whole path with each similar column at that step. A user may have written the name
-  // of a column instead of its slug.
+  // Returns one path for each column with a similar slug or name: the whole path with the slug of
+  // that column at the step.
   static std::vector<std::string> corrected(const Table& table, const Expression& e,
                                             std::size_t step) {
     std::vector<std::string> names{"key"};
@@ -330,7 +330,7 @@ class Writer {
       case Op::holds: {
         const Sql sql = operand(e.parts[0]);
         if (sql.kind != Kind::truth)
-          refuse(wrong(e.parts[0], sql, Kind::truth) + ": compare it with something", e.parts[0]);
+          refuse(wrong(e.parts[0], sql, Kind::truth) + ": compare it with a value", e.parts[0]);
         return sql.text;
       }
       case Op::like: {

@@ -179,9 +179,9 @@ Result<TableChange> Records::write(TableId table_id, const WriteRecords& request
                                    const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   if (request.records.size() > kMaxRecordsAtOnce)
-    return fail(
-        ErrorCode::too_large, "Too many records",
-        "At most " + std::to_string(kMaxRecordsAtOnce) + " records are allowed in one request.");
+    return fail(ErrorCode::too_large, "Too many records",
+                "At most " + std::to_string(kMaxRecordsAtOnce) +
+                    " records are allowed in one request. Send them in several requests.");
   // A dry run, or a change with problems, is rolled back, but its outcome is returned.
   std::optional<TableChange> outcome;
   auto done = change(
@@ -254,7 +254,10 @@ Result<std::vector<KeyText>> Records::texts(TableId table_id, Role seen_by, cons
                   "The table '" + open.table.name + "' has no column '" + ref + "'.", field);
     if (holds_lists(column->kind))
       return fail(ErrorCode::invalid, "Column contains lists",
-                  "'" + column->name + "' can contain several values in one record.", field);
+                  "'" + column->name +
+                      "' can contain several values in one record. Choose a column with only one "
+                      "value in each record.",
+                  field);
     auto rows = STRATA_TRY(load_all_rows(connection, table_id, {*column}));
     std::vector<KeyText> texts;
     for (const Record& row : rows) {
@@ -354,7 +357,7 @@ Result<std::vector<std::int64_t>> Records::missing(TableId table_id,
 
 Result<std::int64_t> Tables::sequence_at(TableId table_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    // As for a model, a time that was read from an edit, in milliseconds, must include that edit.
+    // As for models, the state at the time of an edit, in milliseconds, must include the edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits "
         "WHERE table_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",

@@ -54,12 +54,12 @@ struct TableChange {
   std::vector<RowError> problems;                       // if there are any, nothing was written
 };
 
-// The effect that an undo or redo would have, so that a caller can first check which records are
-// painted.
+// The effect of an undo or redo before it is applied, so that a caller can first check which
+// records are painted.
 struct UndoPlan {
   std::int64_t table_sequence = 0;      // sequence of the table at the time of the plan
   std::int64_t edit = 0;                // the entry that is undone or redone
-  std::vector<std::int64_t> vanishing;  // records that would be deleted
+  std::vector<std::int64_t> vanishing;  // records that the undo or redo deletes
 };
 
 // A row of the journal of a table, which is sorted newest first.

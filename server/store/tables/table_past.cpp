@@ -195,7 +195,7 @@ Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
   if (!edit)
     return redo
                ? fail(ErrorCode::conflict, "Nothing to redo",
-                      "You have no undone change in this table, or you changed the table after it.")
+                      "You have no undone change in this table, or you have changed it since then.")
                : fail(ErrorCode::conflict, "Nothing to undo",
                       "You have no change in this table to undo.");
   std::map<std::int64_t, std::set<std::string>> records;

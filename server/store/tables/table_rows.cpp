@@ -89,8 +89,8 @@ PgArray array_of(std::span<const std::int64_t> keys) {
   return array;
 }
 
-// One sort criterion of rows as SQL, for a row `t` and for a value that the position of a page
-// stores as text.
+// One sort criterion as SQL. It applies to a row `t`, and to a value that the position of a page
+// contains as text.
 struct SortKey {
   std::string value;  // the stored value
   std::string here;   // the compared value of a row
@@ -121,7 +121,7 @@ SortKey text_key(const std::string& column, const std::string& before, const std
   return {value, compared(value), compared, descending};
 }
 
-// Sorts by the order of the records that the terms name.
+// Sorts by the order of the records that the terms refer to.
 void add_term_key(SortKeys& sort, const std::string& column, const RecordOrder& by,
                   Params& params) {
   params.array(array_of(*by.keys));

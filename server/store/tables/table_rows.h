@@ -41,7 +41,7 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, TableI
 Result<void> make_rows_table(PgConnection& connection, TableId table_id);
 Result<void> drop_rows_table(PgConnection& connection, TableId table_id);
 Result<void> add_rows_column(PgConnection& connection, TableId table_id, const Column& column);
-// Make or drop the index that keeps a column unique. Dropping a missing index has no effect.
+// Make or drop the index that keeps a column unique. An index to drop may be missing.
 Result<void> make_unique_index(PgConnection& connection, TableId table_id, const Column& column);
 Result<void> drop_unique_index(PgConnection& connection, TableId table_id, const Column& column);
 

@@ -176,7 +176,8 @@ class Writer {
                static_cast<std::int64_t>(change_.deleted.size());
     if (records_ > kMaxRecords)
       return fail(ErrorCode::conflict, "Table full",
-                  "A table can have at most " + std::to_string(kMaxRecords) + " records.");
+                  "A table can have at most " + std::to_string(kMaxRecords) +
+                      " records. Delete some records, or use another table.");
     for (const Record& record : then) check_record(record);
     if (!change_.problems.empty()) return {};
     STRATA_TRY(delete_rows(connection_, open_.table.id, keys));
@@ -213,10 +214,11 @@ class Writer {
       const nlohmann::json held = value == record.values.end() ? nlohmann::json() : value->second;
       if (column.unique && held.is_string() &&
           held.get_ref<const std::string&>().size() > kMaxUniqueTextLength)
-        add_problem(record.key, {ErrorCode::invalid, "Text too long",
-                                 "Texts of a unique column can have at most " +
-                                     std::to_string(kMaxUniqueTextLength) + " bytes.",
-                                 field_of(column)});
+        add_problem(record.key,
+                    {ErrorCode::invalid, "Text too long",
+                     "Texts of a unique column can have at most " +
+                         std::to_string(kMaxUniqueTextLength) + " bytes. Shorten the text.",
+                     field_of(column)});
       const bool is_written = after.contains(to_string(column.id)) || after.contains(kExists);
       if (!is_written || (!edit_.checks_values && !(column.required && held.is_null()))) continue;
       if (auto good = check_value(column, held, field_of(column)); !good)
@@ -361,7 +363,7 @@ class Writer {
           return fail(ErrorCode::conflict, "Values do not match",
                       "Record " + std::to_string(row.key) +
                           ": texts of a unique column can have at most " +
-                          std::to_string(kMaxUniqueTextLength) + " bytes.",
+                          std::to_string(kMaxUniqueTextLength) + " bytes. Shorten the text first.",
                       "unique");
       }
       if (column.target || holds_attachments(column.kind)) {

@@ -118,8 +118,8 @@ Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>
         return fail(
             ErrorCode::invalid, "Invalid title column",
             "The column '" + title->name +
-                "' cannot be the title of a record. Choose a column with a single text, number "
-                "or date.",
+                "' cannot be the title of a record. Choose a column that contains only one text, "
+                "number, date or term in each record.",
             "title_column");
     }
     auto row = STRATA_TRY(connection.query(
@@ -172,8 +172,8 @@ Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
     auto table = connection.query("DELETE FROM record_tables WHERE id = $1", Params().id(id));
     return table ? Result<void>{} : tl::unexpected(table.error());
   });
-  // Done after the transaction, because a transaction that attaches files locks a blob while it
-  // waits for the tables. If it fails, the next start repeats it.
+  // Runs after the transaction, because a transaction that attaches files locks a blob while it
+  // waits for the tables. If it fails, the next start of the server repeats it.
   if (gone) (void)Attachments(pool_).drop_orphans();
   return gone;
 }

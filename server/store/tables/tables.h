@@ -36,7 +36,7 @@ struct TableHistory {
 
 // Tables of a project with their columns, by id or slug. Changes to columns and records are entries
 // in the journal of the table, each by one user. Results contain only the columns that the role
-// sees. The other columns do not appear, neither by name nor in the past. A TableChange has all
+// sees. They contain no names and no past states of other columns. Only a TableChange has all
 // columns. Part of Store, with the same rules for threads and errors.
 class Tables {
  public:
@@ -57,8 +57,8 @@ class Tables {
       const std::string& op, const IdempotentResponse<std::vector<TableChange>>& answer = {});
   // Imports all terms or none into a term list, as one entry of its journal. Returns a `conflict`
   // error if the table is not a term list. A term whose URI or code exists changes that record;
-  // other terms are new. Properties that the text does not have are kept. Problems name the term by
-  // its index.
+  // other terms are new. Properties that the imported text does not contain stay unchanged.
+  // Problems name the term by its index.
   Result<TableChange> import_terms(TableId table_id, const TermList& list, bool dry_run,
                                    const std::string& user,
                                    const IdempotentResponse<TableChange>& answer = {});
@@ -69,7 +69,7 @@ class Tables {
   Result<TableChange> update_column(TableId table_id, const Column& column,
                                     std::optional<std::int64_t> version, const std::string& user,
                                     const IdempotentResponse<TableChange>& answer = {});
-  // Sets the visibility of the column, now and in the past, if `version` is the present version.
+  // Sets the visibility of the column, now and in the past, if `version` is the current version.
   // The change is not an entry of the journal, so undo cannot make a column visible again. Returns
   // an `invalid` error for a column that a term list needs, and for a required column that users
   // who write records would not see.

@@ -63,7 +63,7 @@ class TermIntake {
     return {};
   }
 
-  // Finds the record of each term, by URI or else by code. Without one, the term gets a new record.
+  // Finds the record of each term, by URI or else by code. If there is none, the term gets one.
   Result<void> find_keys() {
     auto rows = STRATA_TRY(load_all_rows(connection_, open_.table.id, open_.all));
     for (Record& row : rows) {
@@ -93,7 +93,8 @@ class TermIntake {
         add_problem(i,
                     {ErrorCode::invalid, "Duplicate term",
                      "\"" + term.code + "\" and \"" + list_.terms[first->second].code +
-                         "\" are the same term of the list: one by its URI, the other by its code.",
+                         "\" are the same term of the list: one by its URI, the other by its code. "
+                         "Correct the URI or the code.",
                      "uri"});
       keys_.push_back(key);
       if (!term.uri.empty() && !uris.insert(term.uri).second)
@@ -224,7 +225,7 @@ class TermIntake {
   std::vector<RowError> problems_;
 };
 
-// Returns the table with its terms, or the reasons why it cannot contain them (`problems`).
+// Inserts the table with its terms. If a term cannot be stored, returns the reasons (`problems`).
 Result<TableChange> insert_with_terms(PgConnection& connection, Table table, const TermList* terms,
                                       const std::string& user, const std::string& op) {
   auto taken = STRATA_TRY(connection.query(
@@ -283,8 +284,8 @@ Result<TableChange> Tables::import_terms(TableId table_id, const TermList& list,
     if (!term_columns(open.table))
       return fail(ErrorCode::conflict, "Not a term list",
                   open.table.name +
-                      " is not a term list. A term list has `code`, a text that is required and "
-                      "unique, `label`, a text, and `parent`, a term of the same table.");
+                      " is not a term list. A term list has the columns `code` (a required and "
+                      "unique text), `label` (a text) and `parent` (a term of the same table).");
     auto change = TermIntake(connection, open, list).take(user, "import");
     if (!change || (change->problems.empty() && !dry_run)) return change;
     outcome = std::move(*change);

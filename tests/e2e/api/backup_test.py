@@ -272,7 +272,7 @@ def test_a_backup_is_made_while_people_paint(server, whole, story):
     painters.end()
     assert done.returncode == 0 and "backed up 1 model, 2 layers" in done.stdout, done
     assert os.stat(whole).st_mode & 0o077 == 0  # the folder contains password hashes
-    assert "whole: 1 model" in strata("restore", whole, "--check").stdout
+    assert "complete: 1 model" in strata("restore", whole, "--check").stdout
 
 
 def test_what_is_there_is_not_written_over(server, whole):
@@ -308,7 +308,7 @@ def test_another_database(server, whole):
     server.sql("CREATE DATABASE copy")
     copy = f"host='{socket_folder}' user=strata dbname=copy password='it\\'s a : secret'"
     done = strata("restore", whole, "--database", copy)
-    assert done.returncode == 0 and "every table is what was backed up" in done.stdout, done
+    assert done.returncode == 0 and "every table equals the backup" in done.stdout, done
     refused("restore", whole, "--database", copy, told="Database not empty")
     refused("restore", whole, "--database", "host=", told="strata: ")
     again = strata("backup", whole + "-copy", "--database", copy)
@@ -336,7 +336,7 @@ def test_a_backup_is_restored_elsewhere_and_work_goes_on(server, whole, second, 
         ),
         "the second try to restore",
     )
-    assert "every table is what was backed up" in done.stdout, done
+    assert "every table equals the backup" in done.stdout, done
     with second:
         newest = max(
             edit["sequence"]

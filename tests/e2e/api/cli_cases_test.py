@@ -120,7 +120,7 @@ def listing(folder):
 def test_the_doctor_changes_nothing(folder):
     data = os.path.join(folder, "nothing here")
     done = strata("doctor", "--data", data)
-    assert done.returncode == 0 and "made at the first start" in done.stdout, done
+    assert done.returncode == 0 and "the first start creates" in done.stdout, done
     assert not os.path.exists(data), "doctor made the data folder"
     with StrataServer() as server:
         done = strata("doctor", "--data", server.data)

@@ -190,8 +190,8 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
 }
 
 // Sets or removes the expression of a numeric layer. With an empty expression, the layer becomes an
-// ordinary layer and keeps its values. `before` is the former visibility. Users who can see the
-// layer only now must not see hidden layers through it.
+// ordinary layer and keeps its values. `before` is the former visibility. Users who could not see
+// the layer before must not see hidden layers through it.
 Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& body,
                          Visibility before, Layer& layer) {
   const bool is_seen_by_more = layer.formula && layer.visibility < before;

@@ -118,8 +118,11 @@ Result<room::Selection::Changed> changed_of(const RouteContext& context, const r
 Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& body,
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
-    return fail(ErrorCode::forbidden, "Not allowed",
-                "To paint on a layer with `into`, you need the role annotator.", "into");
+    return fail(
+        ErrorCode::forbidden, "Not allowed",
+        "Only annotators can use `into`, because it paints on a layer. Ask an administrator "
+        "for the role annotator.",
+        "into");
   if (!body.where || body.within || body.at || body.changed)
     return fail(ErrorCode::invalid, "Cannot paint this area",
                 "`into` paints where a condition is true now. Send `where` without `within`, "

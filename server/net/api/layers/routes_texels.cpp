@@ -82,7 +82,8 @@ Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
       std::uint64_t(layer.resolution) * layer.resolution * kTexelBytes + (1u << 20);
   if (bytes <= most) return {};
   return fail(ErrorCode::too_large, "Raster too large",
-              "A raster of this layer can have at most " + std::to_string(most) + " bytes.",
+              "A raster of this layer can have at most " + std::to_string(most) +
+                  " bytes. Send a raster with the resolution of the layer.",
               "body");
 }
 

@@ -108,7 +108,7 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
   if (!column || holds_lists(column->kind))
     return fail(ErrorCode::invalid, "Column not found",
                 "The table '" + table->slug + "' has no column '" + body.column +
-                    "' that contains a single text or number.",
+                    "' with one value in each record. Choose such a column for the labels.",
                 "labels.column");
   figure.labels = {*layer, *column};
   return {};

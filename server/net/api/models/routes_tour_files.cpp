@@ -74,14 +74,14 @@ Result<store::NewTourFile> accepted(const Upload& upload, const std::string& req
   if (unreadable || bytes > max_bytes(*kind))
     return fail(ErrorCode::invalid, "File too large",
                 "A " + std::string(protocol::name(*kind)) + " file of a tour can be at most " +
-                    std::to_string(max_bytes(*kind) >> 20) + " MiB large.");
+                    std::to_string(max_bytes(*kind) >> 20) + " MiB large. Use a smaller file.");
   if (*kind == Kind::picture && !(file.width && file.height))
     return fail(ErrorCode::invalid, "Picture not readable",
                 "The picture is damaged. Save it again in another program.");
   if (*kind == Kind::picture && std::max(*file.width, *file.height) > kMaxSide)
-    return fail(
-        ErrorCode::invalid, "Picture too large",
-        "Each side of a picture can be at most " + std::to_string(kMaxSide) + " pixels long.");
+    return fail(ErrorCode::invalid, "Picture too large",
+                "Each side of a picture can be at most " + std::to_string(kMaxSide) +
+                    " pixels long. Reduce the picture.");
   return file;
 }
 

@@ -83,7 +83,7 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
 }
 
 Result<Response> sign_out(const RouteContext& context, const Request& request) {
-  // A token for scripts stays valid at a sign-out. Users revoke it explicitly.
+  // A token for scripts stays valid after a sign-out. Users revoke it explicitly.
   if (request.principal->by_cookie) {
     const std::string session = Authenticator::secret_of(request);
     STRATA_TRY(context.auth.end_session(session));

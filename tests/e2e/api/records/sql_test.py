@@ -71,7 +71,8 @@ def reader(server, port):
 
 
 def test_areas_of_a_project_from_before_sums_were_kept(server, reader):
-    """The journal of the demo project's layers has no sums. The running server counts them once."""
+    """The journal of the demo project's layers has no sums of areas. The running server computes
+    these sums once."""
     wait_for(
         lambda: reader.rows("SELECT count(*) FROM layers WHERE NOT areas_current")[0]["count"]
         == "0",
@@ -380,7 +381,7 @@ def test_without_the_option_nobody_listens(server, port):
 def test_command_line(server):
     binary = server.binary
     for listen, code, words in (
-        ("0.0.0.0:5433", 1, "only on loopback"),
+        ("0.0.0.0:5433", 1, "only loopback addresses"),
         ("127.0.0.1:0", 106, "port"),
         ("nonsense", 106, "HOST:PORT"),
     ):
