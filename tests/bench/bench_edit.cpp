@@ -1,5 +1,5 @@
-// Measures edits with Strata's tiles, the paper's algorithms and the paper's octree rival. All
-// methods use the same context in the same run.
+// Measures edits with Strata's tiles, with the paper's algorithms, and with the octree to which the
+// paper compares them. All methods use the same GL context in the same run.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -28,8 +28,8 @@ constexpr int kWidth = 1280, kHeight = 720;
 const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290},
                                {580, 340}, {690, 420}, {620, 380}};
 constexpr std::size_t kCompared = 3;  // the number of leading centers that are compared
-// The least memory traffic of a texel: position 8, depth 4, value and flag read and written 4, plus
-// the rest of each cache line.
+// The least memory traffic for one texel, in bytes: 8 for the position, 4 for the depth, 4 to read
+// and write the value and the flag, and 4 for the unused rest of cache lines.
 constexpr double kBytesPerTexel = 20;
 
 struct Measured {

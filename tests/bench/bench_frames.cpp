@@ -1,5 +1,5 @@
-// Measures the processor time of frames of a moving camera with two or more folders of shaders. The
-// folders take turns frame by frame, so other programs on the machine affect all of them equally.
+// Measures the processor time of frames of a moving camera, drawn with the shaders of two or more
+// folders. The folders take turns frame by frame, so other programs affect all of them equally.
 // Also measures whether the refinement of one view delays the pixels of a change in another.
 #include <cmath>
 #include <ctime>

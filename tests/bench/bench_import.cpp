@@ -1,5 +1,5 @@
-// Measures two times: from a file to the first frame, and from the start of a stopped server with a
-// painted site to the first frame.
+// Measures two durations: from the start of an import to the first frame of the model, and from the
+// restart of a server whose model has painted layers to the first frame.
 #include <cmath>
 #include <iostream>
 

@@ -53,8 +53,8 @@ std::map<TileAddress, TileData> all_of(const mesh::SurfaceMap& map, ValueType ty
   return tiles;
 }
 
-// Paints a patch whose radius it finds by bisection. The percentage is of all texels that can have
-// a value.
+// Paints a patch that covers about `percent` of all texels that can have a value. Finds the radius
+// of the patch by bisection.
 std::map<TileAddress, TileData> painted(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                                         const mesh::Geometry& geometry, ValueType type,
                                         double percent) {

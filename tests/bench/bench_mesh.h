@@ -12,9 +12,9 @@
 
 namespace strata::bench {
 
-// A named mesh. The name is one of: `pot` or `pot:TRIANGLES`, which this process generates; a file
-// in any format of an import; or a preset of the data folder's make_big_mesh.py (vessel,
-// excavation, amazon, thai, textured10m), made once into `cache`.
+// A named mesh. The name is `pot` or `pot:TRIANGLES`, which this process generates; a file in any
+// format that the importer reads; or a preset of the data folder's make_big_mesh.py (vessel,
+// excavation, amazon, thai, textured10m), which is generated once, in `cache`.
 struct BenchMesh {
   std::string name;
   std::shared_ptr<const mesh::Geometry> geometry;  // with an atlas
@@ -49,7 +49,7 @@ Result<std::vector<std::string>> all_meshes();
 Result<mesh::LoadedMesh> load_named_mesh(const std::string& name,
                                          const std::filesystem::path& cache, Progress& progress);
 
-// Keeps the file's own texture coordinates if they can have layers and `make_always` is false.
+// Keeps the file's own texture coordinates if layers can use them and `make_always` is false.
 Result<BenchMesh> load_bench_mesh(const std::string& name, const BenchMeshOptions& options = {});
 
 }  // namespace strata::bench

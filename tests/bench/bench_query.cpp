@@ -111,8 +111,8 @@ class Queries {
                  const char* accept = "application/json") {
     return client_->post(path, body, accept).elapsed_ms;
   }
-  // Measures the time from a filter in a view to the frame that highlights the matching records, at
-  // the socket, at 720p.
+  // Measures the time from the request for a filter in a view until the socket has the frame that
+  // highlights the matching records, at 720p.
   void light_up() {
     make_parts();
     FrameClient viewer;

@@ -15,7 +15,7 @@ namespace strata::bench {
 namespace {
 
 constexpr int kPicture = 480;  // in pixels, square
-constexpr int kFiner = 2;      // drawn larger by this factor against flicker of distant squares
+constexpr int kFiner = 2;      // drawn larger by this factor to reduce aliasing of distant squares
 constexpr int kCaption = 62;   // pixels below a row
 constexpr int kHeader = 54;
 constexpr int kTexture = 2048;  // texels along one side of the checker layer

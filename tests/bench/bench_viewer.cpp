@@ -1,5 +1,5 @@
-// Measures one client at 720p, in this process and up to the socket: the time from a stroke to its
-// pixels, the frames of a moving camera, and the stored bytes of steady painting.
+// Measures one client at 720p, in this process and without a socket: the time from a stroke to its
+// pixels, the frames of a moving camera, and the bytes stored during steady painting.
 #include <cmath>
 #include <future>
 #include <iostream>

@@ -2,8 +2,9 @@
 """draw_annotators.py RESULT.json [OUT.svg]: draws the time until strokes are seen and saved, as
 `annotators_test.py --json` measured it, and prints its table.
 
-The figure (NAME.svg next to the result) shows the share of strokes over the milliseconds since each
-was sent. Prints the table of results/annotators.md. Needs only Python."""
+The figure (NAME.svg next to the result) shows the share of strokes that were seen or saved, over
+the milliseconds since each stroke was sent. Prints the table of results/annotators.md. Needs only
+Python."""
 import json
 import sys
 from pathlib import Path

@@ -142,7 +142,8 @@ def draw_radius(rows, model, path):
 
 
 def draw_bars(rows, models, value_of, groups, title, unit, path):
-    """Draws groups (radius, texture) of models of methods; `value_of` returns the value of a row on
+    """Draws one group of bars for each pair of radius and texture size. A group has a cluster for
+    each model, and a cluster has a bar for each method. `value_of` returns the value of a row on
     the logarithmic axis."""
     methods = present(rows)
     bar, gap, top, bottom, left = 8, 12, 60, 300, 70

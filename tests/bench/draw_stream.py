@@ -2,11 +2,11 @@
 """draw_stream.py RESULT.json [OUT_DIR]: draws figures and tables of `strata-bench stream --json`.
 
 Writes OUT_DIR/NAME-times.svg (from a camera and from a stroke to pixels, over the number of active
-viewers, one panel for each link), NAME-rates.svg (pictures a second of a viewer, and of a second of
-the server's processors) and, if the peer was measured, NAME-peer.svg. NAME is that of the result.
-Prints the tables of results/streaming.md as Markdown. Figures are medians of the runs of a case;
-whiskers reach the 95th percentile of times, and the lowest and highest run of other figures. Needs
-only Python."""
+viewers, one panel for each link), NAME-rates.svg (frames per second of a viewer, and frames per
+processor second of the server) and, if the peer was measured, NAME-peer.svg. NAME is that of the
+result. Prints the tables of results/streaming.md as Markdown. Values are medians of the runs of a
+case. Whiskers of times end at the 95th percentile, and whiskers of other values end at the lowest
+and the highest run. Needs only Python."""
 import json
 import statistics
 import sys
@@ -70,7 +70,7 @@ PANEL, LEFT, TOP, BOTTOM, LEGEND = 300, 62, 44, 290, 20
 
 
 def values(row, *path):
-    """Returns the values of all runs that have one."""
+    """Returns the values of all runs that have a value."""
     found = []
     for run in row["runs"]:
         for name in path:

@@ -62,7 +62,7 @@ Decision decide(const EditScene& scene, const render::DepthCopy& depth, glm::dve
                                          std::abs(before) < 1e-6};
 }
 
-// The depth of the scene on the GPU. Every system already has it, because it draws the scene.
+// The depth of the scene on the GPU. Every system needs this depth anyway to draw the scene.
 class SceneDepth {
  public:
   SceneDepth(render::Renderer& renderer, const EditScene& scene) : renderer_(renderer) {
@@ -197,7 +197,7 @@ class EditMethods::Paper {
   EditCreation creation_;
 };
 
-// One tree with one layer. Either method can paint it.
+// One tree with one layer, which both octree methods can paint.
 class EditMethods::Tree {
  public:
   static Result<std::shared_ptr<Tree>> create(render::Renderer& renderer, const EditScene& scene,
@@ -377,7 +377,7 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
       const std::size_t x = map.block_of_slot[slot] % per_side * 8 + i % 8;
       const std::size_t y = map.block_of_slot[slot] / per_side * 8 + i / 8;
       // Skip texels that the paper's raster does not cover: the paper treats them as padding,
-      // although a thin triangle may own them in tiles.
+      // although a thin triangle may own them in Strata's tiles.
       if (!coverage[y * side + x]) continue;
       const bool a = theirs[y * side + x] != 0, b = written[y * side + x] != 0;
       agreement.compared += a || b;

@@ -34,8 +34,8 @@ struct EditCreation {
 };
 
 // One method of painting a dab. The constructor makes all data. `creation` reports the cost of that
-// data, and `edit` does not include it. Neither includes the depth of the scene, which every method
-// except rays takes as given.
+// data, and `edit` does not include it. Neither includes the cost of the scene's depth, which every
+// method except rays uses and which the renderer has anyway.
 class EditMethod {
  public:
   virtual ~EditMethod() = default;

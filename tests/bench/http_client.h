@@ -9,8 +9,8 @@
 
 namespace strata::bench {
 
-// One connection to a server on this machine. It stays open, like those of scripts. Any response
-// except a success ends the bench.
+// One connection to a server on this machine. It stays open, as the connections of scripts do. Any
+// response except a success ends the bench.
 class HttpClient {
  public:
   struct Answer {

@@ -4,16 +4,16 @@ for closed connections.
 
     STRATA_BINARY=build/release/bin/strata tests/bench/one_reader.py [--json FILE] [--only NAME,…]
 
-frame      a picture of 320 × 180 of one person: alone, and during three of 8192² of another person
-           (median and longest of several)
-list       a condition of 1900 items over a filled layer of 4096²
+frame      seconds for a frame of 320 × 180 of one user: alone, and while another user requests
+           three frames of 8192² (median and longest of several)
+list       seconds for a condition of 1900 items over a filled layer of 4096²
 leave      seconds from closing the connections until the server has used no processor for half a
            second: after long conditions, after large pictures
 stop       seconds from SIGTERM to the end of the process, during both
-empty      memory for statistics of an empty layer of 16384², at most and afterward
-points     1 200 000 points: until the server refuses them
+empty      memory for statistics of an empty layer of 16384²: at most and afterward
+points     seconds until the server refuses 1 200 000 points
 
-Prints a line for each. Needs only Python and the server.
+Prints one line for each measurement. Needs only Python and the server.
 """
 import argparse
 import http.client

@@ -4,11 +4,12 @@
   STRATA_BINARY=build/release/bin/strata tests/bench/shape_times.py SCAN.ply [--unit mm] \
     [--resolution 4096] [--from OTHER.ply] [--kinds slope,…] [--cancel] [--json FILE]
 
-Each is done once, after one that is not counted, which opens the model and maps its surface. Prints
-seconds on the clock; seconds of the server's processors, which are the ones to compare if other
-programs use the machine, too; the most memory of the server (not of its PostgreSQL) in that time;
-and the longest time without a change in the job's visible progress. With --cancel each is started
-again and cancelled after a quarter, half and most of that time: the longest time to its end.
+Computes each layer once. The first layer is not counted, because its job also opens the model and
+makes the surface map. Prints the elapsed seconds, the processor seconds of the server, the peak
+memory of the server (without its PostgreSQL), and the longest time without a change in the job's
+visible progress. If other programs use the machine too, compare the processor seconds. With
+--cancel, also starts each job again, cancels it after a quarter, half and most of its time, and
+prints the times from the request to cancel to the end of the job.
 """
 import argparse
 import json

@@ -10,8 +10,8 @@
 
 namespace strata::bench {
 
-// Measures seconds, processor seconds and peak memory of the steps of long work. Its progress
-// messages separate the steps. A thread reads the messages once a millisecond.
+// Measures seconds, processor seconds and peak memory of the steps of long work. The progress
+// messages of the work separate the steps. A thread reads the messages once a millisecond.
 class StepWatch {
  public:
   // Runs `work` and records each message that `progress` shows as a step. `name` is the step before

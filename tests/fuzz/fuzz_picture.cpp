@@ -27,7 +27,7 @@ void check_shape(const strata::Picture& picture) {
              texture.is_set(i % strata::kShapeSide, i / strata::kShapeSide));
     const auto again = strata::shape_of(strata::picture_of(*bits), strata::ShapePart::opaque);
     demand(again.has_value() && *again == *bits);
-    return;  // one is enough, because its preparation takes longer than all other steps
+    return;  // one shape is enough: its preparation takes longer than all other steps
   }
 }
 

@@ -193,7 +193,7 @@ Bytes cmyk_jpeg_of(const Bytes& rgba, int width, int height, Inks inks) {
     Bytes row;
     for (int x = 0; x < width; ++x) {
       const std::uint8_t* p = &rgba[4 * (std::size_t(y) * width + x)];
-      // These inks have no black, so the stored inverted value is the color itself.
+      // These CMYK colors have no black, so the stored inverted value is the color itself.
       for (int c = 0; c < 3; ++c)
         row.push_back(inks == Inks::plain_cmyk ? static_cast<std::uint8_t>(255 - p[c]) : p[c]);
       row.push_back(inks == Inks::plain_cmyk ? 0 : 255);

@@ -34,7 +34,7 @@ Bytes bmp_of(const Bytes& rgba, int width, int height, int bits, bool top_down =
 Bytes tga_of(const Bytes& rgba, int width, int height, int bits, bool packed);
 
 enum class Inks { adobe_cmyk, adobe_ycck, plain_cmyk };
-// Stores the colors of `rgba` as inks of the given kind.
+// Stores the colors of `rgba` as CMYK values of the given kind.
 Bytes cmyk_jpeg_of(const Bytes& rgba, int width, int height, Inks inks);
 
 }  // namespace strata::test

@@ -28,8 +28,8 @@ inline std::string number(double value) {
 
 using ShapeRings = std::vector<std::vector<std::pair<double, double>>>;
 
-// Returns the content of a polygon's record; without rings, a null shape. Type 15 has a Z of 0
-// everywhere.
+// Returns the content of a polygon's record, or a null shape if there are no rings. Type 15 has a Z
+// of 0 everywhere.
 inline std::string polygon_record(const ShapeRings& rings, std::uint32_t type = 5) {
   if (rings.empty()) return little_endian(0);
   std::string starts, points;

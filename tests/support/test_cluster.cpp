@@ -36,8 +36,8 @@ const auto* const kStopAtEnd = ::testing::AddGlobalTestEnvironment(new StopAtEnd
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  // In memory if it has enough space: a disk makes every initdb slow, and the tests kill processes,
-  // not machines, so the data need not survive a power failure.
+  // Use main memory if it has enough space, because every initdb is slow on a disk. The tests kill
+  // processes, not machines, so the data need not survive a power failure.
   std::error_code error;
   const char* parent = std::getenv("STRATA_TEST_TMP");
   const auto space = std::filesystem::space("/dev/shm", error);

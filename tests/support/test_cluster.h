@@ -10,8 +10,8 @@
 namespace strata::test {
 
 // Returns the private PostgreSQL of the test program. It starts at first use in a temporary folder
-// and is removed at the end. It is a copy of the result of tests/support/prepare if
-// STRATA_TEST_PREPARED names that, otherwise a new one. Link strata_cluster_support.
+// and is removed at the end. If STRATA_TEST_PREPARED names the folder of tests/support/prepare, the
+// cluster is a copy of the prepared one, otherwise a new one. Link strata_cluster_support.
 store::Cluster& shared_cluster();
 
 // Sends kill -9 to the postmaster and waits until it has ended, so `ensure_running` can notice.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The files in docker/ agree with one another and with the program: the part of docker/check, which
-takes half an hour, that reading alone can test."""
+"""The files in docker/ agree with one another and with the program. This test only reads the files.
+docker/check runs them, which takes half an hour."""
 import os
 import re
 import sys

@@ -9,11 +9,11 @@
 
 namespace strata::bench {
 
-// The octree OCT-TR (Torres et al. 2010, as the paper describes its rival). A cube around the model
-// is divided by eight down to a given depth. The leaves are the cells that the surface crosses. A
-// layer has one value for each leaf, in the order of the leaves. The tree is small and quick to
-// traverse: an inner node takes 8 bytes, and leaves are in Morton order without nodes or lists of
-// triangles.
+// The octree OCT-TR (Torres et al. 2010), as the paper describes it. A cube around the model is
+// divided into eight parts, and each part again, down to a given depth. The leaves are the cells
+// that the surface crosses. A layer has one value for each leaf, in the order of the leaves. The
+// tree is small and quick to traverse: an inner node takes 8 bytes, and leaves are in Morton order
+// without nodes or lists of triangles.
 class Octree {
  public:
   struct Node {

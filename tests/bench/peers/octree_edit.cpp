@@ -100,7 +100,7 @@ std::int64_t cast(const Octree& tree, const glm::dvec3& from, const glm::dvec3& 
 constexpr int kPlanes = 8;  // an octagon around the disc
 
 // The values for the tests of a node, which are linear in its center: the eight distances from the
-// planes, then clip x, y, z and w.
+// planes, and the clip coordinates x, y, z and w.
 struct alignas(16) Place {
   float planes[kPlanes];
   float clip[4];

@@ -13,8 +13,8 @@ namespace strata::bench {
 // The "small bias" of the paper, in window depth; the paper gives no number. With a camera whose
 // near and far planes are as close to the model as those of `look_at`, this is 1.6 % of the model's
 // radius. A bias of 2e-4 would reject parts of every surface with a tilt of more than 13 degrees,
-// because the depth varies by more than that within a pixel. The edit would be speckled, and at its
-// many thresholds rounding would decide 3 to 11 of 100 000 texels.
+// because the depth varies by more than that within a pixel. The edit would be speckled, and
+// rounding at its many thresholds would decide 3 to 11 of 100 000 texels.
 constexpr double kPaperDepthBias = 5e-3;
 
 // The paper's method, implemented literally. The Texture Editing Algorithm draws the whole mesh at
@@ -24,8 +24,8 @@ constexpr double kPaperDepthBias = 5e-3;
 // outline is 1 texel wide. Two passes make the outline mask when the model is loaded. A formula
 // defines the tool as a disc. The map from window to tool is derived here, because the printed
 // translation factor has the wrong sign and lacks ½. Each edit is one dab with values of 8 bits.
-// The published padding is a raster pass. A compute pass avoids the few multiprocessors that
-// rasterize on H100-class GPUs. All functions run on the GPU thread only.
+// The published padding is a raster pass; the alternative is a compute pass, because only a few
+// multiprocessors of GPUs such as the H100 rasterize. All functions run on the GPU thread only.
 class PaperEditor {
  public:
   enum class Padding { raster, compute };
@@ -44,7 +44,7 @@ class PaperEditor {
   // Returns 1 where the parametrization has texels.
   std::vector<std::uint8_t> coverage() const { return read(coverage_); }
   std::uint64_t layer_bytes() const { return data_.bytes() + mask_.bytes(); }
-  // The bytes for one resolution.
+  // The bytes that one resolution needs in addition to its layers.
   std::uint64_t structure_bytes() const { return edited_.bytes() + outline_.bytes(); }
 
  private:

@@ -4,9 +4,9 @@ makes pictures of a turning camera with ParaView's web engine,
 vtkPVWebApplication.StillRenderToBuffer, as its server (pvpython -m paraview.apps.…) does for a
 page: a JPEG for each camera. Prints one line, "figures: " and JSON.
 
-A picture is complete when its own JPEG is: the engine encodes while it draws, and returns the
-previous picture during `GetHasImagesBeingProcessed`. No socket is included. Needs a display (Xvfb)
-and Debian's paraview python3-paraview."""
+A picture is complete when the engine returns its own JPEG. The engine encodes while it draws, and
+returns the JPEG of the previous picture while `GetHasImagesBeingProcessed` is true. The times
+include no socket. Needs a display (Xvfb) and Debian's packages paraview and python3-paraview."""
 import argparse
 import json
 import math
@@ -23,7 +23,7 @@ TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def seconds_of(pid):
-    """Returns the seconds of processors: user and system."""
+    """Returns the user and system time of a process, in seconds."""
     with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
         fields = file.read().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / TICKS

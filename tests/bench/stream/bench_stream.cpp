@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& option
       if (!stalls) continue;
       CrowdCase stalled = common;
       stalled.has_stalled = true;
-      add("stalled", stalled, link, active, all_hands.back());  // also run without it
+      add("stalled", stalled, link, active, all_hands.back());  // to compare with the case above
     }
   }
   for (const int idle : options.idle) {

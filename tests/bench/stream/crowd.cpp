@@ -17,7 +17,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr std::size_t kOpenAtOnce = 16;  // the server allows 256 concurrent requests (then 503)
+constexpr std::size_t kOpenAtOnce = 16;  // the server refuses (503) a 257th concurrent request
 constexpr double kMaxOpening_s = 600;
 constexpr double kQuiet_s = 0.5, kQuietAtRest_s = 2, kMaxSettling_s = 180;
 constexpr double kWarming_s = 1;

@@ -83,7 +83,7 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
   asio::awaitable<void> run() {
     auto self = shared_from_this();
     server_.open(tcp::v4());
-    keep_short(server_);  // must precede the negotiation of the window
+    keep_short(server_);  // must precede the negotiation of the TCP window
     auto [error] = co_await server_.async_connect(state_->server, kUseResult);
     if (error) co_return close();
     error_code ignored;

@@ -36,7 +36,7 @@ nlohmann::json ParaViewPeer::measure(const std::filesystem::path& ply, int width
   ChildProcess screen(
       {xvfb_.string(), "-displayfd", "1", "-screen", "0", size + "x24", "-nolisten", "tcp"},
       folder / ("xvfb-" + run + ".log"));
-  const auto display = screen.said("", kStarting);  // the first line is only the number
+  const auto display = screen.said("", kStarting);  // the first line is the display's number
   if (!display) {
     std::fprintf(stderr, "strata-bench: Xvfb: %s\n", screen.last_words().c_str());
     std::exit(1);

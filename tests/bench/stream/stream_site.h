@@ -16,7 +16,7 @@ class StreamSite {
 
   struct Settings {
     std::filesystem::path server;  // empty: `strata` in this program's folder
-    std::string model;             // a name as in BenchMesh, of one file
+    std::string model;             // a name as in BenchMesh; the mesh must be one file
     std::filesystem::path cache;
     int layers = 0, width = 0, height = 0;
     double radius_px = 0;

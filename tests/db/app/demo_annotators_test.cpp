@@ -1,5 +1,5 @@
-// The recorded annotators of the demo: they paint for a lone visitor, and leave the model
-// unchanged.
+// The recorded annotators of the demo: they paint while exactly one visitor is in the room, and
+// then undo their strokes, so the model does not change.
 #include "app/demo/demo_annotators.h"
 
 #include <chrono>
@@ -83,7 +83,7 @@ class Annotators : public test::RoomTest {
   TileMap before_;
 };
 
-// One demo project serves all three scenes, because making it takes long.
+// One demo project serves all three scenes, because its creation takes long.
 TEST_F(Annotators, paint_for_a_lone_visitor_and_take_it_back) {
   paint_and_leave();
   leave_when_a_second_person_comes();

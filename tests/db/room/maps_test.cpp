@@ -1,4 +1,4 @@
-// Painting maps and measurements over a layer as one edit, with a real database and renderer.
+// Maps and measurements are painted over a layer as one edit, with a real database and renderer.
 #include <cmath>
 
 #include "room/edit.h"

@@ -167,7 +167,7 @@ TEST_F(RoomPast, a_lost_context_does_not_end_the_view_of_the_past) {
   screen.member.reset();
 }
 
-// Expects the tiles of every state, read from the tiles of any other state.
+// Expects that the tiles of each state can be loaded if the tiles of any other state are given.
 TEST_F(RoomPast, every_state_is_read_from_every_other_one) {
   std::mt19937 random(7);
   std::vector<TileMap> states{{}};  // by sequence

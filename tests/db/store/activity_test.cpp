@@ -327,7 +327,7 @@ TEST_F(ActivityOfAProject, lines_of_a_model_go_where_it_goes) {
                                       "ada edit stroke layer ×1"));
 }
 
-// An index reads pages in order. It reads only the rows of the page, even in a long history.
+// The database finds the rows of a page in an index, and reads no other rows of a long history.
 TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells) {
   ASSERT_TRUE(connection_->query(
       "INSERT INTO activities (project_id, model_id, subject, user_name, kind, op, begun, time) "
@@ -355,7 +355,7 @@ TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells)
   ASSERT_EQ(first.lines.size(), 50u);
   ActivityPlace deep = first.next.value();
   deep.time_us -= 60'000 * std::int64_t{1'000'000};
-  for (int i = 0; i < 10; ++i) {  // after some runs, PostgreSQL uses a plan that fits any position
+  for (int i = 0; i < 10; ++i) {  // after some runs, PostgreSQL uses one plan for all positions
     ASSERT_EQ(page({.before = deep, .limit = 50}).lines.size(), 50u);
     ASSERT_EQ(page({.model = model_.id, .before = deep, .limit = 50}).lines.size(), 50u);
   }

@@ -1,4 +1,4 @@
-// The views of positions and names for analysts: well-known text that GIS programs draw.
+// The views for analysts: names, and positions as well-known text, which GIS programs draw.
 #include <gtest/gtest.h>
 
 #include "db/journal_painter.h"

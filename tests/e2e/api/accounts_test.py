@@ -404,7 +404,8 @@ def test_deletion(server, story):
 
 
 def test_commands(server):
-    """The commands do the same on the server's own machine, while the server runs."""
+    """The command line can change accounts too, on the server's own machine and while the server
+    runs."""
 
     def strata(*words, entered=None, code=0):
         done = subprocess.run(

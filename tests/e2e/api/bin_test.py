@@ -1,5 +1,5 @@
 """The trash: no operation returns deleted content. Deleted content survives kill -9, is restored
-with texels, history and values, and is erased after its time."""
+with texels, history and values, and is erased when its time in the trash ends."""
 import pytest
 from support.cameras import camera_from
 from support.kiosk_site import make_kiosk
@@ -156,8 +156,8 @@ def site():
 
 
 def test_layers(site):
-    """A layer is deleted and restored unchanged, also after kill -9. Its name is free until
-    then."""
+    """A layer is deleted and restored unchanged, even after kill -9. While it is in the trash, its
+    name is free."""
     server = site.server
     before = site.state()
     with LiveClient(server, "sheet") as live:

@@ -1,7 +1,7 @@
 """Tours over HTTP, and the links of kiosks that show them. The file tests the rights to make tours
 and links. It tests the content that a kiosk sees: the public part of its model, read only, in every
-operation of the contract. It also tests a kiosk's cookie in addition to a user's cookie, and its
-end."""
+operation of the contract. It also tests a browser with the cookies of a kiosk and of a user, and
+the end of links."""
 import subprocess
 import uuid
 
@@ -474,7 +474,7 @@ def test_live(server, story, camera):
 
 
 def test_commands(server):
-    """The commands do the same on the server's own machine."""
+    """The command line can manage links too, on the server's own machine."""
 
     def strata(*words, code=0):
         done = subprocess.run(

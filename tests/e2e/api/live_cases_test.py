@@ -40,7 +40,7 @@ def wait_for_picture(live, seq):
 
 
 def test_leaving(server):
-    """The system has its memory again after many viewers have left."""
+    """After many viewers have left, the server returns their memory to the system."""
     model = server.get(M).json()
     with ExitStack() as people:
 

@@ -178,8 +178,8 @@ def test_https_from_files(folder):
         ) as link:
             assert link.version() == "TLSv1.2"
 
-        # requests to http:// are redirected; connections without HTTP, or with a late start, cause
-        # no failure
+        # The server redirects requests to http://. Connections that send random bytes, or nothing,
+        # have no effect on it.
         with socket.create_connection((server.host, server.port)) as plain:
             plain.sendall(
                 f"GET /pot?x=1 HTTP/1.1\r\nHost: {server.host}:{server.port}\r\n\r\n".encode()

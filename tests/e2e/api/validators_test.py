@@ -337,7 +337,7 @@ def test_left_alone(server):
 
 
 def test_a_tag_is_good_until_a_restart(server):
-    """After a restart the database may be another one."""
+    """After a restart the server may use another database, so earlier tags are not valid."""
     asked = M + "/layers/finds/statistics"
     tag = server.get(asked).headers["ETag"]
     assert server.stop() == 0

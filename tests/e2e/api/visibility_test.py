@@ -348,7 +348,8 @@ def test_ladder(server, viewer, annotator, curator, public):
 
 
 def test_nothing_hidden_shows_through(server):
-    """A private source never produces content that more users can see, in any way."""
+    """The server refuses every operation that would show content of a private source to more
+    users."""
 
     def refused(status, method, path, body, field):
         answer = server.request(method, path, body)

@@ -56,8 +56,8 @@ def let_through(answers):
 
 
 def while_slowed(guess, ask, expected):
-    """Returns the response to `ask` directly after a limited guess. Repeats both if the limit has
-    allowed a guess in between."""
+    """Returns the response to `ask` directly after a guess that the limit refused. Repeats both if
+    the limit has allowed a guess in between."""
 
     def tried():
         if not is_slowed(guess()):

@@ -1,5 +1,5 @@
 """The live connection: messages that are too large, too many, malformed or in another user's name,
-and connections whose right ends."""
+and open connections of users who lose the right to them."""
 import itertools
 import json
 import os
@@ -302,7 +302,7 @@ def in_others_names(server, section):
 
 
 def outlived(server, section):
-    """Tests open connections whose right ends."""
+    """Tests open connections of users who lose the right to them."""
 
     def demoted(user):
         server.ok("PATCH", f"/users/{user}", {"role": "viewer"})

@@ -101,7 +101,7 @@ def beside(server, section, viewer):
     links = []
 
     def as_many_wait_as_may():
-        # the server may respond to some queries before
+        # the server may respond to some queries before all of them wait
         links.extend(sent(server, M + "/select", {"where": LONG}, viewer) for _ in range(15))
         return metric(server, "strata_waiting_questions") >= 32
 

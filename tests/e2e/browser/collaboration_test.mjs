@@ -63,7 +63,7 @@ test("a layer of classes is created in the dialog", async () => {
   );
   [bone, glass] = layer.palette.points.map((point) => rgb(point.color));
   path = `/models/${id}/layers/${layer.id}`;
-  // other layers would disturb the counting of pixels
+  // other layers could have pixels of the same color
   for (const other of layers.layers)
     if (other.id !== layer.id)
       await server.json("PATCH", `/models/${id}/layers/${other.id}`, { visible: false });

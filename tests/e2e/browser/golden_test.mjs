@@ -243,7 +243,7 @@ function distance_to(path, x, y) {
   return least;
 }
 
-/** painting across a seam of the atlas shows no visible seam */
+/** Checks that a stroke across seams of the atlas has no visible seam. */
 async function compare_seam(server) {
   const camera = pot_camera(960, 720);
   const path = [
@@ -319,7 +319,7 @@ async function compare_seam(server) {
   );
 }
 
-/** the pot with a section and with its inside painted, and its relief in raking light */
+/** Compares the pot with a section and a painted inside, and its relief in raking light. */
 async function compare_cut(server) {
   // the section removes the half that is nearer to the camera
   const camera = { ...pot_camera(960, 720, 0.3), section: [[0, 1, 0, 0]] };

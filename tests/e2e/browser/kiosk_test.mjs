@@ -26,8 +26,8 @@ const kUpright = { width: 1080, height: 1920 };
 // the test itself uses the last screen
 const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright];
 const kTarget_px = 57; // 15 mm on the screen of a kiosk
-// In MB, for the page and below for the server. The limits allow for the allocators of both with
-// the same work, but not for a leak of one picture per round.
+// In MB, for the page and (next line) for the server. The allocators of both grow a little although
+// the work stays the same. The limits allow this growth, but not a leak of one picture per round.
 const kMostHeapGrowth = 1.5;
 const kMostServerGrowth = 48; // in MB
 const kMostNodeGrowth = 60;
@@ -569,7 +569,7 @@ test(`memory stays flat over ${kRounds} visitors`, async () => {
   const told = ({ heap_mb, nodes, listeners, server_mb: rss }) =>
     `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
   await cdp.send("Performance.enable");
-  // each stop with the smallest number of cameras on the way to it
+  // each stop, with the smallest number of cameras that the page sends on the way to it
   const kStops = [
     ["The vessel from the well", 2],
     ["Fourteen sherds", 2],

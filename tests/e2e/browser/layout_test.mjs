@@ -1,6 +1,6 @@
-// The layout at the window sizes of phones, tablets, desktop computers and wall displays. The selected
-// element becomes visible, menus stay inside the window, and scrolling rows show that they scroll.
-// Texts match the available pointers, and are readable on wall displays.
+// The layout at the window sizes of phones, tablets, desktop computers and wall displays. The
+// selected element becomes visible, menus stay inside the window, and scrolling rows show that they
+// scroll. Texts match the available pointers, and are readable on wall displays.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";

@@ -200,7 +200,7 @@ test("decide later: what the card named is kept, marked, and asked again", async
   await bar_says(desk, "(mm|cm)");
   assert.match(await bar(desk), /Size not confirmed/);
   const without_card = await ground(desk);
-  // dimming subtracts 80, and JPEG only a few
+  // dimming subtracts 80 from this sum of channels, and JPEG changes the sum by less than 12
   assert.ok(
     Math.abs(without_card - with_card) < 12,
     `the picture was dimmed while the card was open: ${with_card} of ${without_card}`,

@@ -16,7 +16,7 @@ let steps = 0,
   model,
   observations;
 
-/** One walk. It fails if it takes more than `most` steps. */
+/** Runs one task. It fails if it takes more than `most` steps. */
 function task(name, most, walk, needs = null) {
   test(name, async ({ server, desk }, info) => {
     test.skip(needs !== null && !existsSync(needs), `${needs} is absent`);
@@ -64,7 +64,7 @@ function hand(desk) {
     button: (name, where = page) => where.getByRole("button", exact(name)),
     item: (name) => page.getByRole("menuitem", exact(name)),
     notice: (text) => page.locator("strata-notices").getByText(text).first().waitFor(),
-    /** Selects a layer, unless it is selected already, as the page keeps the selection. */
+    /** Selects a layer. Does nothing if the page already has the layer selected. */
     select: async (name) => {
       const row = page.getByRole("button", exact(words.layers.select(name)));
       if (!(await row.isVisible())) return;

@@ -47,7 +47,8 @@ function listen(who) {
       ({ payload }) => {
         if (typeof payload !== "string") return;
         const message = JSON.parse(payload);
-        // The server may not draw the same camera again when the page sends it at rest.
+        // When the page comes to rest, it sends the last camera again. The server need not draw
+        // this camera, so a frame may still have the earlier number.
         if (message.op === "camera")
           message.drawn_from =
             where.camera && pose_of(where.camera) === pose_of(message)
@@ -123,7 +124,7 @@ test.beforeAll(async () => {
   cursor = anna.page.locator("strata-people-overlay .person");
   await server.start();
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
-    // other layers would disturb the counting of pixels
+    // other layers could have pixels of the same color
     await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false });
   const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Soot" }] };
   await server.json("POST", "/models/demo-pot/layers", {

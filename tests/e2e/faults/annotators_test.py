@@ -7,11 +7,11 @@ annotators_test.py [--seconds 600] [--seed N] [--people 8] [--turning 4] [--mode
 [--json FILE]
 
 Each user signs in and has a separate view. The users paint strokes, polygons and fills, undo and
-redo, over the live connection and over HTTP. Each connection is cut off every few seconds to tens
-of seconds. It gets an end, a reset or half a message, or it hangs while the next one is open. After
-that, the user sends edits that are not known to be durable again with the same ids, and sometimes
-durable edits, too. The printed times and processor seconds, also in FILE, do not affect the
-result."""
+redo, over the live connection and over HTTP. The test cuts off each connection after a few seconds
+to tens of seconds: by a normal end, a reset or an incomplete message, or the connection stays open
+while the user already has the next one. On the new connection, the user repeats, with the same ids,
+all edits that are not known to be durable, and sometimes durable edits too. The printed times and
+processor seconds, also in FILE, do not affect the result."""
 import argparse
 import collections
 import datetime
@@ -213,8 +213,8 @@ def check_history(site):
     saved = ledger.saved()
     of_live = {change.id: change for change in saved if not change.by_http}
     of_http = {change.answer[0]: change for change in saved if change.by_http}
-    # At first there was nothing to undo. The server read a copy on a hanging connection later, when
-    # an undo was possible.
+    # An undo was refused at first, because there was nothing to undo. Later, when an undo was
+    # possible, the server read a copy of the message from a connection that had stayed open.
     of_copies = {
         change.id: change
         for change in ledger.changes.values()

@@ -1,8 +1,9 @@
 """Jobs that a restart of the server ends. Every user who could see them reads the outcome, no
 failed job is reported as a success, and no data remain.
 
-The server is killed, or asked to stop, while an import runs and another one waits. It is also
-killed several times at any moment of an import. The reference is then the list of models."""
+The server is killed, or stopped in the normal way, while an import runs and another one waits. It
+is also killed several times, at different moments of an import. The reference is then the list of
+models."""
 import os
 import urllib.parse
 
@@ -11,7 +12,7 @@ from support.meshes import folded_grid
 from support.project_sites import Someone
 from support.strata_server import wait_for
 
-# the number of kills at any moment of an import
+# the number of kills during an import
 KILLS = int(os.environ.get("STRATA_LOST_JOBS", "5"))
 
 
@@ -93,7 +94,7 @@ def test_what_runs_and_what_waits_is_lost(server, outsider, how):
 
 
 def test_a_job_is_done_exactly_where_its_model_is_there(server):
-    """Kills the server at any moment of an import."""
+    """Kills the server at different moments of an import."""
     for n in range(KILLS):
         job = begin(server, f"Model {n}")
         # The moment is a share of the work and not of the time. Each round kills the server later

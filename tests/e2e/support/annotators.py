@@ -1,5 +1,5 @@
-"""Users who paint by script. Each has a separate account, view and connection. The connection is
-cut off at random.
+"""Simulated users who paint. Each user has a separate account, view and connection. The test cuts
+off the connection at random.
 
 A user sends each message with the same id until the server reports that it is durable."""
 import math
@@ -13,7 +13,7 @@ from support.live_client import AWAY, LiveClient, Refused
 from support.live_line import WAYS, Line
 
 MOST_WAITING = 16  # messages that one user has sent and that are not durable
-MOST_ATTEMPTS = 1000  # for a message that the server has no space for
+MOST_ATTEMPTS = 1000  # for a message that the server refuses for lack of space
 TURNS_EVERY_S = 0.1
 VALUES = [1, 2, 3, 4, 5, 6, 255]
 
@@ -97,7 +97,7 @@ class Annotator(threading.Thread):
         self.come_back()
 
     def come_back(self):
-        """Opens a new connection, and sends all messages again that are not known to be durable."""
+        """Opens a new connection, and repeats all messages that are not known to be durable."""
         while True:
             if not self.line.given_up:
                 self.ledger.dropped.append(self.line.code)

@@ -1,5 +1,5 @@
 """A site with a tour, and the link of a kiosk that shows the tour. Attempts to use that link for
-more, with every operation of the contract."""
+anything else, with every operation of the contract."""
 import re
 
 from support.addresses import query
@@ -150,7 +150,7 @@ def is_open(path):
 
 def sweep(server, secret, tour, files, thread):
     """Sends every request of the contract. Changes are refused, and reads return only content of
-    the one model. Returns the number of open operations and of closed ones."""
+    the one model. Returns the numbers of allowed and of refused operations."""
     shown = server.ok("POST", query(tour + "/files", name="west.png"), PNG).json()["id"]
     words = {
         "model": "sheet",
@@ -220,8 +220,8 @@ def sweep(server, secret, tour, files, thread):
 
 
 def others_closed(server, secret, files):
-    """Checks that hidden content of the kiosk's model, and content of other models and outside
-    tours, does not exist for the kiosk."""
+    """Checks that the kiosk cannot find hidden content of its model, other models, and content
+    outside tours."""
     for path, status in (
         ("/models/other", 404),
         ("/models/villa-wall", 404),

@@ -27,7 +27,8 @@ def rests(server, over_s=1.0):
 
 
 class PeakGrowth:
-    """Measures the largest growth over the memory at the start. `mb` is known at the end."""
+    """Measures the largest growth of the memory since the start. `mb` is set at the end of the
+    `with` block."""
 
     def __init__(self, server):
         self.server, self.mb = server, 0.0

@@ -90,8 +90,8 @@ class StrataServer:
         self.demo = demo
 
     def _fill(self):
-        """Copies the result of tests/support/prepare, or makes the data if that did not run. Keeps
-        the files that a test has put into the folder."""
+        """Copies the result of tests/support/prepare, or makes the data if that script did not run.
+        Keeps the files that a test has put into the folder."""
         if os.listdir(self.data):
             return
         prepared = os.environ.get("STRATA_TEST_PREPARED")
@@ -265,7 +265,7 @@ class StrataServer:
 
     def owners_secret(self, path):
         """Returns the secret for a request as the owner: the token or, for accounts, a session. The
-        session remains the owner's after a user sets a password."""
+        session stays valid for accounts even after an administrator has set a password."""
         if not OF_ACCOUNTS.match(path):
             return self.token
         if self.session is None:

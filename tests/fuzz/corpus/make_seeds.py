@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the fuzzers to its own folder: one small file for each feature of the
-formats."""
+"""Writes the seeds of the fuzzers to the folder of this script: one small file for each feature of
+the formats."""
 import base64
 import io
 import json
@@ -16,7 +16,7 @@ from support.pictures import bmp, png, tga  # noqa: E402
 
 
 def ply(name, order, elements, rows):
-    """elements: header lines; rows: (struct format, values) in file order."""
+    """Writes a PLY file. elements: header lines; rows: (struct format, values) in file order."""
     kind = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}[order]
     head = f"ply\nformat {kind} 1.0\ncomment seed\n" + "\n".join(elements) + "\nend_header\n"
     if order:
@@ -26,7 +26,7 @@ def ply(name, order, elements, rows):
     (HERE / "ply" / name).write_bytes(head.encode() + body)
 
 
-# 8 × 8 pixels: gray; and colors, 4:2:0, progressive.
+# Pictures of 8 × 8 pixels: a gray JPEG, and a progressive color JPEG with 4:2:0 subsampling.
 GREY_JPEG = (
     "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqmx5moq6T/"
     "wAALCAAIAAgBAREA/8QAFAABAAAAAAAAAAAAAAAAAAAAAf/EABkQAQEAAwEAAAAAAAAAAAAAAAECAAMRBf/aAAgBAQAAPwA8PXMSXaTMnVXgGf/Z"
@@ -40,7 +40,7 @@ PROGRESSIVE_JPEG = (
     "AAAAAQAh/9oACAEDAQE/ECG3/8QAGBEAAgMAAAAAAAAAAAAAAAAAAAERQZH/2gAIAQIBAT8QV04w/8QAGBABAAMBAAAAAAAAAAAAAAAAAQARIVH/2gAIAQEA"
     "AT8QV42jwJ//2Q=="
 )
-# The same size: WebP lossless and lossy, and inks.
+# More pictures of 8 × 8 pixels: a lossless WebP, a lossy WebP and a CMYK JPEG.
 LOSSLESS_WEBP = (
     "UklGRjgAAABXRUJQVlA4TCsAAAAvB8ABEJkyRPQ/NhHR/zCYadsmSMof6K4x8HhMgkAgSXaqZScgK2oYwv0PAA=="
 )
@@ -447,7 +447,7 @@ PICTURE = {
 }
 stripes = lambda x, y: (x, (y // 40) % 2)
 numpy_head = b"{'descr': [('value', '<f4'), ('valid', '|b1')], 'fortran_order': False, 'shape': (128, 128), }\n"
-RASTER = {  # the layer's type, then the file
+RASTER = {  # a byte for the layer's type, then the file
     "u8.tif": b"\0" + maps.tiff(128, 128, stripes, kind="B", samples=2, deflated=True),
     "i16.tif": b"\4" + maps.tiff(128, 128, stripes, kind="h", samples=2, deflated=True),
     "f32.tif": b"\7" + maps.tiff(128, 128, stripes, kind="f", samples=2, deflated=True),

@@ -35,8 +35,8 @@ class ContactShadow : public testing::Test {
     request_.style.contact_shadow = with_shadow ? shadow_ : nullptr;
     return renderer_.draw(request_);
   }
-  // The oracle: the cover where the ray through the center of a pixel meets the floor, between the
-  // four nearest texels of the map.
+  // The oracle: the cover where the ray through the center of a pixel meets the floor, interpolated
+  // between the four nearest texels of the map.
   double cover(int x, int y) const {
     const glm::dmat4 world_from_clip =
         glm::inverse(request_.camera.projection * request_.camera.view);

@@ -13,7 +13,7 @@
 namespace strata::test {
 namespace {
 
-// A sphere with too many triangles for a moving camera on a CPU, on every machine under any load.
+// A sphere with so many triangles that every software renderer simplifies it during a movement.
 class Detail : public testing::Test {
  protected:
   Detail() : scene_(make_scene(bumpy_sphere(300), 512)) {

@@ -115,7 +115,7 @@ TEST_F(FrameTurns, who_only_looks_is_served_before_the_next_picture_of_who_turns
   for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
   push(queue, part(9));
   EXPECT_EQ(draw(queue, 1), 9u);
-  // Time without requests gives no credit. After its first frame, this view has to take turns.
+  // A view collects no credit while it requests nothing. After its first frame, it takes turns.
   int looked = 0;
   for (int i = 0; i < 20; ++i) {
     push(queue, part(9));
@@ -211,7 +211,7 @@ TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_ea
   EXPECT_NEAR(turns[kActor], 200, 2);
   EXPECT_EQ(turns.size(), 101u) << "everybody sees something";
   for (const auto& [view, count] : turns) EXPECT_LE(count, view == kActor ? 202 : 3) << view;
-  // Without active views, onlookers get all the time. A view that becomes active later gets no
+  // Without active views, onlookers get the whole time. A view that becomes active later gets no
   // credit.
   for (int i = 0; i < 400; ++i) surface_image_on(draw(queue, 20));
   int acted = 0;
@@ -323,7 +323,7 @@ TEST_F(FrameTurns, the_same_picture_of_several_views_is_drawn_once_by_the_view_t
   FrameQueue queue(8);
   push(queue, shared(whole(1)), 1);
   EXPECT_EQ(draw(queue), 1u);
-  // After an edit view 1 draws. The other views have no frame yet, so they wait for view 1.
+  // After an edit, view 1 draws. The other views have no frame yet, so they wait for view 1.
   push(queue, shared(part(1)), 1);
   const auto first = queue.take();
   push(queue, shared(part(2)), 2);
@@ -352,7 +352,7 @@ TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
   others[5].style.images = {{1, 1}};
   others[6].style.features = std::make_shared<const std::vector<DrawnFeature>>();
   others[7].style.unit_mm = 1;
-  others[8].changed.reset();  // a view that lacks a rectangle gets no complete frame
+  others[8].changed.reset();  // a view that needs only a rectangle gets no whole frame
   push(queue, base);
   ViewHandle view = 1;
   for (auto& other : others) {

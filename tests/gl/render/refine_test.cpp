@@ -49,8 +49,8 @@ class Refine : public testing::Test {
     return renderer_.draw(request);
   }
   // The oracle: the mean of frames with one sample each. Their cameras are shifted to a regular
-  // grid of `side` × `side` points in the pixel. This function shifts the projections, not the
-  // renderer.
+  // grid of `side` × `side` points in the pixel. The renderer does not shift these projections;
+  // this function does.
   Means reference(int side) {
     Means mean(static_cast<std::size_t>(kWidth) * kHeight * 3, 0.0);
     render::FrameRequest request = request_;

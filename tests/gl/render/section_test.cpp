@@ -198,7 +198,7 @@ TEST_F(Section, painting_through_stops_at_the_planes) {
 }
 
 TEST_F(Section, an_edit_does_not_use_the_depth_of_another_section) {
-  (void)pixel(camera_, 0, 0);  // drawing the cut ball leaves its depth
+  (void)pixel(camera_, 0, 0);  // leaves the depth of the cut ball in the renderer
   StrokeBatch uncut = dab(camera_, kMiddle, kMiddle, 20);
   uncut.camera.section.clear();
   expect_as_oracle(renderer_, scene_, uncut, {100, kUndecidedOneIn}, model_);

@@ -270,9 +270,9 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
 }
 
 TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
-  // One of the four tiles has the value, which is a quarter of the square. The largest distance
-  // reduces it to a few pixels. At the smallest distance, lines with a spacing of 40 mm are far
-  // apart.
+  // One of the four tiles, a quarter of the square, has the value. From the largest distance, this
+  // tile covers only a few pixels. From the smallest distance, lines with a spacing of 40 mm are
+  // far apart.
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   auto tile = std::make_shared<TileData>(ValueType::u8);
   for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, 7u);
@@ -383,8 +383,8 @@ TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
   expect_color(layers, expected, lit);
 }
 
-// Blends one channel of a layer with the content below it, in plain C++. Both are 0 to 1. `ink` is
-// the color without light.
+// Blends one channel of a layer with the content below it, in plain C++. All numbers are 0 to 1.
+// `ink` is the color without light.
 double blended(LayerBlend blend, double below, double ink, double lit, double cover) {
   const double over = blend == LayerBlend::multiply ? below * ink
                       : blend == LayerBlend::screen ? 1 - (1 - below) * (1 - ink * lit)
@@ -395,7 +395,7 @@ double blended(LayerBlend blend, double below, double ink, double lit, double co
 TEST_F(Shade, layers_filter_and_lighten_what_is_below_in_one_draw_and_in_several) {
   const double lit = light();
   constexpr std::array kBlends{LayerBlend::normal, LayerBlend::multiply, LayerBlend::screen};
-  // Two layers share a draw. The value types of 24 layers need more chunks than fit into one draw.
+  // Two layers share one draw. The chunks of 24 layers of several types do not fit into one draw.
   for (const int count : {2, 3, 24}) {
     for (int turn = 0; turn < 9; ++turn) {
       SCOPED_TRACE(std::to_string(count) + " " + std::to_string(turn));

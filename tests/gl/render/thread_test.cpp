@@ -16,8 +16,8 @@ using render::Job;
 using render::Lane;
 using render::Step;
 
-// Blocks the first step of the thread until it is opened, so a test can fill the lanes before any
-// other step.
+// Blocks the first step of the thread until the gate is opened, so a test can fill the lanes before
+// any other step.
 struct Gate {
   std::promise<void> open, reached;
   std::shared_future<void> opened{open.get_future()};

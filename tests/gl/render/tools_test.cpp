@@ -60,7 +60,7 @@ TEST(ToolTexture, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) 
   expect_as_oracle(renderer, scene, shaped(stroke, in_dots), {5000, kUndecidedOneIn});
 }
 
-// The bar is thinner than the distance between two events and moves across its length.
+// The bar is thinner than the distance between two events and moves perpendicular to its length.
 TEST(ToolTexture, a_swept_shape_has_no_gap_however_thin_it_is) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(), 512);

@@ -309,8 +309,8 @@ TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles) {
   std::vector<render::StrokeOutcome> outcomes;
   for (const double x : {315.0, 645.0})
     outcomes.push_back(renderer_.paint(layer_, test::dab(large, x, 360, 12, 2)));
-  // The GPU is busy. The first change is requested immediately, and the others are requested
-  // together after it.
+  // The GPU is busy. The first change is requested immediately. All later changes are then
+  // requested together.
   renderer_->run_on_gpu_thread_for_test([&] {
     view->changed({outcomes[0].written_min, outcomes[0].written_max}, 41);
     for (const auto& outcome : outcomes)

@@ -1,4 +1,4 @@
-// Queries: when they end, their limits, and their turns.
+// Queries: the reasons for which they end, their limits, and the order in which they run.
 #include "domain/people/question.h"
 
 #include <gtest/gtest.h>

@@ -133,7 +133,7 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
           ++covered[static_cast<std::size_t>(y) * drawing.width + x];
     }
     EXPECT_TRUE(std::ranges::all_of(covered, [](int n) { return n == 1; }));
-    // In each part's camera, a point has the same pixel, at its position on paper.
+    // The cameras of all parts show a point at the pixel of its position on paper.
     const glm::dvec3 place = drawing.plane.in_world({2.1, -1.4, 3});
     for (const Part& part : parts) {
       const glm::dvec2 pixel = pixel_of(part, place),

@@ -110,7 +110,7 @@ TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
         for (const Item& item : group->items) {
           const auto* words = std::get_if<Words>(&item);
           if (!words) continue;
-          if (words->text.starts_with("… + ")) {  // the number of entries without space
+          if (words->text.starts_with("… + ")) {  // the number of entries that did not fit
             counted += std::stoi(words->text.substr(std::string_view("… + ").size()));
             continue;
           }

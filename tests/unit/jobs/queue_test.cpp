@@ -199,8 +199,8 @@ TEST(JobsQueue, what_a_job_freed_in_small_pieces_is_given_back_to_the_system) {
 #endif
   using Pieces = std::vector<std::unique_ptr<std::array<char, 4000>>>;
   const double before = resident_mb();
-  // This memory is above all other blocks, and malloc does not automatically return the memory
-  // below it.
+  // This memory is above all other blocks, so malloc does not automatically return the memory below
+  // it to the system.
   const auto last = std::make_shared<Pieces>();
   double most = 0;
   JobQueue queue;

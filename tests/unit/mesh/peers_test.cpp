@@ -1,5 +1,5 @@
-// Files from the test suites of other projects, which are next to the source tree. A reader failed
-// on each of these files. Each test has the expected result.
+// Files from the test suites of other projects, which are next to the source tree. Each of these
+// files made some reader fail. Each test has the expected result.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-// Imports every scan next to the source tree, except for the database. Each import runs in a
-// separate process, which gives its peak memory. Compares the result with figures of a reader that
-// shares no code with this one. Prints a table, which docs/reference/formats.md shows.
+// Imports every scan next to the source tree without storing it in a database. Each import runs in
+// a separate process, which gives its peak memory. Compares the result with figures of a reader
+// that shares no code with this one. Prints a table, which docs/reference/formats.md shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>

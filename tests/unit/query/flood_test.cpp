@@ -109,7 +109,7 @@ TEST(Flood, neighbours_are_mutual) {
 }
 
 TEST(Flood, neighbours_are_near_each_other_on_the_surface) {
-  // The width of the triangles at the poles is between a few texels and less than one texel.
+  // The width of the triangles at the poles ranges from a few texels to less than one texel.
   for (const int segments : {24, 48, 96, 160}) {
     SCOPED_TRACE(segments);
     const Surface surface = surface_of("sphere", test::sphere(segments), kResolution);

@@ -142,7 +142,7 @@ TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
 
 TEST(QueryProfile, a_line_over_a_plane_is_as_long_as_it_was_drawn_and_reads_what_lies_under_it) {
   const mesh::SearchTree tree(square());
-  // One texel, from the middle to 2/256.
+  // Only one texel has a value. It extends from the middle of the square to 2/256 in x and y.
   const LayerView view = layer_with(ValueType::u8, 256, 128, 128, 9);
   const std::vector<glm::dvec3> places = {kOrigin + glm::dvec3(-0.5, 0.004, 0.3),
                                           kOrigin + glm::dvec3(0.5, 0.004, 0.3)};

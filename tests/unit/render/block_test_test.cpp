@@ -114,7 +114,7 @@ TEST(BlockTest, every_vector_unit_of_this_machine_decides_as_plain_code_but_for_
       for (int t = 0; t < 64; ++t)
         ASSERT_FALSE(block.positions[std::size_t(t)] == mesh::kNoPosition && (plain >> t & 1))
             << "no surface there";
-      // The flag that the tool covers the block only saves work.
+      // Without the test of the tool (`in_tool`), the stroke writes at least the same texels.
       const std::uint64_t in_tool = test_block_on(VectorUnit::plain)(
           stroke.test, block.positions.data(), block.box, stroke.segments, true);
       ASSERT_EQ(plain & ~in_tool, 0u);

@@ -145,7 +145,7 @@ TEST(StreamFlow, the_window_may_change_at_any_time) {
     ASSERT_TRUE(draw);
     flow.on_drawn(draw->ticket, true);
   }
-  flow.set_window(0);  // at least one
+  flow.set_window(0);  // counts as 1
   flow.on_camera(4, camera_at(4), true);
   flow.on_ack(2);
   EXPECT_FALSE(flow.next());

@@ -11,8 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = LinkPace::Clock;
 
-// Simulates a link with a delay and a rate, and a renderer that makes a frame whenever the window
-// of the pace has space. Time is simulated too.
+// Simulates a link with a delay and a rate, and a renderer that makes a frame whenever fewer frames
+// than the window of `pace` are unacknowledged. Time is simulated too.
 class Simulation {
  public:
   Clock::duration delay = 0ms;  // round trip

@@ -1,5 +1,5 @@
-// Real Chromium with the real page. Without Chromium or playwright-core the tests are skipped
-// visibly by hand, and fail in CI.
+// Real Chromium with the real page. Without Chromium or playwright-core, the tests fail in CI, and
+// are visibly skipped in a run by hand.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";

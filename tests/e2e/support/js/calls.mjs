@@ -17,7 +17,8 @@ import {
 const once_in = (times, arbitrary) =>
   fc.oneof({ weight: times - 1, arbitrary: fc.constant(null) }, { weight: 1, arbitrary });
 /**
- * For addresses. The headers of a request have at most 8 KiB, so longer ones reach no operation.
+ * A text for addresses. The headers of a request have at most 8 KiB, so a request with a longer
+ * text would reach no operation.
  */
 const strange_word = fc.oneof(
   strange_text.map((text) => text.slice(0, 300)),

@@ -2,7 +2,7 @@
 // kiosk_test.mjs tests the screens.
 import { wait_for } from "./strata-server.mjs";
 
-const kIdle_s = 30; // time without a touch before the site's tour asks
+const kIdle_s = 30; // time without a touch until the page asks whether a visitor is still there
 
 /**
  * Returns the screens in this order and in the first language of the tour (make_kiosk_site). The

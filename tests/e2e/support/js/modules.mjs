@@ -5,7 +5,7 @@ import { fileURLToPath } from "node:url";
 
 export const kRoot = dirname(dirname(dirname(dirname(dirname(fileURLToPath(import.meta.url))))));
 
-/** Ends the test: a visible skip by hand, and a failure in CI. */
+/** Ends the test: as a failure in CI, and as visibly skipped in a run by hand. */
 export function missing(what) {
   console.log(`${process.env.CI === "true" ? "FAILED" : "SKIPPED"}: ${what}`);
   process.exit(process.env.CI === "true" ? 1 : 77);

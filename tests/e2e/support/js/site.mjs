@@ -5,8 +5,8 @@ import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 
 const kSide = 12; // number of cells per side of the wall, which is 100 mm wide
-// Share of the texture that the wall covers. 60 000 texels are read quickly, and a raster is
-// complete.
+// Side of the wall in the texture, relative to the texture's side. The wall then has about 60 000
+// texels, which the tests read quickly. A raster file still contains the whole layer.
 const kTextureShare = 0.12;
 
 /** Returns an ASCII PLY with texture coordinates, and a number at each vertex. */
@@ -143,7 +143,8 @@ export class Site {
     await server.json("POST", "/projects", { name: "Site" });
     await server.json("POST", "/users", { user: "guest" });
     await server.json("POST", "/groups", { name: "Students", members: ["guest"] });
-    // For users that no request changes. A disabled user, for example, has no invitation.
+    // No request changes the users of these invitations. Otherwise a request could, for example,
+    // disable a user, and the invitation would no longer be valid.
     this.invitations = [];
     for (const user of ["newcomer", "other-newcomer"])
       this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);

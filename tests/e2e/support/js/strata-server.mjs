@@ -54,7 +54,7 @@ export class StrataServer {
     this.env = env;
   }
 
-  /** Copies the result of tests/support/prepare, or makes the data if that did not run. */
+  /** Copies the result of tests/support/prepare, or makes the data if that script did not run. */
   #fill() {
     if (readdirSync(this.data).length > 0) return; // the server starts again
     const prepared = process.env.STRATA_TEST_PREPARED;
@@ -68,7 +68,7 @@ export class StrataServer {
     }
   }
 
-  /** Starts the server, again on the same port, and returns when it listens. */
+  /** Starts the server and returns when it listens. A later start uses the same port. */
   async start() {
     this.#fill();
     this.process = spawn(
