@@ -34,8 +34,8 @@ pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 pkg_check_modules(PANGOCAIRO REQUIRED IMPORTED_TARGET pangocairo)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 
-# Only the header of the package is used. One unit compiles it for the required formats, because the
-# package's library reads more formats.
+# Only the header of this package is used. One unit compiles the header with only the required
+# formats, because the package's library also reads other formats.
 find_path(STB_INCLUDE stb_image.h PATH_SUFFIXES stb REQUIRED)
 add_library(strata_stb INTERFACE)
 target_include_directories(strata_stb SYSTEM INTERFACE ${STB_INCLUDE})

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes everything that follows from protocol/messages and protocol/openapi.yaml.
+"""Generates all files that are derived from protocol/messages and protocol/openapi.yaml.
 
   protocol/generate.py            writes the files that changed
   protocol/generate.py --check    writes nothing; exits 1 and names the files that are stale

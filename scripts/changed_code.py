@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prints those of the named C++ files whose code differs from a commit: comments, texts and layout do not count.
+"""Prints the given C++ files whose code differs from a commit. Ignores changes to comments, texts
+and layout.
 
   scripts/changed_code.py COMMIT FILE…
 """

@@ -90,14 +90,15 @@ weigh_units() {
 
 # show_ninja_progress WEIGHT MILLISECONDS: reads Ninja's output with NINJA_STATUS='[%f/%t] '. WEIGHT
 # is the total weight of all units. MILLISECONDS is the usual time for a weight of 1 on this
-# machine. In the estimate of the remaining time, it counts as much as a fifth of the units.
+# machine. In the estimate of the remaining time, this usual time counts as much as the measured
+# time of a fifth of the units.
 show_ninja_progress() {
   local weight=$1 unit_ms=$2 line partial='' finished=0 total=0 done_weight=0 begun=$SECONDS known left code
   while true; do
     code=0
     IFS= read -r -t 1 line || code=$?
     if [ $code -gt 128 ]; then
-      partial+=$line  # a second has passed; the rest of the line follows
+      partial+=$line  # one second without a complete line; the rest follows
     else
       [ $code = 0 ] || [ -n "$partial$line" ] || break
       line=$partial$line partial=''

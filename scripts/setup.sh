@@ -47,8 +47,8 @@ install_packages() {
     echo 'create_main_cluster = false' | as_root tee /etc/postgresql-common/createcluster.conf >/dev/null
   fi
   update_package_lists
-  # The progress uses a separate descriptor, because apt closes it for dpkg. With standard output
-  # instead, dpkg's scripts would have no standard output.
+  # The progress uses a separate descriptor, because apt closes this descriptor before it runs dpkg.
+  # With standard output instead, dpkg's scripts would have no standard output.
   # shellcheck disable=SC2016  # the inner shell expands its parameters
   as_root env DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' apt-get -q -o Dpkg::Use-Pty=0 -o APT::Status-Fd=3 \
     install -y --no-install-recommends --no-remove "${missing[@]}" 2>&1 | show_apt_progress ||

@@ -47,8 +47,8 @@ def headers_of(build):
 
 
 def libraries_of(program):
-    """Returns the directly linked libraries; Debian's packages of these have their own notices and
-    dependencies."""
+    """Returns only the directly linked libraries. Debian's packages of these libraries have their
+    own notices and dependencies."""
     needed = set(re.findall(r"NEEDED\s+(\S+)", run("objdump", "-p", program)))
     return {
         os.path.realpath(path)

@@ -135,8 +135,9 @@ class Writer:
         return any(self.has_camera(other) for other in self.protocol.dependencies(definition.type))
 
     def has_check(self, name: str) -> bool:
-        """Returns whether the type has a function `check`. Each choice of a checked union needs one, even an empty one.
-        Otherwise, a call with such a choice would convert it to the union and recurse without end.
+        """Returns whether the type has a function `check`. Each choice of a checked union needs it,
+        even an empty choice. Otherwise, a call with such a choice would convert the choice to the
+        union and recurse without end.
         """
         unions = [d for d in self.order if d.type.kind == "union" and name in d.type.values]
         return self.has_camera(name) or any(self.has_camera(union.name) for union in unions)

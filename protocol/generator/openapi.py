@@ -48,9 +48,9 @@ def add_common_answers(document) -> None:
             operation["responses"] = dict(sorted(operation["responses"].items()))
 
 
-# Reads whose responses have no ETag of their content. Some responses are sent once or as a stream
-# of events. Others must not be stored. For others, the ETag is the version of a record for
-# If-Match, but they contain more than the record.
+# Reads whose responses have no ETag of their content. Some responses are sent only once, or as a
+# stream of events. Other responses must not be stored. In the remaining cases, the ETag is the
+# version of a record for If-Match, but the response contains more than the record.
 WITHOUT_ANSWER_ETAG = (
     "/login",
     "/live",

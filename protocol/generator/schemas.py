@@ -11,7 +11,8 @@ MAX_INT32 = 2**31 - 1
 
 
 class SchemaError(Exception):
-    """A schema uses a feature that the writers do not support. The message contains the position."""
+    """Raised if a schema uses a feature that the writers do not support. The message contains the
+    position."""
 
 
 @dataclass
@@ -148,7 +149,7 @@ class Protocol:
             return Type("union", values=names)
         if [choice.get("type") for choice in choices] == ["integer", "string"]:
             return Type("scalar_union")
-        # Such definitions have `x-cpp-type`. Their values stay unchanged.
+        # Definitions with such choices have `x-cpp-type`. Their values stay unchanged.
         if all("type" in choice for choice in choices):
             return Type(
                 "any",
