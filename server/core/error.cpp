@@ -27,6 +27,7 @@ std::string_view name(ErrorCode code) {
     case ErrorCode::too_many_requests: return "too_many_requests";
     case ErrorCode::head_too_large: return "head_too_large";
     case ErrorCode::cancelled: return "cancelled";
+    case ErrorCode::moved: return "moved";
     case ErrorCode::internal: return "internal";
     case ErrorCode::not_implemented: return "not_implemented";
     case ErrorCode::bad_gateway: return "bad_gateway";
@@ -44,6 +45,15 @@ std::optional<ErrorCode> error_code_named(std::string_view name_of_it) {
   for (int i = 0; i <= static_cast<int>(kLastErrorCode); ++i)
     if (const auto code = static_cast<ErrorCode>(i); name(code) == name_of_it) return code;
   return std::nullopt;
+}
+
+Error moved_to(std::string location) {
+  Error error{ErrorCode::moved,
+              "Model moved",
+              "Another node of this site has the model now. Repeat the request at its address.",
+              {}};
+  error.location = std::move(location);
+  return error;
 }
 
 std::ostream& operator<<(std::ostream& out, ErrorCode code) { return out << name(code); }

@@ -38,6 +38,7 @@ enum class ErrorCode {
   too_many_requests,    // the caller sent more requests than the server allows
   head_too_large,       // the head of the request is too long
   cancelled,            // the caller canceled the request
+  moved,                // another node of the site has the model
   // Failures of the server. The same request may succeed later.
   internal,         // an error in the program, or damaged data
   not_implemented,  // a part of HTTP that the server does not support
@@ -71,6 +72,9 @@ struct Error {
   std::size_t length = 0;
   std::vector<std::string> suggestions{};
   std::string_view reason{};
+  // For `moved`: the address of the node that has the model. Empty if it is not known; then the
+  // request can be repeated at the address of the site.
+  std::string location{};
 };
 
 // Invalid data from clients or files is an expected result, not an exception.
@@ -81,6 +85,9 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string title, std::string
                                   std::string field = {}) {
   return tl::unexpected<Error>(Error{code, std::move(title), std::move(detail), std::move(field)});
 }
+
+// The error for a model that another node of the site has (store/nodes/nodes.h).
+Error moved_to(std::string location);
 
 namespace detail {
 template <class Expected>

@@ -46,6 +46,10 @@ class Listener {
   virtual void surface_image_changed(LayerChange change, const SurfaceImage& image) = 0;
   virtual void model_changed(const Model& model) = 0;
   virtual void model_deleted() = 0;  // the last event
+  // Another node of the site has the model now, or this node must no longer change it. `url` is the
+  // address of that node, or empty if it is not known. The last event. Edits without an answer were
+  // refused (moved), so the client must send them again.
+  virtual void moved(const std::string& url) = 0;
   virtual void presence_changed() = 0;
   // An event for one view of this participant only, on the GPU thread. The view cannot be drawn as
   // requested until something changes.

@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "core/error.h"
 #include "core/ids.h"
+#include "core/uuid.h"
 #include "domain/people/role.h"
 
 namespace strata {
@@ -37,9 +39,13 @@ struct RoomOptions {
   // The limit of main memory for open models: geometry, surface maps and layers. 0: 60 % of the
   // memory of the machine or container.
   std::uint64_t memory_bytes = 0;
+  // This server among the nodes of a site (store/nodes/nodes.h). Empty if it is alone.
+  std::optional<Uuid> node{};
 };
 
-// Opens rooms on first use, and closes them after the last user has left.
+// Opens rooms on first use, and closes them after the last user has left. A server claims each
+// model that it opens (store/nodes/nodes.h). If another node claims the model later, the room is
+// closed and its listeners are notified (Listener::moved).
 class Rooms {
  public:
   Rooms(store::Store& store, render::Renderer& renderer, const stream::StreamContext& stream,
@@ -62,12 +68,23 @@ class Rooms {
   void admit_keys(TableId table_id, std::span<const std::int64_t> keys);
   // Call after the model was deleted. Notifies listeners and closes the room.
   void forget(ModelId model_id);
+  // Returns the address of another node that has the model, and nothing if this server has it or
+  // may open it. Does not ask the database if the model is open, or if this server is alone. While
+  // this node drains, another node is proposed for a model that no node has.
+  Result<std::optional<std::string>> elsewhere(const std::string& model_ref);
+  // The lease of this node is lost. Closes all rooms at once, without the database: their edits are
+  // refused (moved), their listeners notified, and their pictures stop. `open` returns an
+  // `unavailable` error until `resume` is called.
+  void surrender();
+  void resume();  // the node has a lease again
   std::size_t open_rooms() const;
+  std::size_t participants() const;  // connections to all rooms
   std::uint64_t memory_bytes_used() const;
   // The memory of open models, and of images that are being added to a model. Thread-safe.
   MemoryLedger& memory();
   // Refuses new edits. Returns when every other edit is durable or refused. After `drain_for`,
-  // refuses the edits that are left.
+  // refuses the edits that are left. If the site has several nodes, each room is released as soon
+  // as its edits are durable, and its listeners are notified (Listener::moved).
   void drain();
 
  private:

@@ -26,6 +26,7 @@ class SurfaceImages;
 class Members;
 class Models;
 class NamedParts;
+class Nodes;
 class PersonalViews;
 class Projects;
 class Records;
@@ -85,6 +86,7 @@ class Store {
   NamedParts& tours();  // tours (the same header)
   NamedParts& snapshots();
   Jobs& jobs();
+  Nodes& nodes();
   Kiosks& kiosks();
   TourFiles& tour_files();
   Groups& groups();

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "core/error.h"
+#include "core/uuid.h"
+#include "store/nodes/nodes.h"
+
+namespace strata::room {
+class Rooms;
+}
+
+namespace strata::app {
+
+// Keeps the lease of this process while the site has several nodes (store/nodes/nodes.h). If no
+// renewal that was sent within the last `trusted_for` has succeeded, the process may no longer be
+// the owner of its models. Then it surrenders its rooms, and joins again when the database answers.
+// `trusted_for` is shorter than the lease, so the rooms are closed before another node can claim
+// their models.
+//
+// One thread renews, and may hang in the database. Another thread watches the monotonic clock, and
+// never waits for the database. Thread-safe.
+class NodeLease {
+ public:
+  struct Options {
+    store::NewNode node;
+    std::chrono::milliseconds every{1000};
+    std::chrono::milliseconds trusted_for{2000};
+  };
+  // Joins. Returns an error if the database is unreachable. `nodes` and `rooms` must outlive the
+  // lease.
+  static Result<std::unique_ptr<NodeLease>> start(store::Nodes& nodes, room::Rooms& rooms,
+                                                  Options options);
+  ~NodeLease();  // stops renewing; call `leave` before
+
+  // Returns whether this process may acknowledge edits: a renewal that was sent within the last
+  // `trusted_for` has succeeded.
+  bool holds() const;
+  bool draining() const { return draining_; }
+  // Returns whether a proxy may send new requests to this node.
+  bool ready() const { return holds() && !draining_; }
+  const store::NewNode& node() const { return options_.node; }
+
+  // Allows other nodes to claim the models of this node. It renews its lease until `leave`.
+  void begin_drain();
+  // Stops renewing and removes the node. Blocks for a few seconds at most.
+  void leave();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  NodeLease(store::Nodes& nodes, room::Rooms& rooms, Options options);
+  void renew_until_stopped();
+  void watch_until_stopped();
+  void renewed(Clock::time_point sent);
+  void stop();
+
+  store::Nodes& nodes_;
+  room::Rooms& rooms_;
+  const Options options_;
+  std::atomic<bool> draining_{false};
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  Clock::time_point sent_;    // when the last successful renewal was sent
+  bool surrendered_ = false;  // the rooms are closed until the node joins again
+  bool must_join_ = false;    // the lease was over, so the node must join again
+  bool stopping_ = false;
+  std::thread renewer_, watcher_;
+};
+
+}  // namespace strata::app

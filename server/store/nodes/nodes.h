@@ -1,0 +1,108 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/ids.h"
+#include "core/uuid.h"
+#include "store/pg/pg.h"
+
+namespace strata::store {
+
+class Pool;
+
+// A server process of a site that has several.
+struct NewNode {
+  Uuid id;
+  std::string url;  // its address, as in check_node_url
+  std::string version, gpu;
+};
+
+// What a node reports with each renewal.
+struct NodeLoad {
+  int open_models = 0;
+  int participants = 0;
+  float processor_share = 0;  // processor cores in use
+};
+
+struct Node : NewNode {
+  std::chrono::system_clock::time_point started, lease_until;
+  bool lives = false;  // its lease is not over, by the clock of the database
+  bool draining = false;
+  NodeLoad load;
+};
+
+// Accepts an http or https URL with an optional path, of at most 255 characters. Returns it without
+// slashes at the end. A URL with a user, a query or a fragment is `invalid`.
+Result<std::string> check_node_url(const std::string& url);
+
+// The nodes of a site, and which of them has which model. A model has one owner and an epoch, a
+// number that grows with each claim. A commit of the journal names the epoch in which its room was
+// opened (JournalEntry::epoch), so a node that lost a model can never change it.
+//
+// A node has a lease of `kLease`, which it renews every second. The clock of the database decides.
+// If the lease is over, other nodes may claim its models. No session locks are used: if the
+// database ends a session, its locks are free while their holder still relies on them.
+//
+// A server that is alone has no row and no lease. Its claims have no owner. Part of Store, with the
+// same rules for threads and errors.
+class Nodes {
+ public:
+  static constexpr std::chrono::milliseconds kLease{3000};
+  static constexpr std::chrono::hours kForgetAfter{1};  // after the end of the lease
+
+  explicit Nodes(Pool& pool) : pool_(pool) {}
+
+  // --- The lease of this process. These calls share one connection with short limits, so they
+  // neither wait for a busy pool nor for a long statement.
+  // Inserts the node, or renews its lease if the database has it already.
+  Result<void> join(const NewNode& node);
+  // Returns `gone` if the lease is over or the node was removed. Then the node must close its rooms
+  // and join again.
+  Result<void> renew(const Uuid& node, const NodeLoad& load);
+  // Other nodes may claim its models at once, and it may claim none.
+  Result<void> begin_drain(const Uuid& node);
+  Result<void> leave(const Uuid& node);  // removes the node; its models have no owner then
+  Result<void> forget_ended();           // removes nodes whose lease ended `kForgetAfter` ago
+
+  // --- Models
+  // Makes `self` the owner of a model, and returns the new epoch. The model must have no owner, or
+  // the owner must be `self`, be draining, or have a lease that is over. Otherwise returns `moved`,
+  // with the address of the owner. Returns `unavailable` if the lease of `self` is over or `self`
+  // is draining.
+  Result<std::int64_t> claim(ModelId model, const std::optional<Uuid>& self);
+  // Gives the model up, if this epoch is the newest. The epoch stays.
+  Result<void> release(ModelId model, std::int64_t epoch);
+  // Returns the epoch of a model, or `not_found`.
+  Result<std::int64_t> epoch_of(ModelId model);
+  // Returns the owner, if it has a lease and does not drain. `ref` is an id or a slug. Also returns
+  // nothing if there is no such model.
+  Result<std::optional<Node>> owner_of(const std::string& ref);
+  Result<std::optional<Node>> owner_of(ModelId model) { return owner_of(to_string(model)); }
+
+  // Returns all nodes, the longest running first.
+  Result<std::vector<Node>> all();
+  // Returns the node with the fewest open models that has a lease, does not drain, and is not
+  // `self`.
+  Result<std::optional<Node>> another(const Uuid& self);
+
+ private:
+  // Runs a statement on the connection of the lease. Returns the number of affected rows.
+  Result<std::int64_t> run(const char* sql, const Params& params);
+
+  Pool& pool_;
+  std::mutex lease_mutex_;
+  std::optional<PgConnection> lease_connection_;
+};
+
+// Returns the error `moved` if the newest epoch of the model differs, with the address of its owner
+// if it has a lease. Returns nothing if the epoch is the newest or there is no such model.
+Result<std::optional<Error>> deposed_problem(PgConnection& connection, ModelId model,
+                                             std::int64_t epoch);
+
+}  // namespace strata::store
