@@ -55,6 +55,8 @@ constexpr std::array kKinds{
                 "Send a shorter address and fewer headers."},
     ProblemKind{cancelled, 499, "The client canceled the request.",
                 "Send the request again if you need the response."},
+    ProblemKind{moved, 307, "Another node of the site has the model.",
+                "Send the same request to the address in the header `Location`."},
     ProblemKind{internal, 500, "The server has a fault, or stored data are damaged.",
                 "Report the error with its time. The server's log has the details."},
     ProblemKind{not_implemented, 501, "The server does not support this part of HTTP.",

@@ -6,6 +6,7 @@
 #include "core/log.h"
 #include "core/no_such.h"
 #include "net/api/models/personal_view.h"
+#include "net/api/node_redirect.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/api/site/routes_demo.h"
@@ -130,6 +131,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_project_routes(router_, context_);
   add_member_routes(router_, context_);
   add_group_routes(router_, context_);
+  add_node_routes(router_, context_);
   add_activity_routes(router_, context_);
   add_trash_routes(router_, context_);
   add_model_routes(router_, context_);
@@ -272,6 +274,8 @@ std::optional<Response> Api::admit(Request& request, const Route& route) {
   if (changes(request.method))
     if (auto own = check_same_origin(request, options_.allowed_origins); !own)
       return problem_response(own.error());
+  // Before the body is read, so a redirected upload is sent only once.
+  if (auto elsewhere = redirect_to_owner(rooms_, request)) return elsewhere;
   if (auto known = check_query(route, request); !known) return problem_response(known.error());
   if (auto named = check_precondition(context_, request, route); !named)
     return problem_response(named.error());
@@ -301,6 +305,7 @@ void Api::handle(const Request& request, const Route& route, const Respond& send
   const Respond respond(
       [send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
        accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
+        if (response.status == 307) response = problem_response(claimed_meanwhile());
         // Only for reads, because a client can repeat them with another `Accept`.
         if (response.status == 200 && !response.events &&
             !accepts_type(accept, response.header("Content-Type")))
@@ -395,6 +400,8 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
   STRATA_TRY(check_host(request, own_names_));
   STRATA_TRY(identify(request, live_));
   STRATA_TRY(check_upgrade_origin(request, options_.allowed_origins));
+  if (auto owner = STRATA_TRY(rooms_.elsewhere(request.segments[3])))
+    return tl::unexpected(moved_to(std::move(*owner)));
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
   auto project = STRATA_TRY(store_.projects().find(to_string((*room)->model().project_id)));

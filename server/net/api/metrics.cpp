@@ -53,6 +53,13 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   add(text, "strata_question_steps_total", "counter",
       "Steps of questions: texels times the parts of a condition.",
       std::to_string(gauges.question_steps));
+  if (gauges.node) {
+    gauge("strata_node_lease_seconds", "Time until the lease of the node ends. 0: it has ended.",
+          gauges.node->lease_s);
+    add(text, "strata_models_moved_total", "counter",
+        "Open models that this node gave to other nodes or lost to them.",
+        std::to_string(gauges.node->models_moved));
+  }
   return text;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "app/edits.h"
@@ -22,12 +23,19 @@ struct Metrics {
   void count_request(int status) { ++requests[status >= 100 && status < 600 ? status / 100 : 0]; }
 };
 
+// Of a node of a site with several nodes.
+struct NodeGauges {
+  double lease_s = 0;  // seconds until the lease ends
+  std::uint64_t models_moved = 0;
+};
+
 struct Gauges {
   std::size_t open_rooms = 0;
   std::uint64_t gpu_bytes = 0, memory_bytes = 0;
   std::size_t waiting_requests = 0;
   std::size_t waiting_questions = 0, questions_under_way = 0;
   std::uint64_t question_steps = 0;
+  std::optional<NodeGauges> node{};  // empty if the server runs alone
 };
 
 // Returns the metrics in the Prometheus text format 0.0.4.

@@ -11,6 +11,7 @@ void add_auth_routes(Router& router, const RouteContext& context);
 void add_people_routes(Router& router, const RouteContext& context);
 void add_personal_view_routes(Router& router, const RouteContext& context);
 void add_project_routes(Router& router, const RouteContext& context);
+void add_node_routes(Router& router, const RouteContext& context);
 void add_member_routes(Router& router, const RouteContext& context);
 void add_group_routes(Router& router, const RouteContext& context);
 void add_activity_routes(Router& router, const RouteContext& context);

@@ -54,6 +54,12 @@ std::vector<protocol::RecordEditors> editor_messages(
 
 }  // namespace
 
+std::string moved_message(const std::string& url) {
+  protocol::Moved message;
+  if (!url.empty()) message.url = url;
+  return protocol::to_text(protocol::ServerMessage(message));
+}
+
 LiveSession::LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
                          std::string project_slug, Principal principal, room::Portrait portrait,
                          std::optional<protocol::PersonalView> personal_view,
@@ -484,7 +490,9 @@ void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch
   if (answer)
     return send(edit_message<protocol::Saved>(id, batch.has_value(), batch ? batch->stroke : Uuid{},
                                               batch ? batch->n : 0, *answer));
-  if (!applied) {
+  // An edit that had to be refused because another node has the model is not refused for good. The
+  // client sends it to that node.
+  if (!applied && answer.error().code != ErrorCode::moved) {
     ++shared_->metrics->edits.refused;
     return refuse(answer.error(), id);
   }
@@ -559,6 +567,13 @@ void LiveSession::model_deleted() {
   event.event = protocol::ModelEventEvent::deleted;
   send(event);
   if (auto socket = socket_.lock()) socket->close(kCloseGoingAway, "the model was deleted");
+}
+
+void LiveSession::moved(const std::string& url) {
+  if (auto socket = socket_.lock()) {
+    socket->send_text(moved_message(url));
+    socket->close(kCloseMoved, "another node has the model");
+  }
 }
 
 void LiveSession::presence_changed() {

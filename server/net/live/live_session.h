@@ -65,6 +65,10 @@ struct LiveShared {
   LiveLimits limits;
 };
 
+// Returns the text of the message `moved`. `url` is the address of the node that has the model, or
+// empty if it is not known.
+std::string moved_message(const std::string& url);
+
 // The session of one user in one model. Implements the subprotocol strata.v1 (see
 // protocol/messages). Call `on_text` and `on_closed` on the strand of the socket. The room calls
 // the Listener functions on its own strand.
@@ -97,6 +101,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void model_changed(const Model& model) override;
   void surface_image_changed(LayerChange change, const SurfaceImage& image) override;
   void model_deleted() override;
+  void moved(const std::string& url) override;
   void presence_changed() override;
   void view_refused(std::uint32_t view_id, const Error& why) override;
 

@@ -659,10 +659,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       co_return co_await send(response, Method::get, false);
     }
     auto entry = std::make_shared<Api::LiveEntry>();
-    const Work admit = [this, request, entry](const Respond& respond) {
+    auto elsewhere = std::make_shared<std::optional<std::string>>();  // set: the model has moved
+    const Work admit = [this, request, entry, elsewhere](const Respond& respond) {
       auto may_enter = api_.admit_live(*request);
-      if (!may_enter) return respond(may_enter.error());
-      *entry = std::move(*may_enter);
+      if (!may_enter && may_enter.error().code == ErrorCode::moved)
+        *elsewhere = may_enter.error().location;
+      else if (!may_enter)
+        return respond(may_enter.error());
+      else
+        *entry = std::move(*may_enter);
       respond(empty_response(101));
     };
     response = co_await on_worker(connections_, stream_.get_executor(), admit);
@@ -670,7 +675,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     api_.metrics().count_request(101);
     handed_over_ = true;
     connection().expires_never();
-    start_websocket(std::move(stream_), head.release(), connections_, std::move(*entry));
+    if (*elsewhere)
+      start_moved_websocket(std::move(stream_), head.release(), connections_,
+                            std::move(**elsewhere));
+    else
+      start_websocket(std::move(stream_), head.release(), connections_, std::move(*entry));
     co_return false;
   }
 

@@ -8,6 +8,10 @@
 
 #include "net/live/live_limits.h"
 
+namespace strata::app {
+class NodeLease;
+}
+
 namespace strata::net {
 
 // The times that the server waits for clients.
@@ -43,6 +47,7 @@ struct ServerOptions {
   int trash_days = 30;  // days until deleted entities are erased; 0: immediately
   Timeouts timeouts;
   LiveLimits live;
+  const app::NodeLease* lease = nullptr;  // of a site with several nodes; null: the server is alone
 };
 
 }  // namespace strata::net

@@ -69,6 +69,23 @@ class WebSocketSession final : public LiveSocket,
     --connections_->api.metrics().open_sockets;
   }
 
+  // Accepts the connection only to say that another node has the model, because browsers do not
+  // follow the redirection of a WebSocket.
+  asio::awaitable<void> run_moved(http::request<http::empty_body> request, std::string url) {
+    auto self = shared_from_this();  // the coroutine frame keeps the session alive
+    prepare();
+    auto [accept_error] = co_await ws_.async_accept(request, kUseResult);
+    if (!accept_error) {
+      queue_text(moved_message(url));
+      start_close(kCloseMoved, "another node has the model");
+      co_await read();
+    }
+    over_ = true;
+    stall_timer_.cancel();
+    close_timer_.cancel();
+    --connections_->api.metrics().open_sockets;
+  }
+
   // --- LiveSocket, called from any thread
   void send_text(std::string text) override {
     asio::post(ws_.get_executor(), [self = shared_from_this(), text = std::move(text)]() mutable {
@@ -208,9 +225,9 @@ class WebSocketSession final : public LiveSocket,
     closing_ = true;
     reason_ = websocket::close_reason(static_cast<websocket::close_code>(code),
                                       beast::string_view(reason));
-    // With kCloseGoingAway, keeps the queued messages because they contain the reason. For example,
-    // the model was deleted, or an edit was saved before the server stopped.
-    if (code != kCloseGoingAway) texts_.clear();
+    // With these codes, keeps the queued messages because they contain the reason. For example, the
+    // model was deleted, or an edit was saved before the server stopped.
+    if (code != kCloseGoingAway && code != kCloseMoved) texts_.clear();
     frames_.clear();
     close_timer_.expires_after(kClosing);
     close_timer_.async_wait([weak = weak_from_this()](beast::error_code error) {
@@ -241,6 +258,15 @@ class WebSocketSession final : public LiveSocket,
   websocket::close_reason reason_;
 };
 
+void log_failure(const std::exception_ptr& failure) {
+  if (!failure) return;
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    log::error(std::string("a live connection failed: ") + error.what());
+  }
+}
+
 }  // namespace
 
 void start_websocket(ConnectionStream stream, http::request<http::empty_body> request,
@@ -252,14 +278,19 @@ void start_websocket(ConnectionStream stream, http::request<http::empty_body> re
       [session, request = std::move(request), entry = std::move(entry)]() mutable {
         return session->run(std::move(request), std::move(entry));
       },
-      [](const std::exception_ptr& failure) {
-        if (!failure) return;
-        try {
-          std::rethrow_exception(failure);
-        } catch (const std::exception& error) {
-          log::error(std::string("a live connection failed: ") + error.what());
-        }
-      });
+      log_failure);
+}
+
+void start_moved_websocket(ConnectionStream stream, http::request<http::empty_body> request,
+                           std::shared_ptr<Connections> connections, std::string url) {
+  auto executor = stream.get_executor();
+  auto session = std::make_shared<WebSocketSession>(std::move(stream), std::move(connections));
+  asio::co_spawn(
+      executor,
+      [session, request = std::move(request), url = std::move(url)]() mutable {
+        return session->run_moved(std::move(request), std::move(url));
+      },
+      log_failure);
 }
 
 }  // namespace strata::net

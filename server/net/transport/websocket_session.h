@@ -3,6 +3,7 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <memory>
+#include <string>
 
 #include "net/transport/connection_stream.h"
 #include "net/transport/http_session.h"
@@ -13,5 +14,11 @@ namespace strata::net {
 void start_websocket(ConnectionStream stream,
                      boost::beast::http::request<boost::beast::http::empty_body> request,
                      std::shared_ptr<Connections> connections, Api::LiveEntry entry);
+
+// Takes over a connection for a model that another node has. Sends the message `moved` with the
+// address of that node, and closes.
+void start_moved_websocket(ConnectionStream stream,
+                           boost::beast::http::request<boost::beast::http::empty_body> request,
+                           std::shared_ptr<Connections> connections, std::string url);
 
 }  // namespace strata::net

@@ -561,6 +561,16 @@ TEST(Metrics, text_names_every_counter_once) {
   EXPECT_NE(text.find("strata_frames_sent_total 7\n"), std::string::npos);
   EXPECT_NE(text.find("strata_open_rooms 2\n"), std::string::npos);
   EXPECT_NE(text.find("strata_gpu_bytes 1024\n"), std::string::npos);
+  EXPECT_EQ(text.find("strata_node_lease_seconds"), std::string::npos);
+}
+
+TEST(Metrics, a_node_has_its_lease_and_the_models_that_moved) {
+  const Metrics metrics;
+  Gauges gauges;
+  gauges.node = NodeGauges{2.5, 3};
+  const std::string text = metrics_text(metrics, gauges);
+  EXPECT_NE(text.find("\nstrata_node_lease_seconds 2.5"), std::string::npos);
+  EXPECT_NE(text.find("\nstrata_models_moved_total 3\n"), std::string::npos);
 }
 
 }  // namespace

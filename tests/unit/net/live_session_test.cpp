@@ -153,6 +153,35 @@ TEST_F(Live, a_deleted_model_is_told_before_the_connection_ends) {
   EXPECT_EQ(socket->close_code, kCloseGoingAway);
 }
 
+TEST_F(Live, a_model_that_moved_is_told_with_the_address_before_the_connection_ends) {
+  hello();
+  session->moved("https://museum.example/node/b");
+  ASSERT_EQ(socket->of("moved").size(), 1u);
+  EXPECT_EQ(socket->of("moved")[0]["url"], "https://museum.example/node/b");
+  EXPECT_EQ(socket->sent.back()["op"], "moved");
+  EXPECT_EQ(socket->close_code, kCloseMoved);
+}
+
+TEST_F(Live, a_model_that_moved_nobody_knows_where_has_no_address) {
+  hello();
+  session->moved({});
+  ASSERT_EQ(socket->of("moved").size(), 1u);
+  EXPECT_FALSE(socket->of("moved")[0].contains("url"));
+  EXPECT_EQ(socket->close_code, kCloseMoved);
+}
+
+TEST_F(Live, an_edit_that_another_node_must_do_is_unsaved_and_not_refused) {
+  hello();
+  say(begin(stroke));
+  const json batch = extend(stroke, 0, {{1, 1}});
+  say(batch);
+  room->edits_.held[0].saved(tl::unexpected(moved_to("https://museum.example/node/b")));
+  ASSERT_EQ(socket->of("unsaved").size(), 1u);
+  EXPECT_EQ(socket->of("unsaved")[0]["ids"], json::array({batch["id"]}));
+  EXPECT_TRUE(socket->of("problem").empty());
+  EXPECT_EQ(shared->metrics->edits.refused, 0u);
+}
+
 TEST_F(Live, a_view_that_cannot_be_drawn_is_a_problem) {
   hello();
   session->view_refused(

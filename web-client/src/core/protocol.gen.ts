@@ -19,7 +19,7 @@ export type Section = Plane[];
 export type Path = Point2[];
 
 /** Kind of problem. A stable URI reference, relative to the server. Programs should check this member. The page `/problems` describes all kinds. */
-export type ProblemType = "/problems#malformed" | "/problems#unauthenticated" | "/problems#forbidden" | "/problems#not_found" | "/problems#method_not_allowed" | "/problems#not_acceptable" | "/problems#too_slow" | "/problems#conflict" | "/problems#superseded" | "/problems#gone" | "/problems#stale" | "/problems#too_large" | "/problems#unsupported" | "/problems#range_not_satisfied" | "/problems#misdirected" | "/problems#invalid" | "/problems#upgrade_required" | "/problems#version_required" | "/problems#too_many_requests" | "/problems#head_too_large" | "/problems#cancelled" | "/problems#internal" | "/problems#not_implemented" | "/problems#bad_gateway" | "/problems#busy" | "/problems#unavailable" | "/problems#timed_out" | "/problems#gpu_lost" | "/problems#out_of_memory" | "/problems#storage_full";
+export type ProblemType = "/problems#malformed" | "/problems#unauthenticated" | "/problems#forbidden" | "/problems#not_found" | "/problems#method_not_allowed" | "/problems#not_acceptable" | "/problems#too_slow" | "/problems#conflict" | "/problems#superseded" | "/problems#gone" | "/problems#stale" | "/problems#too_large" | "/problems#unsupported" | "/problems#range_not_satisfied" | "/problems#misdirected" | "/problems#invalid" | "/problems#upgrade_required" | "/problems#version_required" | "/problems#too_many_requests" | "/problems#head_too_large" | "/problems#cancelled" | "/problems#moved" | "/problems#internal" | "/problems#not_implemented" | "/problems#bad_gateway" | "/problems#busy" | "/problems#unavailable" | "/problems#timed_out" | "/problems#gpu_lost" | "/problems#out_of_memory" | "/problems#storage_full";
 
 /** Kind of mistake in a condition or formula. Existing values do not change, but new values can be added. */
 export type ProblemReason = "syntax" | "expects_condition" | "expects_number" | "unknown_layer" | "unknown_column" | "unknown_function" | "unknown_choice" | "unit" | "wrong_type" | "computed_layers_only" | "too_large";
@@ -1084,6 +1084,13 @@ export interface SnapshotEvent {
   user?: string;
 }
 
+/** Another node has the model. The last message of a connection, if the site has several nodes. The server then closes the connection with the code 4307. The client should connect again at once, and send the edits that are not durable again with the same ids. */
+export interface Moved {
+  op: "moved";
+  /** Address of the node that has the model, such as https://museum.example/node/b. The path of the live connection follows it. Absent if the address is not known yet. The client should then connect again at the address of the site. */
+  url?: string;
+}
+
 /** Point where a pointer is on the surface. Position in world coordinates. */
 export interface PresencePointer {
   position: Point3;
@@ -1395,6 +1402,47 @@ export interface MemberList {
 /** Role in a project. */
 export interface MemberPut {
   role: ProjectRole;
+}
+
+/** Model of a node. */
+export interface NodeModel {
+  id: number;
+  name: string;
+}
+
+/** Node of the site. A server process of a site that has several of them. Each open model has one owner among the nodes. */
+export interface SiteNode {
+  id: string;
+  /** Address of the node. */
+  url: string;
+  /** ready: the node has a lease. draining: the node is stopping, and other nodes can open its models. lost: the lease of the node has ended, and other nodes can open its models. */
+  state: "ready" | "draining" | "lost";
+  started: string;
+  /** Seconds until the lease ends. 0: it has ended. */
+  lease_s: number;
+  draining: boolean;
+  /** Version of Strata. */
+  version: string;
+  /** Name of the GPU. */
+  gpu: string;
+  open_models: number;
+  /** Number of connections to the open models. */
+  participants: number;
+  /** Processor cores that the node uses. */
+  cores_used: number;
+  /** Models that the node owns, sorted by id. At most 100 are listed. */
+  models: NodeModel[];
+  /** Number of models that the node owns. */
+  models_total: number;
+}
+
+/** Nodes of the site. */
+export interface SiteNodeList {
+  /** Empty if the server runs alone. */
+  nodes: SiteNode[];
+  /** Id of the node that answers. Absent if the server runs alone. */
+  this_node?: string;
+  total: number;
 }
 
 /** Group of users. */
@@ -3253,6 +3301,7 @@ export type ServerMessage =
   | CommentEvent
   | ViewEvent
   | SnapshotEvent
+  | Moved
   | Presence
   | Picked
   | ProblemMessage;
@@ -3274,6 +3323,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "comment",
   "view",
   "snapshot",
+  "moved",
   "presence",
   "picked",
   "problem",

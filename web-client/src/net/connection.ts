@@ -7,6 +7,7 @@ import type { CameraMessage } from "../math/camera";
 import { decodeFrame, FrameError, type FrameMessage } from "./frame-header";
 import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";
 import { CameraSender } from "./camera-sender";
+import { addressAtNode } from "./node-address";
 import { kFirstRetryMs, kLastRetryMs, Resender } from "./resender";
 import { kOpenSocket, type SocketLike } from "./socket";
 import { SilenceWatch } from "./silence-watch";
@@ -26,6 +27,7 @@ import {
   type LookEvent,
   type LookShown,
   type ModelEvent,
+  type Moved,
   type Picked,
   type Presence,
   type PresenceUpdate,
@@ -103,12 +105,15 @@ export interface ConnectionOptions {
 const kOpeningMs = 30_000;
 const kBusySocketBytes = 256 * 1024; // cameras wait above this number of unsent bytes
 const kAdvice = "advice"; // id of messages whose failure is not reported
+const kLastMovedRetryMs = 1000; // while the site decides which node has the model
 const kMostWaiting = 5000; // number of changes above which new strokes are refused
 
 export class Connection {
   private _socket: SocketLike | null = null;
   private _state: ConnectionState = "connecting";
   private _attempts = 0;
+  private _moved = false;
+  private _address: string; // of the next connection: at the site, or at one of its nodes
   private _retryTimer: ReturnType<typeof setTimeout> | null = null;
   private readonly _silence = new SilenceWatch({
     ask: () => this.askForLife(),
@@ -130,6 +135,7 @@ export class Connection {
     private readonly _options: ConnectionOptions,
     private readonly _callbacks: ConnectionCallbacks,
   ) {
+    this._address = _options.url;
     this._camera = new CameraSender({
       maySend: () => this._state === "open",
       isBusy: () => (this._socket?.bufferedAmount ?? 0) > kBusySocketBytes,
@@ -145,6 +151,10 @@ export class Connection {
 
   get state(): ConnectionState {
     return this._state;
+  }
+  /** Whether another node of the site has the model, and its welcome has not arrived yet. */
+  get moved(): boolean {
+    return this._moved;
   }
   get waiting(): number {
     return this._outbox.waiting;
@@ -163,7 +173,7 @@ export class Connection {
     const make =
       this._options.makeSocket ??
       ((url, protocol) => new WebSocket(url, protocol) as unknown as SocketLike);
-    const socket = make(this._options.url, SUBPROTOCOL);
+    const socket = make(this._address, SUBPROTOCOL);
     socket.binaryType = "arraybuffer";
     this._socket = socket;
     socket.onopen = () => {
@@ -344,6 +354,8 @@ export class Connection {
       case "unsaved":
         this.resendLater();
         return this.reportSaving();
+      case "moved":
+        return this.onMoved(message);
       case "problem":
         return this.onProblem(message);
       case "layer":
@@ -378,6 +390,7 @@ export class Connection {
 
   private onWelcome(message: Welcome): void {
     this._attempts = 0;
+    this._moved = false;
     this._pathPoints = message.limits.path_points;
     this._resender.messagesPerSecond = Math.max(
       1,
@@ -423,7 +436,9 @@ export class Connection {
     }
     // A batch is out of order if the previous batch was refused temporarily. Both are sent again.
     const outOfOrder = message.status === 409 && this._outbox.followsWaitingBatch(message.ref);
-    const passing = message.status === 429 || message.status >= 500 || outOfOrder;
+    // 307: another node has the model. The message `moved` follows.
+    const { status } = message;
+    const passing = status === 307 || status === 429 || status >= 500 || outOfOrder;
     if (passing) {
       const first = !this._failing;
       this.resendLater();
@@ -456,16 +471,42 @@ export class Connection {
   }
 
   private onLost(): void {
+    // The node may have ended. The site knows which node has the model now.
+    this._address = this._options.url;
+    if (this.dropSocket()) this.retryLater();
+  }
+
+  /**
+   * Connects to the node that has the model now. The welcome then sends unsaved changes again.
+   * Nodes that name each other are not asked without a pause.
+   */
+  private onMoved({ url }: Moved): void {
+    const again = this._moved;
+    const socket = this._socket;
+    this._moved = true;
+    this._address = addressAtNode(this._options.url, url);
+    const reconnects = this.dropSocket();
+    socket?.close(1000, "moved");
+    if (!reconnects) return;
+    if (again) this.retryLater();
+    else this.open();
+  }
+
+  /** Returns whether this object should connect again. */
+  private dropSocket(): boolean {
     this.forgetTimers();
     this._silenced.clear();
     this._socket = null;
     this.setState("lost");
     this.reportSaving();
     // A listener may have closed the connection or requested another attempt.
-    if (this._retryTimer || this._state !== "lost") return;
+    return !this._retryTimer && this._state === "lost";
+  }
+
+  private retryLater(): void {
     const random = (this._options.random ?? Math.random)();
-    const delayMs =
-      Math.min(kLastRetryMs, kFirstRetryMs * 2 ** this._attempts) * (0.75 + random / 2);
+    const lastMs = this._moved ? kLastMovedRetryMs : kLastRetryMs;
+    const delayMs = Math.min(lastMs, kFirstRetryMs * 2 ** this._attempts) * (0.75 + random / 2);
     this._attempts += 1;
     this._retryTimer = setTimeout(() => {
       this._retryTimer = null;

@@ -1626,6 +1626,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/nodes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List the nodes of the site */
+        get: operations["list_nodes"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/openapi.json": {
         parameters: {
             query?: never;
@@ -2637,6 +2654,8 @@ export interface components {
         ModelList: wire.ModelList;
         /** Changes to a model's metadata */
         ModelPatch: wire.ModelPatch;
+        /** Model of a node */
+        NodeModel: wire.NodeModel;
         /** Open edges: loops of edges that belong to only one triangle */
         OpenEdges: wire.OpenEdges;
         /** Outline of an area */
@@ -2825,6 +2844,10 @@ export interface components {
         SignInSession: wire.SignInSession;
         /** Sessions */
         SignInSessionList: wire.SignInSessionList;
+        /** Node of the site */
+        SiteNode: wire.SiteNode;
+        /** Nodes of the site */
+        SiteNodeList: wire.SiteNodeList;
         /** Maximum angle at which a surface is painted */
         SlantLimit: wire.SlantLimit;
         /** Named state of a model */
@@ -6435,6 +6458,31 @@ export interface operations {
                 content: {
                     "image/jpeg": string;
                     "image/png": string;
+                };
+            };
+        };
+    };
+    list_nodes: {
+        parameters: {
+            query?: {
+                after?: components["parameters"]["after"];
+                limit?: components["parameters"]["limit"];
+                offset?: components["parameters"]["offset"];
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteNodeList"];
                 };
             };
         };

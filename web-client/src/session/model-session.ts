@@ -79,6 +79,7 @@ export interface ModelSession {
   readonly user: string;
   readonly session: string;
   readonly connectionState: ConnectionState;
+  readonly moved: boolean; // another node of the site has the model; the page connects to it
   readonly saving: SavingState;
   readonly view: ViewControl;
   readonly lit: LitArea;

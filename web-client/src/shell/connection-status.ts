@@ -29,9 +29,10 @@ export function lostBanner(session: ModelSession): TemplateResult | typeof nothi
   const reconnects = session.connectionState === "connecting" && session.view.framesDrawn > 0;
   if (session.connectionState !== "lost" && !reconnects) return nothing;
   const { waiting } = session.saving;
+  const words = session.moved ? texts.connection.moved : texts.connection.lost;
   return html`<div class="banner" role="alert">
     ${icon("warning")}
-    <span class="grow">${texts.connection.lost} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
+    <span class="grow">${words} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
     <button @click=${() => session.checkConnection()}>${texts.connection.retry}</button>
   </div>`;
 }

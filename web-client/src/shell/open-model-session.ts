@@ -72,6 +72,7 @@ export class OpenModelSession implements ModelSession {
   user = ""; // the name of this user
   session = "";
   connectionState: ConnectionState = "connecting";
+  moved = false; // another node of the site has the model; the page connects to it
   saving: SavingState = { waiting: 0, failing: false };
 
   readonly view: ViewControl;
@@ -571,6 +572,7 @@ export class OpenModelSession implements ModelSession {
 
   private onState(state: ConnectionState): void {
     this.connectionState = state;
+    this.moved = this._connection.moved;
     if (state !== "open") {
       this._thenWithoutAck = null; // the frame belonged to the lost connection
       this.editors.left();

@@ -456,6 +456,7 @@ export const texts = {
       "Der Server wurde aktualisiert, oder die Verbindung wurde unterbrochen. Laden Sie die Seite neu. Nicht gespeicherte Änderungen bleiben erhalten.",
     reload: "Neu laden",
     lost: "Verbindung unterbrochen. Neuer Versuch …",
+    moved: "Das Modell ist auf einem anderen Knoten. Verbindung wird hergestellt …",
     kept: (n) =>
       `${count(n, "Änderung ist", "Änderungen sind")} hier gespeichert und ${plural(n, "wird", "werden")} noch gesendet.`,
     retry: "Jetzt versuchen",

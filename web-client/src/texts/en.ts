@@ -431,6 +431,7 @@ export const texts = {
       "The server was updated, or the connection was lost. Reload the page. Unsaved changes are kept.",
     reload: "Reload",
     lost: "Connection lost. Trying again…",
+    moved: "The model moved to another node. Reconnecting…",
     kept: (n: number) =>
       `${count(n, "change is", "changes are")} stored in this browser and will be sent.`,
     retry: "Retry now",

@@ -449,6 +449,7 @@ export const texts = {
       "El servidor se ha actualizado o se ha perdido la conexión. Recargue la página. Los cambios sin guardar se conservan.",
     reload: "Recargar",
     lost: "Conexión perdida. Reintentando…",
+    moved: "El modelo está en otro nodo. Reconectando…",
     kept: (n) =>
       `${changes(n)} ${plural(n, "se conserva aquí y se enviará", "se conservan aquí y se enviarán")}.`,
     retry: "Reintentar ahora",

@@ -1921,6 +1921,17 @@ nlohmann::json to_json(const SnapshotEvent& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, Moved& value) {
+  read_optional_member(json, "url", value.url);
+}
+
+nlohmann::json to_json(const Moved& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "moved";
+  write_optional_member(json, "url", value.url);
+  return json;
+}
+
 void read(const nlohmann::json& json, PresencePointer& value) {
   read_member(json, "position", value.position);
   read_optional_member(json, "radius", value.radius);
@@ -3924,6 +3935,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == CommentEvent::kOp) return Schema::CommentEvent;
   if (op == ViewEvent::kOp) return Schema::ViewEvent;
   if (op == SnapshotEvent::kOp) return Schema::SnapshotEvent;
+  if (op == Moved::kOp) return Schema::Moved;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
   if (op == ProblemMessage::kOp) return Schema::ProblemMessage;
@@ -3986,6 +3998,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == SnapshotEvent::kOp) {
     read(json, value.emplace<SnapshotEvent>());
+    return;
+  }
+  if (op == Moved::kOp) {
+    read(json, value.emplace<Moved>());
     return;
   }
   if (op == Presence::kOp) {

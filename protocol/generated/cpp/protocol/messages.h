@@ -149,6 +149,7 @@ enum class Schema {
   CommentEvent,
   ViewEvent,
   SnapshotEvent,
+  Moved,
   PresencePointer,
   PresenceUser,
   Presence,
@@ -178,6 +179,9 @@ enum class Schema {
   Member,
   MemberList,
   MemberPut,
+  NodeModel,
+  SiteNode,
+  SiteNodeList,
   GroupId,
   GroupName,
   MemberGroup,
@@ -352,7 +356,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 326;
+constexpr int kSchemaCount = 330;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1402,6 +1406,20 @@ void read(const nlohmann::json& json, SnapshotEvent& value);
 nlohmann::json to_json(const SnapshotEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<SnapshotEvent> = Schema::SnapshotEvent;
+
+// Another node has the model. The last message of a connection, if the site has several nodes. The server then closes the connection with the code 4307. The client should connect again at once, and send the edits that are not durable again with the same ids.
+struct Moved {
+  static constexpr std::string_view kOp = "moved";
+  // Address of the node that has the model, such as https://museum.example/node/b. The path of the
+  // live connection follows it. Absent if the address is not known yet. The client should then
+  // connect again at the address of the site.
+  std::optional<std::string> url;
+  bool operator==(const Moved&) const = default;
+};
+void read(const nlohmann::json& json, Moved& value);
+nlohmann::json to_json(const Moved& value);
+template <>
+inline constexpr Schema kSchemaOf<Moved> = Schema::Moved;
 
 // Point where a pointer is on the surface. Position in world coordinates.
 struct PresencePointer {
@@ -3129,7 +3147,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, SnapshotEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, SnapshotEvent, Moved, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

@@ -1,6 +1,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "app/nodes/node_lease.h"
 #include "core/version.h"
 #include "net/api/metrics.h"
 #include "net/api/problems_page.h"
@@ -21,8 +22,21 @@ Response readiness(const RouteContext& context) {
   if (!context.store.ready()) reasons.push_back("The database does not answer.");
   if (!context.renderer.ready())
     reasons.push_back("The server lost the graphics context and cannot restore it yet.");
+  if (const app::NodeLease* lease = context.options.lease) {
+    if (lease->draining()) reasons.push_back("The node is stopping.");
+    if (!lease->holds())
+      reasons.push_back("The node has no lease, because it cannot renew it in the database.");
+  }
   const bool ready = reasons.empty();
   return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
+}
+
+std::optional<NodeGauges> node_gauges(const RouteContext& context) {
+  if (!context.options.lease) return std::nullopt;
+  return NodeGauges{
+      std::chrono::duration<double>(context.options.lease->left()).count(),
+      context.rooms.models_moved(),
+  };
 }
 
 // Adds a tag with a hash of the response's bytes. Returns 304 to a client that already has them.
@@ -65,7 +79,7 @@ void add_system_routes(Router& router, const RouteContext& context) {
                      {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(),
                       context.rooms.memory_bytes_used(), context.workers.waiting(),
                       context.questions.waiting(), context.questions.under_way(),
-                      context.questions.steps()}),
+                      context.questions.steps(), node_gauges(context)}),
         "text/plain; version=0.0.4; charset=utf-8");
   });
   open("/api/v1/openapi.json",
