@@ -533,7 +533,10 @@ CREATE TABLE public.all_models (
     erasing boolean DEFAULT false NOT NULL,
     proposal jsonb,
     open_edges jsonb,
+    owner_node uuid,
+    owner_epoch bigint DEFAULT 0 NOT NULL,
     CONSTRAINT all_models_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
+    CONSTRAINT all_models_owner_epoch_check CHECK ((owner_epoch >= 0)),
     CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
     CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
     CONSTRAINT models_name_check CHECK ((name <> ''::text)),
@@ -610,7 +613,9 @@ CREATE VIEW public.models AS
     all_models.version,
     all_models.source_download,
     all_models.proposal,
-    all_models.open_edges
+    all_models.open_edges,
+    all_models.owner_node,
+    all_models.owner_epoch
    FROM public.all_models
   WHERE (all_models.binned IS NULL);
 
@@ -1019,6 +1024,7 @@ CREATE TABLE public.jobs (
     result jsonb,
     begun timestamp with time zone DEFAULT now() NOT NULL,
     ended timestamp with time zone,
+    node uuid,
     CONSTRAINT jobs_check CHECK (((ended IS NULL) = (state = 'begun'::text))),
     CONSTRAINT jobs_kind_check CHECK ((kind = ANY (ARRAY['import'::text, 'layers'::text, 'look'::text, 'figure'::text]))),
     CONSTRAINT jobs_state_check CHECK ((state = ANY (ARRAY['begun'::text, 'done'::text, 'failed'::text, 'cancelled'::text, 'lost'::text])))
@@ -1118,6 +1124,25 @@ ALTER TABLE public.all_models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     NO MINVALUE
     NO MAXVALUE
     CACHE 1
+);
+
+CREATE TABLE public.nodes (
+    id uuid NOT NULL,
+    url text NOT NULL,
+    started timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    lease_until timestamp with time zone NOT NULL,
+    draining boolean DEFAULT false NOT NULL,
+    version text NOT NULL,
+    gpu text NOT NULL,
+    open_models integer DEFAULT 0 NOT NULL,
+    participants integer DEFAULT 0 NOT NULL,
+    processor_share real DEFAULT 0 NOT NULL,
+    CONSTRAINT nodes_gpu_check CHECK ((char_length(gpu) <= 255)),
+    CONSTRAINT nodes_open_models_check CHECK ((open_models >= 0)),
+    CONSTRAINT nodes_participants_check CHECK ((participants >= 0)),
+    CONSTRAINT nodes_processor_share_check CHECK (((processor_share >= (0)::double precision) AND (processor_share < 'Infinity'::real))),
+    CONSTRAINT nodes_url_check CHECK (((char_length(url) >= 1) AND (char_length(url) <= 255))),
+    CONSTRAINT nodes_version_check CHECK ((char_length(version) <= 255))
 );
 
 CREATE TABLE public.personal_views (
@@ -1439,6 +1464,9 @@ ALTER TABLE ONLY public.model_sources
 ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.nodes
+    ADD CONSTRAINT nodes_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.personal_views
     ADD CONSTRAINT personal_views_pkey PRIMARY KEY (user_id, model_id);
 
@@ -1535,6 +1563,8 @@ CREATE INDEX activities_model ON public.activities USING btree (model_id, "time"
 CREATE INDEX activities_project ON public.activities USING btree (project_id, "time", id);
 
 CREATE INDEX activities_table ON public.activities USING btree (table_id, "time", id) WHERE (table_id IS NOT NULL);
+
+CREATE INDEX all_models_owner_node ON public.all_models USING btree (owner_node) WHERE (owner_node IS NOT NULL);
 
 CREATE INDEX answers_time ON public.answers USING btree ("time");
 
@@ -1682,6 +1712,9 @@ CREATE TRIGGER view_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, 
 
 ALTER TABLE ONLY public.activities
     ADD CONSTRAINT activities_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.all_models
+    ADD CONSTRAINT all_models_owner_node_fkey FOREIGN KEY (owner_node) REFERENCES public.nodes(id) ON DELETE SET NULL;
 
 ALTER TABLE ONLY public.attachments
     ADD CONSTRAINT attachments_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);

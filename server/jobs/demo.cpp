@@ -17,6 +17,7 @@
 #include "store/content/projects.h"
 #include "store/journal/journal_reads.h"
 #include "store/journal/journal_writer.h"
+#include "store/nodes/nodes.h"
 
 namespace strata::jobs {
 namespace {
@@ -157,6 +158,8 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
 Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer,
                          const char* rule, std::chrono::system_clock::time_point time,
                          store::JournalEntry entry) {
+  // A room that is open must not write afterwards, because it lacks this entry.
+  entry.epoch = STRATA_TRY(store.nodes().begin_epoch(model.id));
   const auto last = STRATA_TRY(store.journal().last_sequence(model.id));
   entry.model_id = model.id;
   entry.layer_id = layer.id;

@@ -18,6 +18,7 @@ namespace strata::jobs {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 64;
+constexpr int kIdTries = 64;
 constexpr std::size_t kMaxRemembered = 1000;
 
 constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure"};
@@ -162,6 +163,7 @@ struct JobQueue::Impl {
                              .count();
   bool stopping = false;
   store::Jobs* store = nullptr;
+  std::optional<Uuid> node;
   std::thread thread;
 
   void take_over() {
@@ -183,6 +185,19 @@ struct JobQueue::Impl {
     if (!store || cut_short) return;
     if (auto saved = store->end(stored_of(status)); !saved)
       log::warning("the server could not save the result of a job: " + saved.error().detail);
+  }
+
+  // Stores a new job. Another node may have used its id, then takes the next one.
+  Result<void> begin(JobStatus& status) {
+    if (!store) return {};
+    for (int tries_left = kIdTries;; --tries_left) {
+      store::StoredJob stored = stored_of(status);
+      stored.node = node;
+      auto begun = store->begin(stored);
+      if (begun || begun.error().code != ErrorCode::conflict || tries_left == 0) return begun;
+      const std::lock_guard lock(mutex);
+      status.id = JobId(++last_id);
+    }
   }
 
   Result<void> may_add() const {
@@ -255,8 +270,9 @@ struct JobQueue::Impl {
   }
 };
 
-JobQueue::JobQueue(store::Jobs* store) : impl_(std::make_unique<Impl>()) {
+JobQueue::JobQueue(store::Jobs* store, std::optional<Uuid> node) : impl_(std::make_unique<Impl>()) {
   impl_->store = store;
+  impl_->node = node;
   impl_->take_over();
   impl_->thread = std::thread([impl = impl_.get()] { impl->work_on_jobs(); });
 }
@@ -283,7 +299,7 @@ Result<JobId> JobQueue::add(ProjectId project, Work work, std::string user, JobK
   status.user = std::move(user);
   status.kind = kind;
   status.message = "Waiting";
-  auto saved = impl_->store ? impl_->store->begin(stored_of(status)) : Result<void>();
+  auto saved = impl_->begin(status);
   std::lock_guard lock(impl_->mutex);
   --impl_->coming;
   if (!saved) return tl::unexpected(saved.error());

@@ -11,6 +11,7 @@
 #include "core/ids.h"
 #include "core/progress.h"
 #include "core/temporary_file.h"
+#include "core/uuid.h"
 
 namespace strata::store {
 class Jobs;
@@ -55,8 +56,8 @@ class JobQueue {
   static constexpr int kFilesKept = 16;
   // With `store`, jobs are kept for store::Jobs::kDaysKept days, also after the queue is destroyed,
   // but without their files. Unfinished jobs of an earlier queue count as failed. `store` must
-  // outlive the queue. Blocks.
-  explicit JobQueue(store::Jobs* store = nullptr);
+  // outlive the queue. `node` is this server, if the site has several. Blocks.
+  explicit JobQueue(store::Jobs* store = nullptr, std::optional<Uuid> node = {});
   ~JobQueue();  // cancels the running job and joins the thread
   using Work = std::function<Result<JobResult>(Progress&)>;
   // Fails with `busy` if 64 jobs wait, with `unavailable` if the queue is stopping, or with the

@@ -18,6 +18,8 @@
 #include "room/open/open_room.h"
 #include "room/role_filtered_room.h"
 #include "store/content/models.h"
+#include "store/nodes/nodes.h"
+#include "store/store.h"
 
 namespace strata::room {
 namespace {
@@ -45,6 +47,11 @@ const Error kStopping{ErrorCode::unavailable,
                       "Server is stopping",
                       "The server is stopping. Try again when it is running again.",
                       {}};
+const Error kNoLease{ErrorCode::unavailable,
+                     "Node not available",
+                     "This node has lost its connection to the database, so it cannot open models. "
+                     "Try again in a moment.",
+                     {}};
 
 }  // namespace
 
@@ -58,8 +65,19 @@ struct Rooms::Impl {
         readers(kReaderThreads),
         memory("main memory", "--memory",
                options.memory_bytes > 0 ? options.memory_bytes : default_budget()),
-        services{store,   writer, renderer, stream,       strands,
-                 workers, memory, readers,  retired_keys, options} {
+        services{store,
+                 writer,
+                 renderer,
+                 stream,
+                 strands,
+                 workers,
+                 memory,
+                 readers,
+                 retired_keys,
+                 options,
+                 [this](const std::shared_ptr<OpenRoom>& room, const Error& why) {
+                   drop(room, why);
+                 }} {
     memory.set_evictor([this] { return drop_a_map(); });
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
@@ -77,7 +95,7 @@ struct Rooms::Impl {
     }
     sweeper.join();
     renderer.on_context_lost({});
-    for (auto& [id, room] : rooms) room->close(kStopping);
+    for (const auto& room : open_ones()) room->close(kStopping);
     writer.drain();
     workers.join();
     readers.join();
@@ -97,6 +115,31 @@ struct Rooms::Impl {
   }
 
   Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
+
+  // Closes a room that another server has replaced.
+  void drop(const std::shared_ptr<OpenRoom>& room, const Error& why) {
+    {
+      std::lock_guard lock(mutex);
+      const auto found = rooms.find(room->id());
+      if (found == rooms.end() || found->second != room) return;
+      rooms.erase(found);
+    }
+    ++models_moved;
+    room->close(why);
+  }
+
+  // Gives up a room whose edits are durable, so that another node can open its model at once.
+  void pass_on(const std::shared_ptr<OpenRoom>& room, const Error& why) {
+    room->release();
+    room->move_away(why);
+    drop(room, why);
+  }
+
+  // Returns the error for the listeners of a node that drains.
+  Error moved_elsewhere() {
+    const auto other = services.store.nodes().another(*services.options.node);
+    return moved_to(other && *other ? (*other)->url : std::string());
+  }
 
   // Closes rooms that were empty for a while. Returns the memory of participants who left to the
   // system: each view has about 15 MB, in small pieces if the CPU draws.
@@ -162,6 +205,7 @@ struct Rooms::Impl {
     }
     for (auto& room : leaving) {
       room->close(kClosing);
+      room->release();
       log::info("closed model " + to_string(room->id()) + ", " + why);
     }
     return !leaving.empty();
@@ -185,6 +229,9 @@ struct Rooms::Impl {
   std::map<ModelId, std::shared_ptr<OpenRoom>> rooms;
   std::set<ModelId> opening, deleted_meanwhile;
   std::atomic<int> context_losses{0};
+  std::atomic<std::uint64_t> models_moved{0};
+  int surrenders = 0;
+  bool surrendered = false;
   bool stopping = false;
   bool draining = false;
   std::thread sweeper;
@@ -205,13 +252,22 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
   // Finds an open room without the database, so viewing continues while the database is
   // unreachable.
   if (auto room = find(model_ref)) return room;
+  {
+    std::lock_guard lock(mutex);
+    if (surrendered) return tl::unexpected(kNoLease);
+  }
   auto model = STRATA_TRY(services.store.models().find(model_ref));
   const int losses_before = context_losses;
+  int surrenders_before = 0;
   {
     std::unique_lock lock(mutex);
     // One caller at a time loads a model. The others wait for it.
-    changed.wait(lock, [&] { return stopping || draining || !opening.contains(model.id); });
+    changed.wait(lock, [&] {
+      return stopping || draining || surrendered || !opening.contains(model.id);
+    });
     if (stopping || draining) return tl::unexpected(kStopping);
+    if (surrendered) return tl::unexpected(kNoLease);
+    surrenders_before = surrenders;
     if (auto found = rooms.find(model.id); found != rooms.end()) {
       found->second->touch();
       return found->second;
@@ -226,9 +282,15 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
   changed.notify_all();
   const bool deleted = deleted_meanwhile.erase(model.id) > 0;
   if (!room) return tl::unexpected(room.error());
+  if (surrenders != surrenders_before) {
+    lock.unlock();
+    (*room)->close(kNoLease);
+    return tl::unexpected(kNoLease);
+  }
   if (deleted || draining) {
     lock.unlock();
     (*room)->close(kClosing);
+    (*room)->release();
     if (!deleted) return tl::unexpected(kStopping);
     return fail(ErrorCode::not_found, "Not found", "The model was deleted.");
   }
@@ -248,15 +310,18 @@ Result<void> Rooms::retire_key(TableId table_id, std::int64_t key) {
     const auto layers = room->layers().all();
     if (std::ranges::none_of(layers, [&](const Layer& layer) { return layer.table == table_id; }))
       continue;
-    STRATA_TRY(room->settle());
+    if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::moved)
+      return settled;
   }
   return {};
 }
 
 Result<void> Rooms::settle() {
-  // The error `gone` means that the model was deleted.
+  // The error `gone` means that the model was deleted, and `moved` that another server has it. Then
+  // every edit has its answer.
   for (const auto& room : impl_->open_ones())
-    if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::gone)
+    if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::gone &&
+                                       settled.error().code != ErrorCode::moved)
       return settled;
   return {};
 }
@@ -276,6 +341,55 @@ void Rooms::forget(ModelId model_id) {
     impl_->rooms.erase(found);
   }
   room->close_deleted();
+  room->release();
+}
+
+Result<std::optional<std::string>> Rooms::elsewhere(const std::string& model_ref) {
+  const auto& node = impl_->services.options.node;
+  if (!node || impl_->find(model_ref)) return std::nullopt;
+  bool leaves = false;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->surrendered) return std::nullopt;
+    leaves = impl_->draining;
+  }
+  auto& nodes = impl_->services.store.nodes();
+  auto owner = STRATA_TRY(nodes.owner_of(model_ref));
+  if (!owner && leaves) owner = STRATA_TRY(nodes.another(*node));
+  if (!owner || owner->id == *node) return std::nullopt;
+  return owner->url;
+}
+
+void Rooms::surrender() {
+  std::map<ModelId, std::shared_ptr<OpenRoom>> rooms;
+  {
+    std::lock_guard lock(impl_->mutex);
+    ++impl_->surrenders;
+    impl_->surrendered = true;
+    rooms.swap(impl_->rooms);
+    impl_->models_moved += rooms.size();
+    impl_->changed.notify_all();
+  }
+  const Error why = moved_to({});
+  for (const auto& [id, room] : rooms) room->move_away(why);
+  for (const auto& [id, room] : rooms) room->close(why);
+  if (!rooms.empty())
+    log::warning("closed " + std::to_string(rooms.size()) +
+                 " models, because this node may have lost them to other nodes");
+}
+
+void Rooms::resume() {
+  std::lock_guard lock(impl_->mutex);
+  impl_->surrendered = false;
+  impl_->changed.notify_all();
+}
+
+std::uint64_t Rooms::models_moved() const { return impl_->models_moved; }
+
+std::size_t Rooms::participants() const {
+  std::size_t count = 0;
+  for (const auto& room : impl_->open_ones()) count += room->participant_count();
+  return count;
 }
 
 std::uint64_t Rooms::memory_bytes_used() const { return impl_->memory.used(); }
@@ -292,9 +406,24 @@ void Rooms::drain() {
     impl_->draining = true;  // rooms that are being opened are closed again
     impl_->changed.notify_all();
   }
-  const auto rooms = impl_->open_ones();
+  auto rooms = impl_->open_ones();
   for (const auto& room : rooms) room->take_no_edits();
   const auto deadline = std::chrono::steady_clock::now() + impl_->services.options.drain_for;
+  if (impl_->services.options.node) {
+    const Error why = impl_->moved_elsewhere();
+    // Passes on each room as soon as it can, because its users wait.
+    while (!rooms.empty() && std::chrono::steady_clock::now() < deadline) {
+      const auto ready = std::ranges::stable_partition(
+          rooms, [](const auto& room) { return !room->has_no_edits(); });
+      for (const auto& room : ready) impl_->pass_on(room, why);
+      rooms.erase(ready.begin(), ready.end());
+      if (!rooms.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    // The client sends the edits that are left to the next owner.
+    for (const auto& room : rooms) impl_->pass_on(room, why);
+    impl_->writer.drain();
+    return;
+  }
   for (const auto& room : rooms) {
     while (!room->has_no_edits() && std::chrono::steady_clock::now() < deadline)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -79,6 +79,8 @@ class Rooms {
   void resume();  // the node has a lease again
   std::size_t open_rooms() const;
   std::size_t participants() const;  // connections to all rooms
+  // The number of open models that this server gave to other servers or lost to them.
+  std::uint64_t models_moved() const;
   std::uint64_t memory_bytes_used() const;
   // The memory of open models, and of images that are being added to a model. Thread-safe.
   MemoryLedger& memory();

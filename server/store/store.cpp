@@ -46,6 +46,7 @@ NamedParts& Store::views() { return impl_->views; }
 NamedParts& Store::tours() { return impl_->tours; }
 NamedParts& Store::snapshots() { return impl_->snapshots; }
 Jobs& Store::jobs() { return impl_->jobs; }
+Nodes& Store::nodes() { return impl_->nodes; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }
 TourFiles& Store::tour_files() { return impl_->tour_files; }
 Groups& Store::groups() { return impl_->groups; }

@@ -18,6 +18,7 @@
 #include "store/content/tour_files.h"
 #include "store/content/trash.h"
 #include "store/journal/journal_reads.h"
+#include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
 #include "store/people/groups.h"
 #include "store/people/kiosks.h"
@@ -111,6 +112,7 @@ struct Store::Impl {
   Kiosks kiosks{pool};
   TourFiles tour_files{pool};
   Jobs jobs{pool};
+  Nodes nodes{pool};
   Groups groups{pool};
   Trash trash{pool};
   Projects projects{pool};

@@ -36,6 +36,7 @@
 #include "store/content/trash.h"
 #include "store/journal/journal_reads.h"
 #include "store/journal/journal_writer.h"
+#include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
 #include "store/people/kiosks.h"
 #include "store/people/members.h"
@@ -210,6 +211,8 @@ class Story {
         brush_->paint(layer, contents_[layer_slug], stroke, value, model_.metres());
     entry.model_id = model_.id;
     entry.layer_id = layer.id;
+    // A room that was opened in the meantime must not write, because it lacks this entry.
+    entry.epoch = STRATA_TRY(store_.nodes().begin_epoch(model_.id));
     entry.sequence = STRATA_TRY(store_.journal().last_sequence(model_.id)) + 1;
     entry.id = entry.stroke = random_uuid();
     entry.user = user;

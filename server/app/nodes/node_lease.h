@@ -43,6 +43,8 @@ class NodeLease {
   // Returns whether this process may acknowledge edits: a renewal that was sent within the last
   // `trusted_for` has succeeded.
   bool holds() const;
+  // Returns the time until the lease is over, by the clock of this process. At least 0.
+  std::chrono::milliseconds left() const;
   bool draining() const { return draining_; }
   // Returns whether a proxy may send new requests to this node.
   bool ready() const { return holds() && !draining_; }
@@ -58,8 +60,11 @@ class NodeLease {
 
   NodeLease(store::Nodes& nodes, room::Rooms& rooms, Options options);
   void renew_until_stopped();
+  void renew(Clock::time_point sent);
+  void join_again();
   void watch_until_stopped();
-  void renewed(Clock::time_point sent);
+  bool is_held(Clock::time_point now) const;  // call while holding `mutex_`
+  store::NodeLoad load();
   void stop();
 
   store::Nodes& nodes_;
@@ -69,9 +74,12 @@ class NodeLease {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Clock::time_point sent_;    // when the last successful renewal was sent
-  bool surrendered_ = false;  // the rooms are closed until the node joins again
-  bool must_join_ = false;    // the lease was over, so the node must join again
+  bool is_over_ = false;      // the database said so; the rooms must be closed before a new lease
+  bool surrendered_ = false;  // the rooms are closed
   bool stopping_ = false;
+  // Used by the renewing thread: when the load was last measured, and the processor time until then.
+  Clock::time_point measured_;
+  double processor_s_ = 0;
   std::thread renewer_, watcher_;
 };
 

@@ -36,8 +36,9 @@ Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
   JournalContents contents;
   // Read before the tiles. If the tiles contain later edits, the next commit detects the
   // difference, and everything is read again.
-  auto last = STRATA_TRY(store.journal().last_sequence(model_id));
-  contents.last_sequence = last;
+  const auto journal = STRATA_TRY(store.journal().state(model_id, {}));
+  contents.last_sequence = journal.last_sequence;
+  contents.epoch = journal.epoch;
   auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
   for (Layer& layer : layers) {
     auto state = STRATA_TRY(read_layer_state(store, std::move(layer)));

@@ -13,6 +13,9 @@ namespace strata::room {
 
 void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved saved) {
   room_.touch();
+  // Other nodes can take the edit at once.
+  if (!room_.takes_edits_ && room_.services_.options.node)
+    return saved(tl::unexpected(moved_to({})));
   if (!room_.takes_edits_)
     return saved(
         fail(ErrorCode::unavailable, "Server is stopping",

@@ -20,6 +20,10 @@ OpenParticipant::~OpenParticipant() {
   for (auto& [id, view] : views_) view.viewer->close();
 }
 
+void OpenParticipant::tell_moved(const std::string& url) {
+  if (listener_ && !std::exchange(told_moved_, true)) listener_->moved(url);
+}
+
 OpenParticipant::View* OpenParticipant::view(std::uint32_t view_id, bool make) {
   auto found = views_.find(view_id);
   if (found != views_.end()) return &found->second;

@@ -43,6 +43,7 @@ class OpenParticipant final : public Participant {
                        std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);
+  void tell_moved(const std::string& url);  // at most once; on the strand of the room
 
  private:
   struct View {
@@ -88,6 +89,7 @@ class OpenParticipant final : public Participant {
   std::optional<Pointing> pointer_;
   std::optional<Camera> camera_;  // camera of view 0 without its section
   bool leading_ = false;
+  bool told_moved_ = false;
 };
 
 }  // namespace strata::room

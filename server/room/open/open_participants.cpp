@@ -20,13 +20,28 @@ std::unique_ptr<Participant> OpenRoom::ParticipantsPart::join(Author who, Portra
   }
   room_.touch();
   announce_presence();
+  tell_if_moved(joined->session());
   return joined;
+}
+
+void OpenRoom::ParticipantsPart::tell_if_moved(const Uuid& session) {
+  boost::asio::post(room_.strand_, [room = room_.shared_from_this(), this, session] {
+    if (!room->moved_) return;
+    std::lock_guard lock(mutex_);
+    for (OpenParticipant* each : here_)
+      if (each->session() == session) each->tell_moved(room->moved_->location);
+  });
 }
 
 void OpenRoom::ParticipantsPart::tell(const std::function<void(Listener&)>& tell) {
   std::lock_guard lock(mutex_);
   for (OpenParticipant* each : here_)
     if (each->listener()) tell(*each->listener());
+}
+
+void OpenRoom::ParticipantsPart::tell_moved(const std::string& url) {
+  std::lock_guard lock(mutex_);
+  for (OpenParticipant* each : here_) each->tell_moved(url);
 }
 
 void OpenRoom::ParticipantsPart::tell_seen(const Layer& layer,

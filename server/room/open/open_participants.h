@@ -28,6 +28,8 @@ class OpenRoom::ParticipantsPart final : public Participants {
   // --- for each participant
   void leave(OpenParticipant* participant);
   void announce_presence();
+  // Notifies a participant who joined after the others had been notified that the model moved.
+  void tell_if_moved(const Uuid& session);
   // Replaces the former leader. nullopt: the follower has no leader. Returns the error `not_found`
   // if no participant has that session, and the same errors as Followers.
   Result<void> follow(const Uuid& follower, const std::optional<Uuid>& leader);
@@ -35,6 +37,7 @@ class OpenRoom::ParticipantsPart final : public Participants {
 
   // --- for the room
   void tell(const std::function<void(Listener&)>& tell);  // notifies every listener
+  void tell_moved(const std::string& url);                // notifies every listener, once
   // Notifies the listeners who see the layer.
   void tell_seen(const Layer& layer, const std::function<void(Listener&)>& tell);
   // Sends a creation to listeners who begin to see the layer, and a deletion to listeners who no

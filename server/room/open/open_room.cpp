@@ -17,13 +17,16 @@
 #include "store/content/models.h"
 #include "store/content/surface_images.h"
 #include "store/journal/journal_reads.h"
+#include "store/nodes/nodes.h"
 #include "store/store.h"
 
 namespace strata::room {
 
-OpenRoom::OpenRoom(const RoomServices& services, Model model, render::ModelGeometry geometry)
+OpenRoom::OpenRoom(const RoomServices& services, Model model, std::int64_t epoch,
+                   render::ModelGeometry geometry)
     : services_(services),
       model_id_(model.id),
+      epoch_(epoch),
       geometry_(std::move(geometry.full)),
       coarser_(std::move(geometry.coarser)),
       strand_(services.strands.get_executor()),
@@ -50,14 +53,25 @@ OpenRoom::~OpenRoom() = default;
 Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
                                                  const std::string& model_ref) {
   auto model = STRATA_TRY(services.store.models().find(model_ref));
+  const ModelId id = model.id;
+  // Before the journal is read, so that no other server can add to it afterwards.
+  const auto epoch = STRATA_TRY(services.store.nodes().claim(id, services.options.node));
+  auto room = load(services, std::move(model), epoch);
+  if (!room && services.options.node) (void)services.store.nodes().release(id, epoch);
+  return room;
+}
+
+Result<std::shared_ptr<OpenRoom>> OpenRoom::load(const RoomServices& services, Model model,
+                                                 std::int64_t epoch) {
   auto geometry = STRATA_TRY(read_geometry(services.store, model.id));
   std::uint64_t bytes = geometry.full->bytes();
   for (const auto& level : geometry.coarser) bytes += level->bytes();
   auto share = STRATA_TRY(services.memory.reserve(bytes, "the model's triangles"));
-  auto room = std::make_shared<OpenRoom>(services, std::move(model), std::move(geometry));
+  auto room = std::make_shared<OpenRoom>(services, std::move(model), epoch, std::move(geometry));
   room->geometry_share_ = std::move(share);
   auto journal = read_journal(services.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
+  if (journal->epoch != epoch) return tl::unexpected(moved_to({}));
   auto images = STRATA_TRY(services.store.surface_images().of_model(room->model_id_));
   room->contact_shadow_ = room->make_contact_shadow(room->model_.up);
   for (LayerState& state : journal->layers) {
@@ -100,7 +114,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   room->pipeline_ = std::make_shared<EditPipeline>(
       EditPipeline::Parts{services.store, services.writer, services.renderer, services.workers,
                           services.readers, room->strand_, room->maps_, room->surface_lookup_,
-                          services.memory},
+                          services.memory, epoch},
       *room, journal->last_sequence);
   // Painting needs the maps of the existing layers, so they are baked in the background.
   for (const auto& state : room->layer_states())
@@ -265,6 +279,50 @@ void OpenRoom::edit_saved(const Listener::Edit& edit) {
 void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) {
   sequence_ = pipeline_->sequence();
   participants_part_->tell_unsaved(edits, why);
+}
+
+void OpenRoom::tell_moved(const Error& why) {
+  if (moved_) return;
+  moved_ = why;
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = why;
+  }
+  recovery_.closed = true;
+  recovery_.timer.cancel();
+  pipeline_->close(why);
+  participants_part_->tell_moved(why.location);
+}
+
+void OpenRoom::move_away(const Error& why) {
+  run_on(strand_, [&] { tell_moved(why); });
+}
+
+void OpenRoom::deposed(const Error& why) {
+  if (moved_) return;
+  log::warning("another server has claimed model " + to_string(model_id_) +
+               ", so this server closes it");
+  tell_moved(why);
+  boost::asio::post(services_.workers, [self = shared_from_this(), why] {
+    if (self->services_.on_deposed) self->services_.on_deposed(self, why);
+  });
+}
+
+Result<void> OpenRoom::check_not_deposed() {
+  if (!services_.options.node) return {};
+  // The work itself reports other errors.
+  const auto state = services_.store.journal().state(model_id_, {});
+  if (!state || state->epoch == epoch_) return {};
+  const Error why = moved_to({});
+  boost::asio::post(strand_, [self = shared_from_this(), why] { self->deposed(why); });
+  return tl::unexpected(why);
+}
+
+void OpenRoom::release() {
+  if (!services_.options.node) return;
+  if (auto released = services_.store.nodes().release(model_id_, epoch_); !released)
+    log::warning("model " + to_string(model_id_) +
+                 " could not be released: " + released.error().detail);
 }
 
 std::size_t OpenRoom::participant_count() const { return participants_part_->count(); }

@@ -36,6 +36,8 @@
 
 namespace strata::room {
 
+class OpenRoom;
+
 // The objects that all rooms share.
 struct RoomServices {
   store::Store& store;
@@ -49,6 +51,8 @@ struct RoomServices {
   boost::asio::thread_pool& readers;
   const RetiredKeys& retired_keys;
   RoomOptions options;
+  // Called on a worker after a room has found out that another server has its model.
+  std::function<void(const std::shared_ptr<OpenRoom>&, const Error& why)> on_deposed;
 };
 
 // The implementation of a room: its state, its lifetime, and its recovery. The parts of the room
@@ -57,10 +61,12 @@ class OpenRoom final : public Room,
                        public PipelineHost,
                        public std::enable_shared_from_this<OpenRoom> {
  public:
-  // Loads all data. Blocks.
+  // Claims the model (store/nodes/nodes.h) and loads all data. Blocks. Returns `moved` if another
+  // node has the model.
   static Result<std::shared_ptr<OpenRoom>> open(const RoomServices& services,
                                                 const std::string& model_ref);
-  OpenRoom(const RoomServices& services, Model model, render::ModelGeometry geometry);
+  OpenRoom(const RoomServices& services, Model model, std::int64_t epoch,
+           render::ModelGeometry geometry);
   ~OpenRoom() override;
 
   Model model() const override;
@@ -80,6 +86,7 @@ class OpenRoom final : public Room,
   void edit_saved(const Listener::Edit& edit) override;
   void edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) override;
   void journal_differs() override;
+  void deposed(const Error& why) override;
   void paused() override;
 
   // --- for participants
@@ -113,6 +120,12 @@ class OpenRoom final : public Room,
   // Refuses waiting and later edits, and releases the GPU objects. Blocks.
   void close(const Error& why);
   void close_deleted();  // call after the model was deleted; notifies listeners first
+  // Refuses edits (moved) and notifies listeners that the model has moved, which is their last
+  // event. Does not wait for the database. Call `close` later.
+  void move_away(const Error& why);
+  // Gives up the claim, so that another node can open the model. Blocks. Does nothing if this
+  // server is alone, because its claims have no owner.
+  void release();
   ModelId id() const { return model_id_; }
 
  private:
@@ -123,10 +136,14 @@ class OpenRoom final : public Room,
   class PicturesPart;
   class SurfaceImagesPart;
 
+  static Result<std::shared_ptr<OpenRoom>> load(const RoomServices& services, Model model,
+                                                std::int64_t epoch);
   // Runs `work` on a worker when every earlier edit is durable. No edit and no recovery starts
-  // while it runs. Blocks.
+  // while it runs. Blocks. Returns `moved` if another node has claimed the model.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);
+  Result<void> check_not_deposed();
+  void tell_moved(const Error& why);  // on the strand
   // Defined in recovery.cpp.
   void recover();
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
@@ -148,6 +165,7 @@ class OpenRoom final : public Room,
 
   const RoomServices services_;
   const ModelId model_id_;
+  const std::int64_t epoch_;  // of the claim (store/nodes/nodes.h)
   const std::shared_ptr<const mesh::Geometry> geometry_;
   // Coarser copies of the mesh, for moving cameras.
   const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;
@@ -187,6 +205,7 @@ class OpenRoom final : public Room,
     std::chrono::milliseconds retry_in = kFirstRetry;
     boost::asio::steady_timer timer;
   } recovery_;
+  std::optional<Error> moved_;  // why the model moved away; used on the strand
 
   const std::unique_ptr<LayersPart> layers_part_;
   const std::unique_ptr<EditsPart> edits_part_;
@@ -203,11 +222,12 @@ Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
   auto future = promise->get_future();
   ++unanswered_;
   boost::asio::post(strand_, [self = shared_from_this(), promise, work = std::move(work)] {
-    self->pipeline_->when_idle([promise, work](const Result<void>& may) {
-      if (may)
+    self->pipeline_->when_idle([self, promise, work](const Result<void>& may) {
+      const auto owned = may ? self->check_not_deposed() : may;
+      if (owned)
         promise->set_value(work());
       else
-        promise->set_value(tl::unexpected(may.error()));
+        promise->set_value(tl::unexpected(owned.error()));
     });
   });
   auto result = future.get();

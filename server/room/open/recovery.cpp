@@ -57,6 +57,7 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
   recovery_.working = false;
   if (recovery_.closed) return;
   if (!contents) return retry_recovery(contents.error());
+  if (contents->epoch != epoch_) return deposed(moved_to({}));
   recovery_.journal_differs = false;
 
   std::map<LayerId, LayerState> read, before;

@@ -184,6 +184,7 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
     }
     return;
   }
+  if (state->epoch != parts_.epoch) return host_->deposed(moved_to({}));
   // A commit may have succeeded although its confirmation was lost. Then the journal is correct,
   // and the room is behind it. Until the room contains everything in the journal, a repeated
   // request must not get the result that its edit is saved. All ids are therefore sent to the
@@ -465,6 +466,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   entry.model_id = model.id;
   entry.layer_id = layer.layer.id;
   entry.sequence = sequence;
+  entry.epoch = parts_.epoch;
   entry.id = item.request.id;
   entry.user = item.request.author.user;
   entry.stroke = stroke ? stroke->stroke : item.request.id;
@@ -538,6 +540,8 @@ void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
     return pending.event.sequence == sequence;
   });
   if (found == pending_.end()) return;
+  if (!result && result.error().code == ErrorCode::moved && host_)
+    return host_->deposed(result.error());
   if (!result) {
     found->answered = true;
     if (!failure_) failure_ = result.error();
@@ -695,6 +699,11 @@ void EditPipeline::close(const Error& why) {
   host_ = nullptr;
   repair_timer_.cancel();
   refuse_waiting(why);
+  if (why.code == ErrorCode::moved) {
+    failure_.reset();
+    for (Pending& pending : std::exchange(pending_, {}))
+      answer(pending.event.id, pending.saved, tl::unexpected(why));
+  }
   roll_back_when_answered();
 }
 

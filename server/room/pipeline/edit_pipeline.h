@@ -49,6 +49,8 @@ class PipelineHost {
   // Called when the journal differs from the room, so the room must read the journal again. The
   // host pauses the pipeline.
   virtual void journal_differs() = 0;
+  // Called when another server has claimed the model. The host closes the pipeline.
+  virtual void deposed(const Error& why) = 0;
   // Called after a request to pause, when nothing is in progress.
   virtual void paused() = 0;
 };
@@ -81,6 +83,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     std::shared_ptr<SurfaceMaps> maps;
     std::shared_ptr<SurfaceLookup> surface;
     const MemoryLedger& memory;
+    std::int64_t epoch;  // of the claim of the model (store/nodes/nodes.h)
   };
   EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence);
 
@@ -113,7 +116,10 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void resume();
 
   void refuse_waiting(const Error& why);
-  // Call before the host is destroyed. Refuses waiting and later edits.
+  // Call before the host is destroyed. Refuses waiting and later edits. If the reason is that the
+  // model moved, also refuses at once the edits that wait for their commit: this server must not
+  // acknowledge them, and the client sends them again to the next owner, which finds them if they
+  // are in the journal.
   void close(const Error& why);
 
  private:

@@ -7,12 +7,13 @@ namespace strata::store {
 Result<std::vector<StoredJob>> Jobs::take_over(int most) {
   return pool_.write([&](PgConnection& connection) -> Result<std::vector<StoredJob>> {
     STRATA_TRY(connection.query(
-        "UPDATE jobs SET state = 'lost', ended = now() WHERE state = 'begun'", Params()));
+        "UPDATE jobs j SET state = 'lost', ended = now() WHERE state = 'begun' AND NOT EXISTS "
+        "(SELECT FROM nodes n WHERE n.id = j.node AND n.lease_until > clock_timestamp())"));
     STRATA_TRY(connection.query("DELETE FROM jobs WHERE ended < now() - $1 * interval '1 day'",
                                 Params().integer(kDaysKept)));
     auto rows = STRATA_TRY(connection.query(
         "SELECT id, project_id, user_name, kind, state, coalesce(problem, 'null'), coalesce(result, 'null') FROM jobs "
-        "ORDER BY id DESC LIMIT $1",
+        "WHERE state <> 'begun' ORDER BY id DESC LIMIT $1",
         Params().integer(most)));
     std::vector<StoredJob> jobs;
     for (int i = 0; i < rows.rows(); ++i)
@@ -25,8 +26,13 @@ Result<std::vector<StoredJob>> Jobs::take_over(int most) {
 Result<void> Jobs::begin(const StoredJob& job) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto inserted = STRATA_TRY(connection.query(
-        "INSERT INTO jobs (id, project_id, user_name, kind) SELECT $1, id, $3, $4 FROM projects WHERE id = $2",
-        Params().id(job.id).id(job.project_id).text(job.user).text(job.kind)));
+        "INSERT INTO jobs (id, project_id, user_name, kind, node) SELECT $1, id, $3, $4, $5::text::uuid FROM projects WHERE id = $2",
+        Params()
+            .id(job.id)
+            .id(job.project_id)
+            .text(job.user)
+            .text(job.kind)
+            .optional_text(job.node ? std::optional(to_string(*job.node)) : std::nullopt)));
     return inserted.affected() > 0 ? Result<void>() : no_such("project", to_string(job.project_id));
   });
 }

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/ids.h"
+#include "core/uuid.h"
 
 namespace strata::store {
 
@@ -23,6 +25,7 @@ struct StoredJob {
   nlohmann::json problem;  // code, title, detail, field; null if there was no problem
   // "model", "layers", "look", "report", if the job made them; null if there is no result
   nlohmann::json result;
+  std::optional<Uuid> node{};  // the node that runs it, if the site has several
 };
 
 // Jobs that can be found again after a restart. Part of Store, with the same rules for threads and
@@ -35,10 +38,12 @@ class Jobs {
   explicit Jobs(Pool& pool) : pool_(pool) {}
 
   // Called when a server starts: marks the unfinished jobs of the previous server as lost, and
-  // deletes jobs that ended more than kDaysKept days ago. Returns at most `most` of the other jobs,
-  // newest first.
+  // deletes jobs that ended more than kDaysKept days ago. Does not change the unfinished jobs of
+  // nodes that have a lease. Returns the newest `most` of the jobs that ended, newest first.
   Result<std::vector<StoredJob>> take_over(int most);
-  Result<void> begin(const StoredJob& job);  // `not_found` if the project does not exist
+  // Returns `not_found` if the project does not exist, and `conflict` if another node has already
+  // used the id.
+  Result<void> begin(const StoredJob& job);
   // Writes the end of a job. A job that a transaction has marked as done stays done.
   Result<void> end(const StoredJob& job);
 

@@ -61,10 +61,10 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
   for (const Uuid& id : ids) requested.add(id);
   return pool_.read([&](PgConnection& connection) -> Result<JournalState> {
     auto model =
-        connection.query("SELECT sequence FROM models WHERE id = $1", Params().id(model_id));
+        connection.query("SELECT sequence, owner_epoch FROM models WHERE id = $1", Params().id(model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return no_such("model", to_string(model_id));
-    JournalState state{model->integer(0, 0), {}};
+    JournalState state{model->integer(0, 0), model->integer(0, 1), {}};
     if (ids.empty()) return state;
     auto rows =
         connection.query(sql("SELECT ", kEditColumns, "WHERE e.model_id = $1 AND e.id = any($2)"),

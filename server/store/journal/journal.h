@@ -34,6 +34,7 @@ struct JournalEntry {
   ModelId model_id = 0;
   LayerId layer_id = 0;
   std::int64_t sequence = 0;  // number in the model, from 1, without gaps
+  std::int64_t epoch = 0;     // of the claim of the model (store/nodes/nodes.h)
   Uuid id;                    // id of the message; unique per model
   std::string user;           // display name of the author
   Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "store/journal/tile_sums.h"
+#include "store/nodes/deposed.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -26,16 +27,17 @@ Result<void> check(const JournalEntry& entry) {
 }
 
 struct Span {
-  std::int64_t first, last;
+  std::int64_t first, last, epoch;
 };
 
-// Returns the range of sequences of each model. The sequences of a model must be consecutive.
+// Returns the range of sequences of each model; they must be consecutive and of one epoch.
 Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const> entries) {
   std::map<ModelId, Span> spans;
   for (const JournalEntry* entry : entries) {
     const auto [span, fresh] =
-        spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
-    if (!fresh && entry->sequence != ++span->second.last)
+        spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence, entry->epoch});
+    if (!fresh &&
+        (entry->sequence != ++span->second.last || entry->epoch != span->second.epoch))
       return fail(
           ErrorCode::conflict, "Journal out of order",
           "Edit " + std::to_string(entry->sequence) + " does not follow the edit before it.");
@@ -46,17 +48,18 @@ Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const>
 using Statements = std::deque<PgConnection::Statement>;
 
 void advance_models(const std::map<ModelId, Span>& spans, Statements& out) {
-  PgArray ids(oid::kInt8), firsts(oid::kInt8), lasts(oid::kInt8);
+  PgArray ids(oid::kInt8), firsts(oid::kInt8), lasts(oid::kInt8), epochs(oid::kInt8);
   for (const auto& [model, span] : spans) {
     ids.add(model);
     firsts.add(span.first);
     lasts.add(span.last);
+    epochs.add(span.epoch);
   }
   Params params;
-  params.array(ids).array(firsts).array(lasts);
+  params.array(ids).array(firsts).array(lasts).array(epochs);
   out.push_back(
-      {"UPDATE models m SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[]) "
-       "AS v (id, first, last) WHERE m.id = v.id AND m.sequence = v.first - 1",
+      {"UPDATE models m SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[], $4::bigint[]) "
+       "AS v (id, first, last, epoch) WHERE m.id = v.id AND m.sequence = v.first - 1 AND m.owner_epoch = v.epoch",
        std::move(params)});
 }
 
@@ -192,24 +195,18 @@ void keep_decisions(std::span<const JournalEntry* const> entries, Statements& ou
   }
 }
 
-}  // namespace
-
-tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
-                                                 std::span<const JournalEntry* const> entries) {
+tl::expected<void, CommitFailure> write_entries(PgConnection& connection,
+                                                std::span<const JournalEntry* const> entries,
+                                                const std::map<ModelId, Span>& spans) {
   const auto never = [](Error problem) {
     return tl::unexpected(CommitFailure{std::move(problem), false});
   };
   const auto failed = [&](const Error& problem) {
     return tl::unexpected(CommitFailure{problem, is_transient(connection.sqlstate())});
   };
-  for (const JournalEntry* entry : entries)
-    if (auto good = check(*entry); !good) return never(good.error());
-  const auto spans = model_spans(entries);
-  if (!spans) return never(spans.error());
-
   Statements statements;
   statements.push_back({"BEGIN", {}});
-  advance_models(*spans, statements);
+  advance_models(spans, statements);
   const std::size_t layer_count = advance_layers(entries, statements);
   insert_edits(entries, statements);
   insert_revisions(entries, statements);
@@ -220,7 +217,7 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
   Transaction transaction = Transaction::adopt(connection);
   const auto results = connection.pipeline(statements);
   if (!results) return failed(results.error());
-  if ((*results)[1].affected() != static_cast<std::int64_t>(spans->size()))
+  if ((*results)[1].affected() != static_cast<std::int64_t>(spans.size()))
     return never({ErrorCode::conflict, "Journal out of order",
                   "The model was deleted, or an earlier edit was not saved. Nothing changed. "
                   "Read the layer again.",
@@ -231,6 +228,27 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
          "Somebody deleted the layer in the meantime, so the server did not save the edit.", ""});
   if (auto committed = transaction.commit(); !committed) return failed(committed.error());
   return {};
+}
+
+}  // namespace
+
+tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
+                                                 std::span<const JournalEntry* const> entries) {
+  for (const JournalEntry* entry : entries)
+    if (auto good = check(*entry); !good)
+      return tl::unexpected(CommitFailure{good.error(), false});
+  const auto spans = model_spans(entries);
+  if (!spans) return tl::unexpected(CommitFailure{spans.error(), false});
+  auto written = write_entries(connection, entries, *spans);
+  if (written || written.error().transient) return written;
+  // The new owner may have written the same sequences, so any permanent failure can have this
+  // cause.
+  for (const auto& [model, span] : *spans) {
+    auto deposed = deposed_problem(connection, model, span.epoch);
+    if (!deposed) return tl::unexpected(CommitFailure{deposed.error(), true});
+    if (*deposed) return tl::unexpected(CommitFailure{std::move(**deposed), false});
+  }
+  return written;
 }
 
 Result<std::vector<bool>> find_saved(PgConnection& connection,

@@ -16,8 +16,9 @@ struct CommitFailure {
 
 // Writes the entries in one transaction: the journal rows, the edits that they enable and disable,
 // their tile revisions, and the sequences of model and layers. An entry must follow the last entry
-// of the model. An entry with any other sequence is a `conflict`, so an edit that depends on an
-// unsaved edit can never be stored.
+// of the model. Another sequence is a `conflict`, so an edit that depends on an unsaved edit can
+// never be stored. If another server has claimed the model since the epoch of an entry, nothing is
+// written, and the error is `moved`, with the address of the owner.
 tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
                                                  std::span<const JournalEntry* const> entries);
 

@@ -32,10 +32,11 @@ struct HistoryPage {
   std::int64_t total = 0;
 };
 
-// The last sequence of a model, and the rows with the given ids that the journal contained after
-// that sequence was read.
+// The last sequence and the epoch of a model (store/nodes/nodes.h), and the rows of the given
+// messages that the journal contained after they were read.
 struct JournalState {
   std::int64_t last_sequence = 0;
+  std::int64_t epoch = 0;
   std::vector<JournalRow> known;
 };
 

@@ -173,22 +173,24 @@ struct JournalWriter::Impl {
   }
 
   // Commits each entry in a separate transaction, because one entry of the group can never be
-  // written. Later entries of the same model fail too, because they depend on that entry. (A lower
-  // sequence means that the caller has started again.)
+  // written. Later entries of the same model fail too, because they depend on it. (A lower sequence
+  // or another epoch means that the caller has started again.)
   tl::expected<void, CommitFailure> one_by_one(std::deque<WaitingEntry>& group) {
     struct Broken {
-      std::int64_t sequence;
+      std::int64_t sequence, epoch;
       Error problem;
     };
     std::map<ModelId, Broken> broken;
     while (!group.empty()) {
       const JournalEntry* entry = &group.front().entry;
       if (const auto before = broken.find(entry->model_id);
-          before != broken.end() && entry->sequence > before->second.sequence) {
+          before != broken.end() && entry->epoch == before->second.epoch &&
+          entry->sequence > before->second.sequence) {
         Error problem = before->second.problem;
-        problem.detail =
-            "The server did not save this edit, because it could not save an earlier one: " +
-            problem.detail;
+        if (problem.code != ErrorCode::moved)
+          problem.detail =
+              "The server did not save this edit, because it could not save an earlier one: " +
+              problem.detail;
         answer_front(group, tl::unexpected(problem));
         continue;
       }
@@ -206,7 +208,8 @@ struct JournalWriter::Impl {
         answer_front(group, {});
         continue;
       }
-      broken.insert_or_assign(entry->model_id, Broken{entry->sequence, committed.error().problem});
+      broken.insert_or_assign(entry->model_id,
+                              Broken{entry->sequence, entry->epoch, committed.error().problem});
       answer_front(group, tl::unexpected(committed.error().problem));
     }
     return {};

@@ -2,7 +2,8 @@
 
 #include <chrono>
 #include <cstdint>
-#include <mutex>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,10 +11,10 @@
 #include "core/error.h"
 #include "core/ids.h"
 #include "core/uuid.h"
-#include "store/pg/pg.h"
 
 namespace strata::store {
 
+class Params;
 class Pool;
 
 // A server process of a site that has several.
@@ -37,8 +38,22 @@ struct Node : NewNode {
   NodeLoad load;
 };
 
+// The models that a node owns, sorted by id. The list is bounded, `total` is not.
+struct OwnedModels {
+  struct Entry {
+    ModelId id = 0;
+    std::string name;
+  };
+  std::vector<Entry> models;
+  std::int64_t total = 0;
+};
+struct Ownership {
+  std::chrono::system_clock::time_point now;  // by the clock of the database
+  std::map<Uuid, OwnedModels> by_node;        // without nodes that own no model
+};
+
 // Accepts an http or https URL with an optional path, of at most 255 characters. Returns it without
-// slashes at the end. A URL with a user, a query or a fragment is `invalid`.
+// slashes at the end. Other text is `malformed`, also a URL with a user, a query or a fragment.
 Result<std::string> check_node_url(const std::string& url);
 
 // The nodes of a site, and which of them has which model. A model has one owner and an epoch, a
@@ -56,7 +71,8 @@ class Nodes {
   static constexpr std::chrono::milliseconds kLease{3000};
   static constexpr std::chrono::hours kForgetAfter{1};  // after the end of the lease
 
-  explicit Nodes(Pool& pool) : pool_(pool) {}
+  explicit Nodes(Pool& pool);
+  ~Nodes();
 
   // --- The lease of this process. These calls share one connection with short limits, so they
   // neither wait for a busy pool nor for a long statement.
@@ -76,17 +92,20 @@ class Nodes {
   // with the address of the owner. Returns `unavailable` if the lease of `self` is over or `self`
   // is draining.
   Result<std::int64_t> claim(ModelId model, const std::optional<Uuid>& self);
+  // Begins an epoch without an owner, also if a node has the model, and returns it. For code that
+  // writes the journal without a room: a room that is open on any server is closed when it next
+  // uses the journal.
+  Result<std::int64_t> begin_epoch(ModelId model);
   // Gives the model up, if this epoch is the newest. The epoch stays.
   Result<void> release(ModelId model, std::int64_t epoch);
-  // Returns the epoch of a model, or `not_found`.
-  Result<std::int64_t> epoch_of(ModelId model);
   // Returns the owner, if it has a lease and does not drain. `ref` is an id or a slug. Also returns
   // nothing if there is no such model.
   Result<std::optional<Node>> owner_of(const std::string& ref);
-  Result<std::optional<Node>> owner_of(ModelId model) { return owner_of(to_string(model)); }
 
   // Returns all nodes, the longest running first.
   Result<std::vector<Node>> all();
+  // Returns the models of each node, at most `most` of each.
+  Result<Ownership> ownership(int most);
   // Returns the node with the fewest open models that has a lease, does not drain, and is not
   // `self`.
   Result<std::optional<Node>> another(const Uuid& self);
@@ -96,13 +115,8 @@ class Nodes {
   Result<std::int64_t> run(const char* sql, const Params& params);
 
   Pool& pool_;
-  std::mutex lease_mutex_;
-  std::optional<PgConnection> lease_connection_;
+  struct LeaseConnection;
+  const std::unique_ptr<LeaseConnection> lease_connection_;
 };
-
-// Returns the error `moved` if the newest epoch of the model differs, with the address of its owner
-// if it has a lease. Returns nothing if the epoch is the newest or there is no such model.
-Result<std::optional<Error>> deposed_problem(PgConnection& connection, ModelId model,
-                                             std::int64_t epoch);
 
 }  // namespace strata::store

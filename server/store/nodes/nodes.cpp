@@ -1,0 +1,210 @@
+#include "store/nodes/nodes.h"
+
+#include <mutex>
+
+#include "core/no_such.h"
+#include "store/pg/pg_row.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+// A renewal that takes longer than this is of no use, because the node no longer relies on it.
+constexpr PgLimits kLeaseLimits{std::chrono::milliseconds(1500), std::chrono::milliseconds(1500),
+                                std::chrono::milliseconds(1000)};
+
+constexpr auto kNodeColumns =
+    sql("n.id, n.url, n.version, n.gpu, n.started, n.lease_until, n.lease_until > clock_timestamp(), n.draining, "
+        "n.open_models, n.participants, n.processor_share::float8 ");
+
+Node read_node(const PgResult& rows, int i) {
+  PgRow row(rows, i);
+  Node node;
+  node.id = row.uuid();
+  node.url = row.text();
+  node.version = row.text();
+  node.gpu = row.text();
+  node.started = row.time();
+  node.lease_until = row.time();
+  node.lives = row.boolean();
+  node.draining = row.boolean();
+  node.load.open_models = static_cast<int>(row.integer());
+  node.load.participants = static_cast<int>(row.integer());
+  node.load.processor_share = static_cast<float>(row.real());
+  return node;
+}
+
+Result<std::optional<Node>> first_node(const Result<PgResult>& rows) {
+  if (!rows) return tl::unexpected(rows.error());
+  return rows->rows() == 0 ? std::nullopt : std::optional(read_node(*rows, 0));
+}
+
+// A null node is a server that is alone.
+Params& optional_node(Params& params, const std::optional<Uuid>& node) {
+  return params.optional_text(node ? std::optional(to_string(*node)) : std::nullopt);
+}
+
+// Returns the reason why a claim changed nothing.
+Result<Error> claim_problem(PgConnection& connection, ModelId model,
+                            const std::optional<Uuid>& self) {
+  Params params;
+  params.id(model);
+  auto rows = STRATA_TRY(connection.query(
+      "SELECT $2::text IS NULL OR EXISTS (SELECT FROM nodes s WHERE s.id = $2::text::uuid "
+      "AND s.lease_until > clock_timestamp() AND NOT s.draining), coalesce(n.url, '') "
+      "FROM models m LEFT JOIN nodes n ON n.id = m.owner_node WHERE m.id = $1",
+      optional_node(params, self)));
+  if (rows.rows() == 0) return no_such("model", to_string(model)).value();
+  if (!rows.boolean(0, 0))
+    return Error{ErrorCode::unavailable, "Node not available",
+                 "This node is stopping, or it has lost its connection to the database. Try again.",
+                 ""};
+  if (self) return moved_to(rows.text(0, 1));
+  Error error = moved_to(rows.text(0, 1));
+  error.detail =
+      "A node of this site has the model, and this server is not a node of the site. Use the "
+      "address of the site, or start this server with --node-url.";
+  return error;
+}
+
+}  // namespace
+
+struct Nodes::LeaseConnection {
+  std::mutex mutex;
+  std::optional<PgConnection> connection;
+};
+
+Nodes::Nodes(Pool& pool) : pool_(pool), lease_connection_(std::make_unique<LeaseConnection>()) {}
+Nodes::~Nodes() = default;
+
+Result<std::int64_t> Nodes::run(const char* sql, const Params& params) {
+  const std::lock_guard lock(lease_connection_->mutex);
+  auto& connection = lease_connection_->connection;
+  if (!connection || !connection->alive()) {
+    connection.reset();
+    auto fresh = STRATA_TRY(PgConnection::connect(pool_.dsn(), kLeaseLimits));
+    connection.emplace(std::move(fresh));
+  }
+  auto done = STRATA_TRY(connection->query(sql, params));
+  return done.affected();
+}
+
+Result<void> Nodes::join(const NewNode& node) {
+  STRATA_TRY(check_texts({{&node.url, "url"}, {&node.version, "version"}, {&node.gpu, "gpu"}}));
+  STRATA_TRY(
+      run("INSERT INTO nodes (id, url, version, gpu, lease_until) "
+          "VALUES ($1, $2, left($3, 255), left($4, 255), clock_timestamp() + $5 * interval '1 millisecond') "
+          "ON CONFLICT (id) DO UPDATE SET url = excluded.url, version = excluded.version, gpu = excluded.gpu, "
+          "lease_until = excluded.lease_until, draining = false",
+          Params()
+              .uuid(node.id)
+              .text(node.url)
+              .text(node.version)
+              .text(node.gpu)
+              .integer(kLease.count())));
+  return {};
+}
+
+Result<void> Nodes::renew(const Uuid& node, const NodeLoad& load) {
+  const auto renewed =
+      STRATA_TRY(run("UPDATE nodes SET lease_until = clock_timestamp() + $2 * interval '1 millisecond', "
+                     "open_models = $3, participants = $4, processor_share = $5 "
+                     "WHERE id = $1 AND lease_until > clock_timestamp()",
+                     Params()
+                         .uuid(node)
+                         .integer(kLease.count())
+                         .integer(load.open_models)
+                         .integer(load.participants)
+                         .real(load.processor_share)));
+  if (renewed > 0) return {};
+  return fail(ErrorCode::gone, "Lease is over",
+              "This node did not renew its lease in time, so other nodes may have its models.");
+}
+
+Result<void> Nodes::begin_drain(const Uuid& node) {
+  STRATA_TRY(run("UPDATE nodes SET draining = true WHERE id = $1", Params().uuid(node)));
+  return {};
+}
+
+Result<void> Nodes::leave(const Uuid& node) {
+  STRATA_TRY(run("DELETE FROM nodes WHERE id = $1", Params().uuid(node)));
+  return {};
+}
+
+Result<void> Nodes::forget_ended() {
+  STRATA_TRY(run("DELETE FROM nodes WHERE lease_until < clock_timestamp() - $1 * interval '1 hour'",
+                 Params().integer(kForgetAfter.count())));
+  return {};
+}
+
+// The condition is checked again after a wait for a concurrent claim, so only one of them succeeds
+// for the same reason.
+Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self) {
+  return pool_.write([&](PgConnection& connection) -> Result<std::int64_t> {
+    Params params;
+    params.id(model);
+    auto claimed = STRATA_TRY(connection.query(
+        "UPDATE models m SET owner_node = $2::text::uuid, owner_epoch = m.owner_epoch + 1 WHERE m.id = $1 "
+        "AND (m.owner_node IS NULL OR m.owner_node = $2::text::uuid OR NOT EXISTS (SELECT FROM nodes n "
+        "WHERE n.id = m.owner_node AND n.lease_until > clock_timestamp() AND NOT n.draining)) "
+        "AND ($2::text IS NULL OR EXISTS (SELECT FROM nodes s WHERE s.id = $2::text::uuid "
+        "AND s.lease_until > clock_timestamp() AND NOT s.draining)) RETURNING m.owner_epoch",
+        optional_node(params, self)));
+    if (claimed.rows() > 0) return claimed.integer(0, 0);
+    auto problem = STRATA_TRY(claim_problem(connection, model, self));
+    return tl::unexpected(std::move(problem));
+  });
+}
+
+Result<std::int64_t> Nodes::begin_epoch(ModelId model) {
+  return pool_.write([&](PgConnection& connection) -> Result<std::int64_t> {
+    auto begun = STRATA_TRY(connection.query(
+        "UPDATE models SET owner_node = NULL, owner_epoch = owner_epoch + 1 WHERE id = $1 RETURNING owner_epoch",
+        Params().id(model)));
+    if (begun.rows() == 0) return no_such("model", to_string(model));
+    return begun.integer(0, 0);
+  });
+}
+
+Result<void> Nodes::release(ModelId model, std::int64_t epoch) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
+    STRATA_TRY(connection.query(
+        "UPDATE all_models SET owner_node = NULL WHERE id = $1 AND owner_epoch = $2",
+        Params().id(model).integer(epoch)));
+    return {};
+  });
+}
+
+Result<std::optional<Node>> Nodes::owner_of(const std::string& ref) {
+  if (!check_text(ref, "model")) return std::nullopt;
+  return pool_.read([&](PgConnection& connection) -> Result<std::optional<Node>> {
+    constexpr auto kOwner = sql(
+        "SELECT ", kNodeColumns,
+        "FROM models m JOIN nodes n ON n.id = m.owner_node WHERE n.lease_until > clock_timestamp() AND NOT n.draining ");
+    if (const auto id = id_of<ModelId>(ref))
+      return first_node(connection.query(sql(kOwner, "AND m.id = $1"), Params().id(*id)));
+    return first_node(connection.query(sql(kOwner, "AND m.slug = $1"), Params().text(ref)));
+  });
+}
+
+Result<std::vector<Node>> Nodes::all() {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Node>> {
+    auto rows = STRATA_TRY(
+        connection.query(sql("SELECT ", kNodeColumns, "FROM nodes n ORDER BY n.started, n.id")));
+    std::vector<Node> nodes;
+    for (int i = 0; i < rows.rows(); ++i) nodes.push_back(read_node(rows, i));
+    return nodes;
+  });
+}
+
+Result<std::optional<Node>> Nodes::another(const Uuid& self) {
+  return pool_.read([&](PgConnection& connection) {
+    return first_node(connection.query(
+        sql("SELECT ", kNodeColumns,
+            "FROM nodes n WHERE n.id <> $1 AND n.lease_until > clock_timestamp() AND NOT n.draining "
+            "ORDER BY n.open_models, n.processor_share, n.id LIMIT 1"),
+        Params().uuid(self)));
+  });
+}
+
+}  // namespace strata::store
