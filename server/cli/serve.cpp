@@ -8,15 +8,18 @@
 #include <iostream>
 #include <thread>
 
+#include "app/nodes/node_lease.h"
 #include "cli/commands.h"
 #include "cli/install_dirs.h"
 #include "cli/open_database.h"
 #include "core/log.h"
+#include "core/version.h"
 #include "jobs/job_queue.h"
 #include "net/transport/server.h"
 #include "render/renderer.h"
 #include "room/room.h"
 #include "room/rooms.h"
+#include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
 #include "store/people/tokens.h"
 #include "store/tables/attachments.h"
@@ -31,7 +34,7 @@ constexpr int kMaxTimeout_s = 3600;
 
 struct ServeOptions {
   DataOptions data;
-  std::string listen = "127.0.0.1:8080", sql_listen;
+  std::string listen = "127.0.0.1:8080", sql_listen, node_url;
   std::vector<std::string> origins;
   std::filesystem::path tls_cert, tls_key;
   std::uint64_t gpu_memory = 0, memory = 0;
@@ -172,6 +175,17 @@ int run(ServeOptions options) {
            "--sql-listen"});
     options.data.sql = std::move(*sql);
   }
+  std::optional<store::NewNode> node;
+  if (!options.node_url.empty()) {
+    auto url = store::check_node_url(options.node_url);
+    if (!url) return report(url.error());
+    if (options.data.database.empty())
+      return report({ErrorCode::malformed, "No shared database",
+                     "The nodes of a site use the same PostgreSQL. Enter its connection string with "
+                     "--database, or start the server without --node-url.",
+                     "--node-url"});
+    node = store::NewNode{random_uuid(), std::move(*url), std::string(version()), {}};
+  }
   const sigset_t ending = block_signals();
 
   const InstallDirs dirs = install_dirs();
@@ -197,9 +211,18 @@ int run(ServeOptions options) {
   stream::JpegPool encoder(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1));
   room::RoomOptions room_options;
   room_options.memory_bytes = options.memory;
+  if (node) room_options.node = node->id;
   room::Rooms rooms(store, **renderer, {renderer->get(), &encoder, options.samples_at_rest},
                     room_options);
-  jobs::JobQueue jobs(&store.jobs());
+  jobs::JobQueue jobs(&store.jobs(), room_options.node);
+  std::unique_ptr<app::NodeLease> lease;
+  if (node) {
+    node->gpu = gpu.renderer;
+    auto joined = app::NodeLease::start(store.nodes(), rooms, {*node});
+    if (!joined) return report(joined.error());
+    lease = std::move(*joined);
+    log::info("joined the site as node " + to_string(node->id) + " at " + node->url);
+  }
 
   net::ServerOptions server_options;
   server_options.host = address->host;
@@ -214,6 +237,7 @@ int run(ServeOptions options) {
   server_options.owner_token = owner_token();
   server_options.trash_days = options.trash_days;
   server_options.timeouts = options.timeouts;
+  server_options.lease = lease.get();
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
@@ -239,9 +263,15 @@ int run(ServeOptions options) {
 
   if ((*database)->cluster) (*database)->cluster->watch();
   wait_for_end(ending);
-  log::info("stopping: the server refuses new edits and saves the edits in progress");
+  log::info("stopping: no new edits, saving what is under way");
+  if (lease) {
+    // The connections stay open until their users know where each model is.
+    lease->begin_drain();
+    rooms.drain();
+  }
   (*server)->stop();
-  rooms.drain();
+  if (!lease) rooms.drain();
+  if (lease) lease->leave();
   return 0;
 }
 
@@ -262,6 +292,12 @@ Command add_serve(CLI::App& app) {
                    "Address for reading with SQL, HOST:PORT (docs/how-to/query-with-sql.md)")
       ->envname("STRATA_SQL_LISTEN")
       ->check([](const std::string& text) { return usage_of(parse_sql_listen, text); });
+  command
+      ->add_option("--node-url", options->node_url,
+                   "Address of this server among several that use the same --database, http or "
+                   "https, for example https://strata.example.org/node/a")
+      ->envname("STRATA_NODE_URL")
+      ->check([](const std::string& text) { return usage_of(store::check_node_url, text); });
   command
       ->add_option("--origin", options->origins,
                    "Allow connections from this web origin (repeat for several)")

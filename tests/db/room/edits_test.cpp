@@ -174,6 +174,7 @@ struct UnsavedEars : room::Listener {
   void model_changed(const Model&) override {}
   void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override {}
+  void moved(const std::string&) override {}
   void presence_changed() override {}
   void view_refused(std::uint32_t, const Error&) override {}
 };

@@ -43,6 +43,7 @@ class Ears : public room::Listener {
   void model_changed(const Model&) override {}
   void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override { count(deleted_); }
+  void moved(const std::string&) override {}
   void presence_changed() override { count(presence_); }
   void view_refused(std::uint32_t, const Error&) override {}
 
@@ -112,6 +113,7 @@ class RoomRecovery : public RoomTest {
     entry.model_id = model_.id;
     entry.layer_id = layer.id;
     entry.sequence = sequence;
+    entry.epoch = store_->journal().state(model_.id, {})->epoch;
     entry.id = entry.stroke = edit.id;
     entry.user = edit.author.user;
     entry.op = "stroke";
