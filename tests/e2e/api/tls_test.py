@@ -1,7 +1,6 @@
 """https: by the server itself with certificate files and their renewal, and behind nginx with the
 project's configuration."""
 import os
-import re
 import shutil
 import socket
 import ssl
@@ -12,9 +11,9 @@ import pytest
 from support.certificates import make_certificate, trusting
 from support.live_client import LiveClient
 from support.meshes import folded_grid
-from support.strata_server import StrataServer, _end_with_parent, wait_for
+from support.nginx import Nginx, free_port, site_of
+from support.strata_server import StrataServer, wait_for
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 PASSWORD = "a heron and six otters"
 
 
@@ -241,74 +240,27 @@ def test_https_from_files(folder):
         server.assert_clean_log(warnings=("the server keeps its current certificate",))
 
 
-def nginx_binary():
-    unpacked = os.path.join(ROOT, "build", "deps", "usr", "sbin", "nginx")
-    return (
-        unpacked
-        if os.path.exists(unpacked)
-        else shutil.which("nginx", path=os.environ["PATH"] + ":/usr/sbin")
-    )
-
-
-def free_port():
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        return taken.getsockname()[1]
-
-
 def test_https_behind_nginx(folder):
     chain, key = make_certificate(folder, "proxy")
-    with open(os.path.join(ROOT, "docker", "nginx", "strata.conf"), encoding="utf-8") as file:
-        shipped = file.read()
     with StrataServer() as server:
         port, plain_port = free_port(), free_port()
-        site = shipped
-        for pattern, ours in (
-            (r"listen 443 ssl;", f"listen 127.0.0.1:{port} ssl;"),
-            (r"listen 80;", f"listen 127.0.0.1:{plain_port};"),
-            (r"/etc/letsencrypt/live/museum.example/fullchain.pem", chain),
-            (r"/etc/letsencrypt/live/museum.example/privkey.pem", key),
-            (r"127\.0\.0\.1:8080", f"127.0.0.1:{server.port}"),
-        ):
-            site, found = re.subn(pattern, ours, site)
-            assert found == 1, pattern
-        temporary = "".join(
-            f"{kind}_temp_path {folder}/{kind};"
-            for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
+        site = site_of(
+            "docker/nginx/strata.conf",
+            (
+                (r"listen 443 ssl;", f"listen 127.0.0.1:{port} ssl;"),
+                (r"listen 80;", f"listen 127.0.0.1:{plain_port};"),
+                (r"/etc/letsencrypt/live/museum.example/fullchain.pem", chain),
+                (r"/etc/letsencrypt/live/museum.example/privkey.pem", key),
+                (r"127\.0\.0\.1:8080", f"127.0.0.1:{server.port}"),
+            ),
         )
-        conf = os.path.join(folder, "nginx.conf")
-        with open(conf, "w", encoding="utf-8") as file:
-            file.write(
-                f"daemon off; pid {folder}/nginx.pid; error_log {folder}/error.log; user root;\nevents {{}}\n"
-                f"http {{ access_log off; {temporary}\n{site} }}\n"
-            )
-        nginx = subprocess.Popen(
-            [nginx_binary(), "-p", folder, "-c", conf],
-            preexec_fn=_end_with_parent,
-            stderr=subprocess.DEVNULL,
-        )
-        try:
+        with Nginx(folder, site, port):
             upstream, server.port = server.port, port  # all further requests use the proxy
             server.tls = trusting(chain)
-
-            def answers():
-                assert nginx.poll() is None, open(
-                    os.path.join(folder, "error.log"), encoding="utf-8"
-                ).read()
-                try:
-                    socket.create_connection(("127.0.0.1", port)).close()
-                    return True
-                except ConnectionRefusedError:
-                    return False
-
-            wait_for(answers, "nginx to listen")
             check_everything(server)
             with socket.create_connection(("127.0.0.1", plain_port)) as plain:
                 plain.sendall(b"GET /pot HTTP/1.0\r\nHost: museum.example\r\n\r\n")
                 head = plain.makefile("rb").read().decode()
             assert " 301 " in head and "Location: https://museum.example/pot" in head, head
             server.port = upstream
-        finally:
-            nginx.terminate()
-            nginx.wait()
         server.assert_clean_log()

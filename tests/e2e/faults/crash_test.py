@@ -1,28 +1,19 @@
 """The server is killed under load several times, and then its PostgreSQL is killed. Every edit that
 was reported as saved is stored once and completely.
 
-The reference is the server itself without faults. At the end all edits are painted again in their
-order on new layers, and every texel must be equal. Before and after each kill, the test reads
-states at earlier sequences."""
+At the end the history and the texels are compared with a replay (support/painted_model.py). Before
+and after each kill, the test reads states at earlier sequences."""
 import os
 import random
 import signal
-import threading
 
 import pytest
-from support.cameras import camera_from
-from support.meshes import folded_grid
-from support.npy import Raster
-from support.painters import Book, HttpPainter, LivePainter
+from support.painted_model import LAYERS, PaintedModel
+from support.painters import HttpPainter, LivePainter
 from support.strata_server import wait_for
 
 SEED = int(os.environ.get("STRATA_SEED", "1"))
 KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # the number of kills of each kind
-LAYERS = [
-    ("marks", "u8", 2048, [1, 2, 3, 255]),
-    ("depth", "f32", 2048, [0.0, 1.5, -2.25, 3e7]),
-    ("shift", "i16", 2048, [-32768, -5, 12, 32767]),
-]
 # Messages that the log may contain while PostgreSQL is killed.
 FAULT_WORDS = [
     "PostgreSQL stopped",
@@ -34,64 +25,11 @@ FAULT_WORDS = [
 ]
 
 
-class Crashes:
+class Crashes(PaintedModel):
     def __init__(self, server):
-        self.server = server
-        self.model = server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
-        self.path = f"/models/{self.model['id']}"
-        self.make_layers("")
-        self.book = Book()
+        super().__init__(server, SEED)
         self.random = random.Random(SEED)
         self.known = {}  # (layer, sequence) -> digest of the texels
-
-    def make_layers(self, suffix):
-        for name, kind, resolution, _ in LAYERS:
-            self.server.ok(
-                "POST",
-                self.path + "/layers",
-                {"name": name + suffix, "type": kind, "resolution": resolution},
-            )
-
-    def texels(self, layer, at=None):
-        query = "" if at is None else f"?at={at}"
-        answer = wait_for(
-            lambda: (lambda a: a if a.status != 503 else None)(
-                self.server.get(f"{self.path}/layers/{layer}/texels.npy{query}")
-            ),
-            "texels",
-        )
-        assert answer.status == 200, answer
-        return Raster(answer.body)
-
-    def painters(self):
-        cameras = [
-            camera_from(self.model, direction)
-            for direction in ([0, -0.2, 1], [0.8, 0.3, 0.6], [-0.7, -0.9, 0.5])
-        ]
-        layers = [(name, values) for name, _, _, values in LAYERS]
-        kinds = [HttpPainter] * 4 + [LivePainter] * 2
-        return [
-            kind(self.server, self.model["id"], layers, cameras, self.book, seed)
-            for seed, kind in enumerate(kinds, 100 * SEED)
-        ]
-
-    def history(self):
-        found = {}
-        for name, *_ in LAYERS:
-            offset = 0
-            while True:
-                page = self.server.ok(
-                    "GET", f"{self.path}/layers/{name}/edits?limit=1000&offset={offset}"
-                ).json()
-                for row in page["edits"]:
-                    assert (
-                        row["sequence"] not in found
-                    ), f"sequence {row['sequence']} is in the history twice"
-                    found[row["sequence"]] = (name, row)
-                offset += len(page["edits"])
-                if not page["edits"] or offset >= page["total"]:
-                    break
-        return found
 
     def remember(self):
         """Records digests of the texels at some acknowledged sequences, including the newest
@@ -122,20 +60,6 @@ class Crashes:
                 "a repeat",
             )
             assert (answer.status, answer.json()) == (200, first), (answer, first)
-
-    def check_history(self):
-        found = self.history()
-        with self.book.lock:
-            acknowledged = dict(self.book.edits)
-        for sequence, (layer, _, answer) in acknowledged.items():
-            assert sequence in found, f"edit {sequence} was reported saved and is gone"
-            name, row = found[sequence]
-            assert name == layer and row["texels_changed"] == answer["texels_changed"], (
-                row,
-                answer,
-            )
-        assert sorted(found) == list(range(1, len(found) + 1)), "the sequences have gaps"
-        return found
 
     def check_whole(self, sequence):
         """Checks that an edit is complete: the number of changed texels, and their value."""
@@ -170,43 +94,6 @@ class Crashes:
             self.check_known()
             self.check_repeats()
 
-    def compare_with_replay(self, newest):
-        """Paints all edits again in order, on new layers and without faults. The texels are
-        equal."""
-        self.make_layers(" replayed")
-        edits = [self.book.edits[sequence][:2] for sequence in sorted(self.book.edits)]
-
-        def replay(layer):
-            connection = self.server.connect()
-            for name, edit in edits:
-                if name == layer:
-                    self.server.ok(
-                        "POST",
-                        f"{self.path}/layers/{name}-replayed/edits",
-                        edit,
-                        connection=connection,
-                    )
-
-        failures = []
-
-        def work(layer):
-            try:
-                replay(layer)
-                wrong = newest[layer].differences(self.texels(layer + "-replayed"))
-                assert (
-                    not wrong
-                ), f"{layer}: {len(wrong)} texels differ from the replay, for example {wrong[:3]}"
-            except BaseException as error:  # pylint: disable=broad-except
-                failures.append(error)
-
-        workers = [threading.Thread(target=work, args=(name,)) for name, *_ in LAYERS]
-        for worker in workers:
-            worker.start()
-        for worker in workers:
-            worker.join()
-        if failures:
-            raise failures[0]
-
 
 @pytest.fixture(scope="module")
 def crashes(server):
@@ -217,7 +104,7 @@ def crashes(server):
 @pytest.fixture(scope="module", autouse=True)
 def painters(crashes):
     """The painters of a case. They paint until their case stops them."""
-    painters = crashes.painters()
+    painters = crashes.painters([HttpPainter] * 4 + [LivePainter] * 2)
     for painter in painters:
         painter.start()
     yield painters

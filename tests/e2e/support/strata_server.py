@@ -85,6 +85,7 @@ class StrataServer:
         self.tls = None  # an ssl.SSLContext if the server uses https
         self.contract = Contract()
         self.host, self.port, self.link = "127.0.0.1", None, None
+        self.listen = "127.0.0.1:0"
         self.log = []
         self.changed = threading.Condition()
         self.demo = demo
@@ -152,7 +153,7 @@ class StrataServer:
                 "--data",
                 self.data,
                 "--listen",
-                "127.0.0.1:0",
+                self.listen,
                 *([] if OFTEN[0] in self.options else OFTEN),
                 *self.options,
             ],

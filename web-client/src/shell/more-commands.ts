@@ -255,7 +255,9 @@ function ofUser(host: PageHost): Command[] {
   });
   return [
     ask("account", "person", words.open),
-    ...(mayAdminister(me.role) ? [ask("people", "people", words.people)] : []),
+    ...(mayAdminister(me.role)
+      ? [ask("people", "people", words.people), ask("nodes", "cloud", words.nodes)]
+      : []),
     ...(host.seesToKiosks ? [ask("kiosks", "picture", texts.kiosks.open)] : []),
     ask("preferences", "language", texts.settings.open),
     {

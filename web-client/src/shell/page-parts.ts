@@ -17,6 +17,7 @@ export type PagePart =
   | "sign_in"
   | "account"
   | "people"
+  | "nodes"
   | "kiosks"
   | "preferences";
 

@@ -69,6 +69,7 @@ setPartLoads({
   sign_in: () => import("../features/account/sign-in"),
   account: later(() => import("../features/account/account-dialog")),
   people: later(() => import("../features/account/people-dialog")),
+  nodes: later(() => import("../features/account/nodes-dialog")),
   kiosks: later(() => import("../features/account/kiosks-dialog")),
   preferences: later(() => import("../features/account/preferences-fields")),
 });
@@ -83,7 +84,7 @@ export class StrataApp extends LitElement {
   @state() private _chosenProject = ""; // slug of the project for imports
   @state() private _session: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private _problem = "";
-  @state() private _dialog: "account" | "people" | "kiosks" | "preferences" | null = null;
+  @state() private _dialog: "account" | "people" | "nodes" | "kiosks" | "preferences" | null = null;
   @state() private _dropping = false;
   @state() private _imported = 0;
   private _dragDepth = 0;
@@ -307,6 +308,9 @@ export class StrataApp extends LitElement {
     }
     if (this._dialog === "people") {
       return html`<strata-people-dialog .api=${this._api} .me=${me} @closed=${closed} @signed-out=${this.signedOut}></strata-people-dialog>`;
+    }
+    if (this._dialog === "nodes") {
+      return html`<strata-nodes-dialog .api=${this._api} @closed=${closed} @signed-out=${this.signedOut}></strata-nodes-dialog>`;
     }
     if (this._dialog === "kiosks") {
       return html`<strata-kiosks-dialog .api=${this._api} @closed=${closed} @signed-out=${this.signedOut}></strata-kiosks-dialog>`;

@@ -114,6 +114,7 @@ export const texts = {
     menu: (name) => `Konto von ${name}`,
     open: "Konto …",
     people: "Personen …",
+    nodes: "Knoten …",
     sign_out: "Abmelden",
     sign_out_title: "Jetzt abmelden?",
     sign_out_lead: (n) =>

@@ -95,6 +95,7 @@ export const texts = {
     menu: (name: string) => `Account of ${name}`,
     open: "Account…",
     people: "People…",
+    nodes: "Nodes…",
     sign_out: "Sign out",
     sign_out_title: "Sign out now?",
     sign_out_lead: (n: number) =>

@@ -113,6 +113,7 @@ export const texts = {
     menu: (name) => `Cuenta de ${name}`,
     open: "Cuenta…",
     people: "Personas…",
+    nodes: "Nodos…",
     sign_out: "Cerrar sesión",
     sign_out_title: "¿Cerrar la sesión ahora?",
     sign_out_lead: (n) =>

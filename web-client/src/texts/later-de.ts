@@ -5,6 +5,31 @@ import { count, plural } from "./count";
 import type { LaterTexts } from "./shape";
 
 export const laterTexts = {
+  nodes: {
+    title: "Knoten",
+    lead: "Die Server dieser Installation. Jedes offene Modell gehört zu einem von ihnen.",
+    alone: "Dieser Server läuft allein.",
+    node: "Knoten",
+    state: "Status",
+    load: "Last",
+    models: "Modelle",
+    participants: "Teilnehmende",
+    here: "diese Seite",
+    states: { ready: "bereit", draining: "wird beendet", lost: "verloren" },
+    state_hints: {
+      ready: "Der Knoten kann Modelle öffnen",
+      draining: "Der Knoten wird beendet, und andere Knoten öffnen seine Modelle",
+      lost: "Der Knoten antwortet nicht, und andere Knoten öffnen seine Modelle",
+    },
+    lease: (seconds) => `Lease endet in ${seconds} s`,
+    lease_over: "Lease ist abgelaufen",
+    about: (version, gpu) => [`Strata ${version}`, gpu].filter(Boolean).join(" · "),
+    started: (ago) => `gestartet ${ago}`,
+    cores: (n) => `${n} Kerne`,
+    open_models: (n) => `${formatCount(n)} offen`,
+    more: (n) => `${formatCount(n)} weitere`,
+  },
+
   site_people: {
     parts: "Anzeige",
     people: "Personen",

@@ -4,6 +4,31 @@ import { formatCount } from "../core/locale";
 import { count, plural } from "./count";
 
 export const laterTexts = {
+  nodes: {
+    title: "Nodes",
+    lead: "The servers of this site. Each open model belongs to one of them.",
+    alone: "This server runs alone.",
+    node: "Node",
+    state: "State",
+    load: "Load",
+    models: "Models",
+    participants: "Participants",
+    here: "this page",
+    states: { ready: "ready", draining: "stopping", lost: "lost" },
+    state_hints: {
+      ready: "The node can open models",
+      draining: "The node is stopping, and other nodes open its models",
+      lost: "The node does not answer, and other nodes open its models",
+    },
+    lease: (seconds: string) => `lease ends in ${seconds} s`,
+    lease_over: "lease has ended",
+    about: (version: string, gpu: string) => [`Strata ${version}`, gpu].filter(Boolean).join(" · "),
+    started: (ago: string) => `started ${ago}`,
+    cores: (n: string) => `${n} cores`,
+    open_models: (n: number) => `${formatCount(n)} open`,
+    more: (n: number) => `${formatCount(n)} more`,
+  },
+
   site_people: {
     parts: "Show",
     people: "People",

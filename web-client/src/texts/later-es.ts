@@ -5,6 +5,31 @@ import { countInSpanish as count, plural } from "./count";
 import type { LaterTexts } from "./shape";
 
 export const laterTexts = {
+  nodes: {
+    title: "Nodos",
+    lead: "Los servidores de este sitio. Cada modelo abierto pertenece a uno de ellos.",
+    alone: "Este servidor funciona solo.",
+    node: "Nodo",
+    state: "Estado",
+    load: "Carga",
+    models: "Modelos",
+    participants: "Participantes",
+    here: "esta página",
+    states: { ready: "listo", draining: "deteniéndose", lost: "perdido" },
+    state_hints: {
+      ready: "El nodo puede abrir modelos",
+      draining: "El nodo se está deteniendo y otros nodos abren sus modelos",
+      lost: "El nodo no responde y otros nodos abren sus modelos",
+    },
+    lease: (seconds) => `la concesión termina en ${seconds} s`,
+    lease_over: "la concesión ha terminado",
+    about: (version, gpu) => [`Strata ${version}`, gpu].filter(Boolean).join(" · "),
+    started: (ago) => `iniciado ${ago}`,
+    cores: (n) => `${n} núcleos`,
+    open_models: (n) => `${formatCount(n)} abiertos`,
+    more: (n) => `${formatCount(n)} más`,
+  },
+
   site_people: {
     parts: "Mostrar",
     people: "Personas",

@@ -11,7 +11,7 @@ import { styled } from "./styled";
 import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 
-export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "sign-out";
+export type AccountRequest = "account" | "people" | "nodes" | "kiosks" | "preferences" | "sign-out";
 
 /** Dispatches an account request, which bubbles to the element that handles it. */
 export const askAccount = (from: EventTarget, detail: AccountRequest): boolean =>
@@ -67,7 +67,8 @@ export class StrataAccountMenu extends LitElement {
       <button class="quiet" role="menuitem" @click=${() => askAccount(this, "account")}>${icon("person")}${words.open}</button>
       ${
         mayAdminister(me.role)
-          ? html`<button class="quiet" role="menuitem" @click=${() => askAccount(this, "people")}>${icon("people")}${words.people}</button>`
+          ? html`<button class="quiet" role="menuitem" @click=${() => askAccount(this, "people")}>${icon("people")}${words.people}</button>
+            <button class="quiet" role="menuitem" @click=${() => askAccount(this, "nodes")}>${icon("cloud")}${words.nodes}</button>`
           : nothing
       }
       ${

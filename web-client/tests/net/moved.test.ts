@@ -288,7 +288,11 @@ describe("strokes of a model that moved", () => {
     stroke.extend([[10, 10]]);
     stroke.end();
     expect(batches(socket())).toEqual([0, 1, 2, 3]);
-    expect(socket().sentOps().filter((op) => op === "stroke.begin")).toHaveLength(1);
+    expect(
+      socket()
+        .sentOps()
+        .filter((op) => op === "stroke.begin"),
+    ).toHaveLength(1);
     expect(socket().sentOps().at(-1)).toBe("stroke.end");
   });
 

@@ -386,6 +386,14 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       keyboard: true,
     },
     {
+      name: "nodes",
+      start: async () => {
+        await account(w.account.nodes)();
+        await page.getByText(w.nodes.alone).waitFor();
+      },
+      end: close_dialog,
+    },
+    {
       name: "people: invite",
       start: async () => {
         await account(w.account.people)();

@@ -1,0 +1,306 @@
+"""Several server processes (nodes) over one PostgreSQL, on the loopback interface."""
+import ctypes
+import glob
+import os
+import pwd
+import random
+import re
+import secrets
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import urllib.parse
+
+from support.live_client import AWAY
+from support.missing import missing
+from support.nginx import free_port
+from support.painters import HttpPainter
+from support.strata_server import LONG_S, StrataServer, _place_of_data, wait_for
+
+# Lines that the logs of nodes may contain while other nodes are killed, stopped or frozen.
+FAULT_WORDS = [
+    "could not be renewed",
+    "could not join the site again",
+    "may have lost them to other nodes",
+    "a commit failed and is tried again",
+    "undid",
+]
+
+
+class SharedPostgres:
+    """A PostgreSQL that no server owns, so it survives all of them."""
+
+    def __init__(self, demo=False):
+        self.demo = demo
+        self.data = tempfile.mkdtemp(prefix="strata-nodes-", dir=_place_of_data())
+        os.chmod(self.data, 0o755)
+        self.process = None
+
+    @property
+    def folder(self):
+        return os.path.join(self.data, "postgres")
+
+    @property
+    def dsn(self):
+        return f"host='{self.folder}' port=5432 user=strata dbname=strata"
+
+    def __enter__(self):
+        prepared = os.environ.get("STRATA_TEST_PREPARED")
+        if prepared:
+            # copies owners and modes, because PostgreSQL requires both
+            source = os.path.join(prepared, "demo" if self.demo else "empty", ".")
+            subprocess.run(["cp", "-a", source, self.data], check=True)
+        else:
+            command = ["demo", "--pot-only"] if self.demo else ["migrate"]
+            subprocess.run(
+                [os.environ["STRATA_BINARY"], *command, "--data", self.data],
+                check=True,
+                capture_output=True,
+            )
+        cluster = os.path.join(self.folder, "pgdata")
+        with open(os.path.join(cluster, "PG_VERSION"), encoding="ascii") as file:
+            version = file.read().strip()
+        found = glob.glob(f"/usr/lib/postgresql/{version}/bin/postgres")
+        program = found[0] if found else shutil.which("postgres")
+        if not program:
+            missing(f"PostgreSQL {version} is not installed")
+        owner = os.stat(cluster).st_uid
+        account = pwd.getpwuid(owner)
+
+        def become_owner():
+            if os.geteuid() == 0:
+                os.initgroups(account.pw_name, account.pw_gid)
+                os.setgid(account.pw_gid)
+                os.setuid(owner)
+            # after setuid, which clears it
+            ctypes.CDLL(None).prctl(1, signal.SIGQUIT)  # PR_SET_PDEATHSIG
+
+        options = [
+            "listen_addresses=",
+            f"hba_file={os.path.join(self.folder, 'access.conf')}",
+            "unix_socket_permissions=0700",
+            "max_connections=200",
+            "jit=off",
+            "log_min_messages=warning",
+        ]
+        self.process = subprocess.Popen(
+            [program, "-D", cluster, "-k", self.folder, "-p", "5432"]
+            + [word for option in options for word in ("-c", option)],
+            preexec_fn=become_owner,
+            cwd="/",
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        wait_for(self.answers, "PostgreSQL to answer")
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)  # a fast shutdown
+        try:
+            self.process.wait(30)
+        except subprocess.TimeoutExpired:
+            self.process.send_signal(signal.SIGQUIT)
+            self.process.wait(LONG_S)
+        shutil.rmtree(self.data, ignore_errors=True)
+
+    def psql(self, statement):
+        return subprocess.run(
+            ["psql", "-X", "-At", "-d", self.dsn, "-v", "ON_ERROR_STOP=1", "-c", statement],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    def answers(self):
+        assert self.process.poll() is None, "PostgreSQL ended"
+        return self.psql("SELECT 1").returncode == 0
+
+    def sql(self, statement):
+        """Returns the result without the column names."""
+        done = self.psql(statement)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.strip()
+
+
+class Node(StrataServer):
+    """A server process of a site. It keeps its address when it starts again."""
+
+    def __init__(self, database, token, url=None, options=()):
+        super().__init__()
+        self.own_port = free_port()
+        self.listen = f"127.0.0.1:{self.own_port}"
+        self.node_url = url or f"http://127.0.0.1:{self.own_port}"
+        self.token = token
+        self.options = [
+            *("--database", database.dsn, "--node-url", self.node_url),
+            *options,
+        ]
+        self.frozen = False
+
+    def _fill(self):
+        """The data are in the shared PostgreSQL. The folder contains only uploads."""
+
+    def kill(self):
+        self.frozen = False
+        super().kill()
+
+    @property
+    def runs(self):
+        return self.process is not None and self.process.poll() is None and self.port is not None
+
+    def freeze(self):
+        self.process.send_signal(signal.SIGSTOP)
+        self.frozen = True
+
+    def thaw(self):
+        self.process.send_signal(signal.SIGCONT)
+        self.frozen = False
+
+    def metric(self, name):
+        text = self.ok("GET", "//metrics", token=False).body.decode()
+        return float(re.search(rf"^{name} (\S+)$", text, re.MULTILINE)[1])
+
+
+class Site:
+    """The nodes of a site. Use it in a `with` block. Calls of `ok`, `get` and `post` go to a random
+    running node and follow redirections, so a site can replace a server in the helpers of tests."""
+
+    def __init__(self, count, seed=1, urls=None, options=(), demo=False):
+        self.postgres = SharedPostgres(demo)
+        self.random = random.Random(seed)
+        self.lock = threading.Lock()
+        self.token = secrets.token_hex(24)
+        self.host, self.tls = "127.0.0.1", None
+        self.count, self.urls, self.options = count, urls, options
+        self.nodes = []
+
+    def __enter__(self):
+        self.postgres.__enter__()
+        try:
+            for number in range(self.count):
+                url = self.urls[number] if self.urls else None
+                node = Node(self.postgres, self.token, url, self.options)
+                self.nodes.append(node)
+                node.__enter__()
+        except BaseException:
+            self.__exit__(None, None, None)
+            raise
+        return self
+
+    def __exit__(self, *failure):
+        for node in self.nodes:
+            if node in StrataServer.running:
+                node.__exit__(*failure)
+        self.postgres.__exit__()
+
+    def running(self):
+        return [node for node in self.nodes if node.runs and not node.frozen]
+
+    def any(self):
+        with self.lock:
+            running = self.running()
+            if not running:
+                raise ConnectionRefusedError("no node runs")
+            return self.random.choice(running)
+
+    @property
+    def port(self):
+        return self.any().port
+
+    def connect(self):
+        return self.any().connect()
+
+    def node_at(self, location):
+        """Returns the node to which a redirection leads."""
+        return next(node for node in self.nodes if location.startswith(node.node_url + "/"))
+
+    def request(self, method, path, body=None, **more):
+        """Follows redirections, and tries again while nodes end and start. A change needs an
+        Idempotency-Key, because the answer to the first attempt may have been lost."""
+        end = time.monotonic() + LONG_S
+        node = None
+        while True:
+            answer = None
+            try:
+                node = node or self.any()
+                answer = node.request(method, path, body, **more)
+            except AWAY:
+                node = None
+            if answer is not None and answer.status == 307:
+                node = self.node_at(answer.headers["Location"])
+                if node.runs and not node.frozen:
+                    continue
+                answer, node = None, None
+            if answer is not None and answer.status != 503:
+                return answer
+            node = None
+            assert time.monotonic() < end, f"{method} {path} got no answer in {LONG_S} s"
+            time.sleep(0.05)
+
+    def get(self, path, **more):
+        return self.request("GET", path, **more)
+
+    def post(self, path, body=None, **more):
+        return self.request("POST", path, body, **more)
+
+    def ok(self, method, path, body=None, expect=(200, 201, 202, 204), **more):
+        answer = self.request(method, path, body, **more)
+        assert answer.status in expect, f"{method} {path}: {answer}"
+        return answer
+
+    def owner(self, model):
+        """Returns the node that owns the model, by the database. None: nobody owns it."""
+        url = self.postgres.sql(
+            "SELECT n.url FROM models m JOIN nodes n ON n.id = m.owner_node "
+            f"WHERE m.id = {int(model)} AND n.lease_until > clock_timestamp() AND NOT n.draining"
+        )
+        return next((node for node in self.nodes if node.node_url == url), None)
+
+    def epoch(self, model):
+        return int(
+            self.postgres.sql(f"SELECT owner_epoch FROM models WHERE id = {int(model)}") or 0
+        )
+
+    def import_model(self, content, filename, **query):
+        """Imports a model at a node and returns it. The job runs at that node."""
+        node = self.any()
+        asked = urllib.parse.urlencode({"filename": filename, **query})
+        job = node.wait_for_job(node.ok("POST", "/models?" + asked, content).json()["id"])
+        assert job["state"] == "done", job
+        return self.ok("GET", f"/models/{job['model']}").json()
+
+
+class NodeHttpPainter(HttpPainter):
+    """Sends each edit to a random node, with the same key until it is saved. Follows one
+    redirection in two, so nodes that do not have the model get many edits."""
+
+    def paint(self):
+        layer, edit = self.stroke(3)
+        path, key = f"/models/{self.model}/layers/{layer}/edits", secrets.token_hex(16)
+        node = None
+        while True:
+            try:
+                answer = (node or self.server.any()).post(
+                    path, edit, headers={"Idempotency-Key": key}
+                )
+            except AWAY:
+                node = None
+                time.sleep(0.02)
+                continue
+            if answer.status == 200:
+                break
+            node = None
+            if answer.status == 307:
+                if self.random.random() < 0.5:
+                    node = self.server.node_at(answer.headers["Location"])
+                continue
+            if answer.status not in (429, 503):
+                raise AssertionError(f"{edit} got {answer}")
+            time.sleep(0.02)
+        result = answer.json()
+        with self.book.lock:
+            self.book.repeats.append((path, edit, key, result))
+        self.book.saved(result["sequence"], layer, edit, result)
