@@ -6,6 +6,8 @@
 #include <cctype>
 #include <chrono>
 #include <iostream>
+#include <memory>
+#include <optional>
 #include <thread>
 
 #include "app/nodes/node_lease.h"
@@ -179,11 +181,6 @@ int run(ServeOptions options) {
   if (!options.node_url.empty()) {
     auto url = store::check_node_url(options.node_url);
     if (!url) return report(url.error());
-    if (options.data.database.empty())
-      return report({ErrorCode::malformed, "No shared database",
-                     "The nodes of a site use the same PostgreSQL. Enter its connection string with "
-                     "--database, or start the server without --node-url.",
-                     "--node-url"});
     node = store::NewNode{random_uuid(), std::move(*url), std::string(version()), {}};
   }
   const sigset_t ending = block_signals();
@@ -297,6 +294,7 @@ Command add_serve(CLI::App& app) {
                    "Address of this server among several that use the same --database, http or "
                    "https, for example https://strata.example.org/node/a")
       ->envname("STRATA_NODE_URL")
+      ->needs(command->get_option("--database"))  // the nodes of a site share it
       ->check([](const std::string& text) { return usage_of(store::check_node_url, text); });
   command
       ->add_option("--origin", options->origins,

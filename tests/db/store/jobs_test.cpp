@@ -8,6 +8,7 @@
 
 #include "store/content/idempotent_response.h"
 #include "store/content/projects.h"
+#include "store/nodes/nodes.h"
 #include "store/pg/pg.h"
 #include "store/store.h"
 #include "support/test_cluster.h"
@@ -58,6 +59,36 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
     EXPECT_EQ(jobs.at(14).state, "lost");
   }
   EXPECT_EQ(store->jobs().take_over(2)->size(), 2u);
+}
+
+TEST(Jobs, of_a_node_with_a_lease_are_not_lost) {
+  const auto dsn = test::fresh_database();
+  const auto store = test::open_store(dsn);
+  const auto project = store->projects().find("default")->id;
+  const NewNode node{random_uuid(), "http://a.example", "1.0", "llvmpipe"};
+  ASSERT_TRUE(store->nodes().join(node));
+  auto connection = PgConnection::connect(dsn);
+  ASSERT_TRUE(connection);
+  // A lease that lasts for the whole test.
+  ASSERT_TRUE(
+      connection->query("UPDATE nodes SET lease_until = clock_timestamp() + interval '1 hour'"));
+  StoredJob running = job_of(31, project);
+  running.node = node.id;
+  ASSERT_TRUE(store->jobs().begin(running));
+  StoredJob ended = job_of(32, project);
+  ended.node = random_uuid();  // a node that has left
+  ASSERT_TRUE(store->jobs().begin(ended));
+  ASSERT_TRUE(store->jobs().begin(job_of(33, project)));  // of a server that was alone
+  EXPECT_EQ(store->jobs().begin(running).error().code, ErrorCode::conflict);
+
+  auto jobs = by_id(*store->jobs().take_over(10));
+  EXPECT_EQ(jobs.size(), 2u);
+  EXPECT_EQ(jobs.at(32).state, "lost");
+  EXPECT_EQ(jobs.at(33).state, "lost");
+  running.state = "done";
+  running.result = {{"model", 3}};
+  ASSERT_TRUE(store->jobs().end(running));
+  EXPECT_EQ(by_id(*store->jobs().take_over(10)).at(31).state, "done");
 }
 
 TEST(Jobs, an_end_that_is_known_is_not_written_over) {
