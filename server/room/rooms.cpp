@@ -65,19 +65,18 @@ struct Rooms::Impl {
         readers(kReaderThreads),
         memory("main memory", "--memory",
                options.memory_bytes > 0 ? options.memory_bytes : default_budget()),
-        services{store,
-                 writer,
-                 renderer,
-                 stream,
-                 strands,
-                 workers,
-                 memory,
-                 readers,
-                 retired_keys,
-                 options,
-                 [this](const std::shared_ptr<OpenRoom>& room, const Error& why) {
-                   drop(room, why);
-                 }} {
+        services{
+            store,
+            writer,
+            renderer,
+            stream,
+            strands,
+            workers,
+            memory,
+            readers,
+            retired_keys,
+            options,
+            [this](const std::shared_ptr<OpenRoom>& room, const Error& why) { drop(room, why); }} {
     memory.set_evictor([this] { return drop_a_map(); });
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
@@ -262,9 +261,8 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
   {
     std::unique_lock lock(mutex);
     // One caller at a time loads a model. The others wait for it.
-    changed.wait(lock, [&] {
-      return stopping || draining || surrendered || !opening.contains(model.id);
-    });
+    changed.wait(
+        lock, [&] { return stopping || draining || surrendered || !opening.contains(model.id); });
     if (stopping || draining) return tl::unexpected(kStopping);
     if (surrendered) return tl::unexpected(kNoLease);
     surrenders_before = surrenders;

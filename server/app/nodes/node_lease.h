@@ -77,7 +77,8 @@ class NodeLease {
   bool is_over_ = false;      // the database said so; the rooms must be closed before a new lease
   bool surrendered_ = false;  // the rooms are closed
   bool stopping_ = false;
-  // Used by the renewing thread: when the load was last measured, and the processor time until then.
+  // Used by the renewing thread: when the load was last measured, and the processor time until
+  // then.
   Clock::time_point measured_;
   double processor_s_ = 0;
   std::thread renewer_, watcher_;

@@ -60,8 +60,8 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
   PgArray requested(oid::kUuid);
   for (const Uuid& id : ids) requested.add(id);
   return pool_.read([&](PgConnection& connection) -> Result<JournalState> {
-    auto model =
-        connection.query("SELECT sequence, owner_epoch FROM models WHERE id = $1", Params().id(model_id));
+    auto model = connection.query("SELECT sequence, owner_epoch FROM models WHERE id = $1",
+                                  Params().id(model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return no_such("model", to_string(model_id));
     JournalState state{model->integer(0, 0), model->integer(0, 1), {}};

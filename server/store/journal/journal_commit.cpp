@@ -36,8 +36,7 @@ Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const>
   for (const JournalEntry* entry : entries) {
     const auto [span, fresh] =
         spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence, entry->epoch});
-    if (!fresh &&
-        (entry->sequence != ++span->second.last || entry->epoch != span->second.epoch))
+    if (!fresh && (entry->sequence != ++span->second.last || entry->epoch != span->second.epoch))
       return fail(
           ErrorCode::conflict, "Journal out of order",
           "Edit " + std::to_string(entry->sequence) + " does not follow the edit before it.");
@@ -235,8 +234,7 @@ tl::expected<void, CommitFailure> write_entries(PgConnection& connection,
 tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
                                                  std::span<const JournalEntry* const> entries) {
   for (const JournalEntry* entry : entries)
-    if (auto good = check(*entry); !good)
-      return tl::unexpected(CommitFailure{good.error(), false});
+    if (auto good = check(*entry); !good) return tl::unexpected(CommitFailure{good.error(), false});
   const auto spans = model_spans(entries);
   if (!spans) return tl::unexpected(CommitFailure{spans.error(), false});
   auto written = write_entries(connection, entries, *spans);

@@ -13,7 +13,8 @@ bool is_alphanumeric(char c) {
 }
 
 bool consists_of(std::string_view text, std::string_view others) {
-  return std::ranges::all_of(text, [&](char c) { return is_alphanumeric(c) || others.find(c) != std::string_view::npos; });
+  return std::ranges::all_of(
+      text, [&](char c) { return is_alphanumeric(c) || others.find(c) != std::string_view::npos; });
 }
 
 bool is_port(std::string_view text) {

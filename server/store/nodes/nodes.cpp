@@ -13,9 +13,9 @@ namespace {
 constexpr PgLimits kLeaseLimits{std::chrono::milliseconds(1500), std::chrono::milliseconds(1500),
                                 std::chrono::milliseconds(1000)};
 
-constexpr auto kNodeColumns =
-    sql("n.id, n.url, n.version, n.gpu, n.started, n.lease_until, n.lease_until > clock_timestamp(), n.draining, "
-        "n.open_models, n.participants, n.processor_share::float8 ");
+constexpr auto kNodeColumns = sql(
+    "n.id, n.url, n.version, n.gpu, n.started, n.lease_until, n.lease_until > clock_timestamp(), n.draining, "
+    "n.open_models, n.participants, n.processor_share::float8 ");
 
 Node read_node(const PgResult& rows, int i) {
   PgRow row(rows, i);
@@ -91,31 +91,31 @@ Result<std::int64_t> Nodes::run(const char* sql, const Params& params) {
 
 Result<void> Nodes::join(const NewNode& node) {
   STRATA_TRY(check_texts({{&node.url, "url"}, {&node.version, "version"}, {&node.gpu, "gpu"}}));
-  STRATA_TRY(
-      run("INSERT INTO nodes (id, url, version, gpu, lease_until) "
-          "VALUES ($1, $2, left($3, 255), left($4, 255), clock_timestamp() + $5 * interval '1 millisecond') "
-          "ON CONFLICT (id) DO UPDATE SET url = excluded.url, version = excluded.version, gpu = excluded.gpu, "
-          "lease_until = excluded.lease_until, draining = false",
-          Params()
-              .uuid(node.id)
-              .text(node.url)
-              .text(node.version)
-              .text(node.gpu)
-              .integer(kLease.count())));
+  STRATA_TRY(run(
+      "INSERT INTO nodes (id, url, version, gpu, lease_until) "
+      "VALUES ($1, $2, left($3, 255), left($4, 255), clock_timestamp() + $5 * interval '1 millisecond') "
+      "ON CONFLICT (id) DO UPDATE SET url = excluded.url, version = excluded.version, gpu = excluded.gpu, "
+      "lease_until = excluded.lease_until, draining = false",
+      Params()
+          .uuid(node.id)
+          .text(node.url)
+          .text(node.version)
+          .text(node.gpu)
+          .integer(kLease.count())));
   return {};
 }
 
 Result<void> Nodes::renew(const Uuid& node, const NodeLoad& load) {
-  const auto renewed =
-      STRATA_TRY(run("UPDATE nodes SET lease_until = clock_timestamp() + $2 * interval '1 millisecond', "
-                     "open_models = $3, participants = $4, processor_share = $5 "
-                     "WHERE id = $1 AND lease_until > clock_timestamp()",
-                     Params()
-                         .uuid(node)
-                         .integer(kLease.count())
-                         .integer(load.open_models)
-                         .integer(load.participants)
-                         .real(load.processor_share)));
+  const auto renewed = STRATA_TRY(
+      run("UPDATE nodes SET lease_until = clock_timestamp() + $2 * interval '1 millisecond', "
+          "open_models = $3, participants = $4, processor_share = $5 "
+          "WHERE id = $1 AND lease_until > clock_timestamp()",
+          Params()
+              .uuid(node)
+              .integer(kLease.count())
+              .integer(load.open_models)
+              .integer(load.participants)
+              .real(load.processor_share)));
   if (renewed > 0) return {};
   return fail(ErrorCode::gone, "Lease is over",
               "This node did not renew its lease in time, so other nodes may have its models.");

@@ -134,8 +134,7 @@ TEST_F(TwoNodes, a_model_is_open_on_one_of_them) {
 
 TEST_F(TwoNodes, the_next_owner_has_every_saved_edit_and_the_former_one_saves_none) {
   const Layer layer = make_layer(ValueType::u8);
-  for (int i = 0; i < 5; ++i)
-    ASSERT_TRUE(send(stroke(layer, 10 + i, {{280.0 + 20 * i, 240}}, 20)));
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(send(stroke(layer, 10 + i, {{280.0 + 20 * i, 240}}, 20)));
   const auto open_on_a = room();
   Follower follower;
   auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
@@ -174,8 +173,9 @@ TEST_F(TwoNodes, a_commit_under_way_is_refused_after_another_claim) {
   // The commit waits for this lock, and finds the newer epoch after it.
   auto holder = store::PgConnection::connect(dsn_);
   ASSERT_TRUE(holder);
-  ASSERT_TRUE(holder->script("BEGIN; UPDATE models SET owner_epoch = owner_epoch + 1, owner_node = '" +
-                             to_string(b_.id) + "' WHERE id = " + to_string(model_.id)));
+  ASSERT_TRUE(
+      holder->script("BEGIN; UPDATE models SET owner_epoch = owner_epoch + 1, owner_node = '" +
+                     to_string(b_.id) + "' WHERE id = " + to_string(model_.id)));
   const auto edit = stroke(layer, 6, {{320, 240}}, 20);
   auto answer = start(edit);
   bool waits = false;

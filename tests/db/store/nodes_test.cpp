@@ -297,9 +297,7 @@ TEST_F(OwnershipOfModels, no_two_nodes_ever_commit_in_one_epoch) {
         if (member.lives) end_lease(member.node.id);
         member.lives = false;
         break;
-      case 2:
-        ASSERT_EQ(renew(member.node.id).has_value(), member.lives);
-        break;
+      case 2: ASSERT_EQ(renew(member.node.id).has_value(), member.lives); break;
       case 3:
         if (const auto held = member.held.find(which); held != member.held.end()) {
           ASSERT_TRUE(nodes_.release(model.layer.model_id, held->second));
@@ -315,8 +313,7 @@ TEST_F(OwnershipOfModels, no_two_nodes_ever_commit_in_one_epoch) {
         ASSERT_EQ(claimed.has_value(), member.lives && is_free);
         if (!claimed) {
           ++refused_claims;
-          ASSERT_EQ(claimed.error().code,
-                    member.lives ? ErrorCode::moved : ErrorCode::unavailable);
+          ASSERT_EQ(claimed.error().code, member.lives ? ErrorCode::moved : ErrorCode::unavailable);
           break;
         }
         ASSERT_EQ(*claimed, ++model.epoch) << "epochs never go back";
