@@ -92,6 +92,11 @@ void Recomputer::attempt(
     failures_.erase(layer.id);
     return;
   }
+  // The node that has the model computes the layer.
+  if (done.error().code == ErrorCode::moved) {
+    failures_[layer.id] = {now + kFirstPause, kFirstPause};
+    return;
+  }
   const auto pause =
       failed == failures_.end() ? kFirstPause : std::min(kMaxPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
