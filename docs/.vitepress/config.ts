@@ -28,6 +28,7 @@ const howTo = {
   Administration: [
     "install",
     "operate-a-site",
+    "run-several-nodes",
     "back-up-and-restore",
     "manage-people",
     "limit-visibility",

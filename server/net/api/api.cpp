@@ -303,9 +303,11 @@ std::optional<Response> Api::admit_again(Request& request, const Route& route) {
 void Api::handle(const Request& request, const Route& route, const Respond& send) {
   const bool reads = request.method == Method::get || request.method == Method::head;
   const Respond respond(
-      [send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
+      [send, target = request.target, again = request.was_moved,
+       coding = std::string(request.header("accept-encoding")), known = request.known_tags,
        accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
-        if (response.status == 307) response = problem_response(claimed_meanwhile());
+        if (response.status == 307)
+          response = redirected_by_handler(response.header("Location"), target, again);
         // Only for reads, because a client can repeat them with another `Accept`.
         if (response.status == 200 && !response.events &&
             !accepts_type(accept, response.header("Content-Type")))

@@ -3,6 +3,15 @@
 #include "room/rooms.h"
 
 namespace strata::net {
+namespace {
+
+Response redirection(std::string location) {
+  Response response = problem_response(moved_to({}));
+  response.with("Location", std::move(location));
+  return response;
+}
+
+}  // namespace
 
 std::optional<Response> redirect_to_owner(room::Rooms& rooms, const Request& request) {
   const auto model = request.params.find("model");
@@ -10,17 +19,20 @@ std::optional<Response> redirect_to_owner(room::Rooms& rooms, const Request& req
   const auto owner = rooms.elsewhere(model->second);
   if (!owner) return problem_response(owner.error());
   if (!*owner) return std::nullopt;
-  Response response = problem_response(moved_to(**owner));
-  response.with("Location", **owner + request.target);
-  return response;
+  return redirection(**owner + request.target);
 }
 
-Error claimed_meanwhile() {
-  return {ErrorCode::unavailable,
-          "Model is moving",
-          "Another node of the site is taking over a model that this request needs. Send the "
-          "request again.",
-          {}};
+Response redirected_by_handler(std::string_view node, std::string_view target, bool again) {
+  if (node.empty() || again)
+    return problem_response(
+        {ErrorCode::unavailable,
+         "Model is at another node",
+         "Another node of the site has a model that this request needs, or the models that it needs "
+         "are at different nodes. Send the request again in a few seconds.",
+         {}});
+  std::string location(node);
+  location.append(target).append(target.find('?') == std::string_view::npos ? "?" : "&");
+  return redirection(location.append(kMovedParameter).append("=1"));
 }
 
 }  // namespace strata::net

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <string_view>
 
-#include "core/error.h"
 #include "net/http/http_types.h"
 
 namespace strata::room {
@@ -17,9 +18,10 @@ namespace strata::net {
 // caller was authorized, because the address of a node is not public. May block.
 std::optional<Response> redirect_to_owner(room::Rooms& rooms, const Request& request);
 
-// The problem of a request that was accepted here before another node claimed a model. The client
-// repeats the request, and is then redirected. A handler may need several models, so the owner of
-// one of them need not be the right address.
-Error claimed_meanwhile();
+// Returns the response to a request whose handler needed a model that the node at `node` has. The
+// path does not name this model, or the node has just claimed it. `target` is that of the request.
+// A request is redirected in this way only once, because it may need models of several nodes. Then,
+// or if `node` is empty, returns 503, and the client repeats the request later.
+Response redirected_by_handler(std::string_view node, std::string_view target, bool again);
 
 }  // namespace strata::net

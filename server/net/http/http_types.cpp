@@ -80,6 +80,7 @@ Response problem_response(const Error& problem) {
   Response response =
       json_response(protocol::problem_body(problem), protocol::http_status(problem.code));
   response.headers = {{"Content-Type", "application/problem+json"}};
+  if (!problem.location.empty()) response.with("Location", problem.location);
   if (response.status == 401) response.with("WWW-Authenticate", "Bearer realm=\"strata\"");
   if (response.status == 429 || response.status == 503) response.with("Retry-After", "1");
   return response;
@@ -202,6 +203,8 @@ Result<void> parse_target(std::string_view target, Request& request) {
     request.as_kiosk = true;
     request.query.erase(as);
   }
+  // Neither does this one.
+  request.was_moved = request.query.erase(std::string(kMovedParameter)) > 0;
   return {};
 }
 

@@ -72,6 +72,8 @@ struct Request {
   // The query contains `as=kiosk`. The kiosk's cookie is then the only valid one. Without
   // `as=kiosk`, that cookie is ignored.
   bool as_kiosk = false;
+  // The query contains `moved=1`: another node redirected the request to this node.
+  bool was_moved = false;
 
   std::string_view header(std::string_view lower_case_name) const;  // empty if absent
   const std::string& param(const std::string& name) const { return params.at(name); }
@@ -114,7 +116,8 @@ Response json_response(const nlohmann::json& json, int status = 200);
 Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type);
 Response text_response(std::string text, std::string content_type);
 Response empty_response(int status);              // for 204 and 304
-Response problem_response(const Error& problem);  // RFC 9457
+// RFC 9457. The header Location of `moved` is the address of the node.
+Response problem_response(const Error& problem);
 // Returns a download. Keeps the file until it has been sent.
 Response file_response(std::shared_ptr<const TemporaryFile> file);
 // Adds the header for a file that browsers save instead of display. The file name may contain any
@@ -134,6 +137,9 @@ class Respond {
   struct State;
   std::shared_ptr<State> state_;
 };
+
+// The query parameter of a redirection to another node (net/api/node_redirect.h).
+constexpr std::string_view kMovedParameter = "moved";
 
 // Splits and decodes a request target. Refuses invalid percent escapes, NUL, invalid UTF-8, and
 // repeated query parameters.

@@ -1,4 +1,4 @@
-// A page paints behind nginx while the node of its model is killed and stopped. The page goes on at
+// A page paints behind nginx while the node of its model is killed and stopped. The page continues at
 // another node, and nothing is lost.
 import assert from "node:assert/strict";
 import { join } from "node:path";

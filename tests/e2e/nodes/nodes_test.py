@@ -159,6 +159,24 @@ def test_a_redirected_key_is_free_for_the_owner(site, model):
     assert len(history_ids(site, model)) == before + 1
 
 
+def test_a_request_whose_path_does_not_name_the_model_is_redirected_once(site, model):
+    owner, other = owner_and_other(site, model)
+    spare = owner.ok("POST", f"/models/{model['id']}/layers", {"name": "Spare", "type": "u8"})
+    layer = spare.json()["id"]
+    owner.ok(
+        "DELETE",
+        f"/models/{model['id']}/layers/{layer}",
+        headers={"If-Match": spare.headers["ETag"]},
+    )
+    path = f"/projects/default/bin/layer-{layer}/restore"
+    answer = other.post(path)
+    assert answer.status == 307, answer
+    assert answer.headers["Location"] == f"{owner.node_url}/api/v1{path}?moved=1"
+    assert other.post(path + "?moved=1").status == 503
+    assert owner.post(path + "?moved=1").status == 200
+    assert owner.get(f"/models/{model['id']}/layers/{layer}").status == 200
+
+
 def test_connections_survive_a_redirection(site, model):
     owner, other = owner_and_other(site, model)
     path = f"/api/v1/models/{model['id']}/layers/marks/edits"
@@ -252,7 +270,7 @@ def test_an_owner_that_is_killed_is_replaced_after_its_lease(site, model):
     assert edit_at(owner, model).status == 307  # it does not take the model back
 
 
-def test_a_frozen_owner_acknowledges_nothing_when_it_goes_on(site, model):
+def test_a_frozen_owner_acknowledges_nothing_when_it_continues(site, model):
     owner, other = owner_and_other(site, model)
     with LiveClient(owner, model["id"]) as live, LiveClient(owner, model["id"]) as viewer:
         live.hello()
@@ -260,7 +278,7 @@ def test_a_frozen_owner_acknowledges_nothing_when_it_goes_on(site, model):
         saved(live, live_edit(live, model))
         owner.freeze()
         begun = time.monotonic()
-        # The frozen node gets these edits when it goes on.
+        # The frozen node gets these edits when it continues.
         late = [live_edit(live, model, value) for value in (1, 2, 3)]
         took_s = paint_soon(site, model, begun)
         print(f"frozen: painting went on after {took_s:.2f} s")

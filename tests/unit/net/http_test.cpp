@@ -10,6 +10,7 @@
 #include "core/byte_budget.h"
 #include "core/uuid.h"
 #include "net/api/metrics.h"
+#include "net/api/node_redirect.h"
 #include "net/api/problems_page.h"
 #include "net/http/accept.h"
 #include "net/http/form_files.h"
@@ -548,6 +549,41 @@ TEST(Problems, all_of_it_is_the_main_part_and_every_column_has_a_head) {
   EXPECT_TRUE(page.ends_with("</main></body></html>"));
   EXPECT_EQ(page.find("<th></th>"), std::string::npos);
   EXPECT_NE(page.find("<th scope=\"col\">Meaning</th>"), std::string::npos);
+}
+
+TEST(Moved, a_handler_redirects_a_request_once) {
+  const Response first =
+      redirected_by_handler("https://museum.example/node/b", "/api/v1/tables/3/records", false);
+  EXPECT_EQ(first.status, 307);
+  EXPECT_EQ(first.header("Location"),
+            "https://museum.example/node/b/api/v1/tables/3/records?moved=1");
+  EXPECT_EQ(first.header("Content-Type"), "application/problem+json");
+  EXPECT_NE(first.body.find("/problems#moved"), std::string::npos);
+
+  Request request;
+  ASSERT_TRUE(parse_target("/api/v1/tables/3/records?limit=5&moved=1", request));
+  EXPECT_TRUE(request.was_moved);
+  EXPECT_EQ(request.query, (std::map<std::string, std::string>{{"limit", "5"}}));
+  EXPECT_EQ(redirected_by_handler("https://museum.example/node/c", request.target, true).status,
+            503);
+}
+
+TEST(Moved, the_query_of_a_redirected_request_is_kept) {
+  EXPECT_EQ(redirected_by_handler("http://b", "/x?limit=5", false).header("Location"),
+            "http://b/x?limit=5&moved=1");
+}
+
+TEST(Moved, a_request_is_repeated_later_if_the_node_is_not_known) {
+  const Response response = redirected_by_handler({}, "/x", false);
+  EXPECT_EQ(response.status, 503);
+  EXPECT_EQ(response.header("Retry-After"), "1");
+  EXPECT_EQ(response.header("Location"), "");
+}
+
+TEST(Moved, a_problem_has_the_address_of_the_node) {
+  EXPECT_EQ(problem_response(moved_to("http://b")).header("Location"), "http://b");
+  EXPECT_EQ(problem_response(moved_to({})).header("Location"), "");
+  EXPECT_EQ(problem_response(moved_to({})).status, 307);
 }
 
 TEST(Metrics, text_names_every_counter_once) {

@@ -2,7 +2,7 @@
 
 import type { SiteNode } from "../core/protocol.gen";
 
-/** Returns the part of a node's address that tells it from the other nodes. */
+/** Returns the part of a node's address that differs from the addresses of the other nodes. */
 export function shortAddress(url: string): string {
   try {
     const { host, pathname } = new URL(url);

@@ -471,7 +471,7 @@ export class Connection {
   }
 
   private onLost(): void {
-    // The node may have ended. The site knows which node has the model now.
+    // The node may have ended. The address of the site leads to the node that has the model now.
     this._address = this._options.url;
     if (this.dropSocket()) this.retryLater();
   }
