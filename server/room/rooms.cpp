@@ -122,8 +122,8 @@ struct Rooms::Impl {
       const auto found = rooms.find(room->id());
       if (found == rooms.end() || found->second != room) return;
       rooms.erase(found);
+      ++models_moved;
     }
-    ++models_moved;
     room->close(why);
   }
 
