@@ -10,6 +10,7 @@ namespace strata::app {
 
 Result<room::EditAnswer> edit_and_wait(room::Room& room, room::EditRequest edit,
                                        EditCounters& counters) {
+  if (!edit.trace) edit.trace = current_trace();
   auto answer = room::await<room::EditAnswer>([&](auto saved) {
     room.edits().submit(
         std::move(edit), [&counters](const room::EditAnswer&) { ++counters.applied; },

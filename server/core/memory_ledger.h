@@ -55,7 +55,7 @@ class MemoryLedger {
 
  private:
   const std::string kind_, option_;
-  std::uint64_t budget_bytes_;
+  std::atomic<std::uint64_t> budget_bytes_;
   std::atomic<std::uint64_t> used_bytes_{0};
   std::function<bool()> evict_one_;
 };

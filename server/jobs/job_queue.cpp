@@ -12,6 +12,7 @@
 
 #include "core/give_back_memory.h"
 #include "core/log.h"
+#include "core/trace.h"
 #include "store/content/jobs.h"
 
 namespace strata::jobs {
@@ -119,6 +120,7 @@ bool is_over(JobState state) { return state != JobState::queued && state != JobS
 struct Job {
   JobQueue::Work work;
   std::shared_ptr<Progress> progress = std::make_shared<Progress>();
+  TraceId trace = current_trace();  // of the request that added the job
   JobStatus status;
 };
 
@@ -249,6 +251,7 @@ struct JobQueue::Impl {
       job.status.state = JobState::running;
       const auto progress = job.progress;
       Work work = std::move(job.work);
+      const TraceScope scope(job.trace);
       lock.unlock();
       auto result = run(work, *progress);
       work = nullptr;
@@ -330,6 +333,13 @@ std::vector<JobStatus> JobQueue::all() const {
   for (auto job = impl_->jobs.rbegin(); job != impl_->jobs.rend(); ++job)
     all.push_back(snapshot(job->second));
   return all;
+}
+
+std::array<std::size_t, 5> JobQueue::counts() const {
+  std::array<std::size_t, 5> counts{};
+  std::lock_guard lock(impl_->mutex);
+  for (const auto& [id, job] : impl_->jobs) ++counts[static_cast<std::size_t>(job.status.state)];
+  return counts;
 }
 
 bool JobQueue::cancel(JobId id) {

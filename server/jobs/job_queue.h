@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -67,6 +69,8 @@ class JobQueue {
   std::optional<JobStatus> status(JobId id) const;
   std::vector<JobStatus> all() const;  // newest job first
   bool cancel(JobId id);
+  // Returns the number of jobs in each JobState. Only the kept jobs count.
+  std::array<std::size_t, 5> counts() const;
 
  private:
   struct Impl;

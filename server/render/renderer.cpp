@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/log.h"
+#include "core/trace.h"
 #include "render/thread/frame_job.h"
 #include "render/thread/frame_queue.h"
 #include "render/thread/gpu_scene.h"
@@ -30,6 +31,7 @@ struct Renderer::Impl {
   FrameQueue frames;
   Refinements refinements;
   GpuMemory memory;
+  Histogram frame_times;
   std::unique_ptr<GpuScene> scene;                       // used on the GPU thread only
   std::uint64_t generation = 0;                          // used on the GPU thread only
   std::vector<std::weak_ptr<const FrameJob>> under_way;  // used on the GPU thread only
@@ -81,7 +83,11 @@ struct Renderer::Impl {
     under_way.push_back(frame);
     return Job{[this, frame] {
                  const Step step = frame->step(*scene);
-                 if (step == Step::done) frames.finished(frame->task(), frame->busy_ms());
+                 if (step == Step::done) {
+                   frames.finished(frame->task(), frame->busy_ms());
+                   frame_times.add(std::chrono::duration_cast<std::chrono::nanoseconds>(
+                       std::chrono::duration<double, std::milli>(frame->busy_ms())));
+                 }
                  return step;
                },
                [frame](const Error& problem) { frame->abort(problem); }};
@@ -108,7 +114,11 @@ struct Renderer::Impl {
   // Posts a job object with `step(GpuScene&)` and `abort`. Aborts the job if the queue is full.
   template <class JobType>
   void post(Lane lane, std::shared_ptr<JobType> job) {
-    Job posted{[this, job] { return job->step(*scene); },
+    // Log lines of the job belong to the trace of the caller.
+    Job posted{[this, job, trace = current_trace()] {
+                 const TraceScope scope(trace);
+                 return job->step(*scene);
+               },
                [job](const Error& problem) { job->abort(problem); }};
     if (thread.post(lane, std::move(posted))) return;
     thread.post_reply([job] {
@@ -192,6 +202,8 @@ GpuInfo Renderer::info() const {
 bool Renderer::ready() const { return impl_->thread.ready(); }
 
 std::uint64_t Renderer::gpu_bytes_used() const { return impl_->memory.used(); }
+std::uint64_t Renderer::gpu_bytes_limit() const { return impl_->memory.budget(); }
+const Histogram& Renderer::frame_times() const { return impl_->frame_times; }
 
 std::uint64_t Renderer::layer_bytes_used(LayerHandle layer) const {
   std::lock_guard lock(impl_->mutex);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/histogram.h"
 #include "domain/layers/layer_blend.h"
 #include "domain/layers/palette.h"
 #include "domain/layers/tile.h"
@@ -199,6 +200,9 @@ class Renderer {
   // Returns false while a lost context cannot be replaced. The renderer then rejects requests.
   bool ready() const;
   std::uint64_t gpu_bytes_used() const;
+  std::uint64_t gpu_bytes_limit() const;
+  // The time of the GPU thread for each frame, except refinements.
+  const Histogram& frame_times() const;
   // Returns the bytes of the layer's page table and of its pages on the GPU.
   std::uint64_t layer_bytes_used(LayerHandle layer) const;
   int debug_errors() const;

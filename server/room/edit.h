@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/ids.h"
+#include "core/trace.h"
 #include "core/uuid.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/review.h"
@@ -88,6 +89,8 @@ struct EditRequest {
   nlohmann::json record{};  // the requested edit, for the journal
   // The question that contains this edit, with its limits. Null: the limits of the author apply.
   std::shared_ptr<Question> question{};
+  // The trace of the request or stroke. Zero: the pipeline begins a new trace.
+  TraceId trace{};
 };
 
 // Returns the keys that an edit paints on the layer. Empty if the edit erases, undoes or restores.

@@ -76,7 +76,8 @@ struct Rooms::Impl {
             readers,
             retired_keys,
             options,
-            [this](const std::shared_ptr<OpenRoom>& room, const Error& why) { drop(room, why); }} {
+            [this](const std::shared_ptr<OpenRoom>& room, const Error& why) { drop(room, why); },
+            timings} {
     memory.set_evictor([this] { return drop_a_map(); });
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
@@ -222,6 +223,7 @@ struct Rooms::Impl {
   boost::asio::thread_pool strands, workers, readers;
   MemoryLedger memory;
   RetiredKeys retired_keys;
+  EditTimings timings;
   const RoomServices services;
   std::mutex mutex;
   std::condition_variable changed;
@@ -392,6 +394,8 @@ std::size_t Rooms::participants() const {
 
 std::uint64_t Rooms::memory_bytes_used() const { return impl_->memory.used(); }
 MemoryLedger& Rooms::memory() { return impl_->memory; }
+const EditTimings& Rooms::edit_timings() const { return impl_->timings; }
+const store::JournalWriter& Rooms::journal() const { return impl_->writer; }
 
 std::size_t Rooms::open_rooms() const {
   std::lock_guard lock(impl_->mutex);

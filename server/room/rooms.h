@@ -20,14 +20,16 @@ namespace strata::render {
 class Renderer;
 }
 namespace strata::store {
+class JournalWriter;
 class Store;
-}
+}  // namespace strata::store
 namespace strata::stream {
 struct StreamContext;
 }
 
 namespace strata::room {
 
+struct EditTimings;
 class Room;
 
 struct RoomOptions {
@@ -41,6 +43,8 @@ struct RoomOptions {
   std::uint64_t memory_bytes = 0;
   // This server among the nodes of a site (store/nodes/nodes.h). Empty if it is alone.
   std::optional<Uuid> node{};
+  // Edits that take longer are logged with the times of their stages. 0: no limit.
+  std::chrono::milliseconds slow_after{1000};
 };
 
 // Opens rooms on first use, and closes them after the last user has left. A server claims each
@@ -84,6 +88,9 @@ class Rooms {
   std::uint64_t memory_bytes_used() const;
   // The memory of open models, and of images that are being added to a model. Thread-safe.
   MemoryLedger& memory();
+  // For the metrics of the server. Thread-safe.
+  const EditTimings& edit_timings() const;
+  const store::JournalWriter& journal() const;
   // Refuses new edits. Returns when every other edit is durable or refused. After `drain_for`,
   // refuses the edits that are left. If the site has several nodes, each room is released as soon
   // as its edits are durable, and its listeners are notified (Listener::moved).

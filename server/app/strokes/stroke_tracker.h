@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/ids.h"
+#include "core/trace.h"
 #include "core/uuid.h"
 #include "domain/scene/stroke.h"
 
@@ -21,6 +22,7 @@ struct StrokeTool {
   LayerId layer_id = 0;
   StrokeBatch batch;      // without the path
   nlohmann::json record;  // the journal record without the path
+  TraceId trace{};        // of the first `stroke.begin`; all batches belong to it
   bool operator==(const StrokeTool& other) const {
     return layer_id == other.layer_id && record == other.record;
   }

@@ -348,10 +348,8 @@ void Api::answer_failures(const Request& request, const Respond& answer,
   } catch (const QuestionEnded& ended) {
     answer(ended.problem());
   } catch (const std::exception& error) {
-    // The address of a kiosk contains its secret.
-    const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";
-    log::error("request " + std::string(name(request.method)) + " " +
-               (is_secret ? "/kiosk/…" : request.path) + " failed: " + error.what());
+    log::error("request " + std::string(name(request.method)) + " " + request.path_for_log() +
+               " failed: " + error.what());
     answer(Error{ErrorCode::internal,
                  "Internal error",
                  "An internal error occurred. Ask an administrator to check the log of the server.",

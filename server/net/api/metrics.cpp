@@ -1,66 +1,179 @@
 #include "net/api/metrics.h"
 
+#include <sstream>
 #include <string_view>
+
+#include "core/version.h"
 
 namespace strata::net {
 namespace {
 
-void add(std::string& text, std::string_view name, std::string_view type, std::string_view help,
-         const std::string& value) {
-  text.append("# HELP ").append(name).append(" ").append(help).append("\n");
-  text.append("# TYPE ").append(name).append(" ").append(type).append("\n");
-  text.append(name).append(" ").append(value).append("\n");
+constexpr std::string_view kJobStates[] = {"queued", "running", "done", "failed", "cancelled"};
+
+// Writes the lines of one metric after another.
+class Writer {
+ public:
+  // A rate is the difference of two sums, so a long-running server needs many digits.
+  Writer() { text_.precision(15); }
+  void head(std::string_view name, std::string_view type, std::string_view help) {
+    text_ << "# HELP " << name << ' ' << help << "\n# TYPE " << name << ' ' << type << '\n';
+  }
+  // `labels` has the form `{name="value"}`, or is empty.
+  template <class Value>
+  void value(std::string_view name, std::string_view labels, const Value& value) {
+    text_ << name << labels << ' ' << value << '\n';
+  }
+  template <class Value>
+  void counter(std::string_view name, std::string_view help, const Value& value) {
+    head(name, "counter", help);
+    this->value(name, {}, value);
+  }
+  template <class Value>
+  void gauge(std::string_view name, std::string_view help, const Value& value) {
+    head(name, "gauge", help);
+    this->value(name, {}, value);
+  }
+  // Prometheus expects that each interval also contains the shorter durations. `labels` has no
+  // braces.
+  void histogram(std::string_view name, const std::string& labels, const Histogram& histogram) {
+    const auto counts = histogram.counts();
+    const std::string before = "{" + labels + (labels.empty() ? "" : ",") + "le=\"";
+    const std::string braced = labels.empty() ? "" : "{" + labels + "}";
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < counts.by_interval.size(); ++i) {
+      total += counts.by_interval[i];
+      text_ << name << "_bucket" << before;
+      if (i < Histogram::kBounds_s.size())
+        text_ << Histogram::kBounds_s[i];
+      else
+        text_ << "+Inf";
+      text_ << "\"} " << total << '\n';
+    }
+    text_ << name << "_sum" << braced << ' ' << counts.sum_s << '\n';
+    text_ << name << "_count" << braced << ' ' << total << '\n';
+  }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+};
+
+std::string label(std::string_view name, std::string_view value) {
+  return std::string(name) + "=\"" + std::string(value) + "\"";
+}
+
+void write_requests(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+  out.head("strata_http_requests_total", "counter", "HTTP answers by class of status.");
+  for (std::size_t i = 1; i < metrics.requests.size(); ++i)
+    out.value("strata_http_requests_total", "{" + label("status", std::to_string(i) + "xx") + "}",
+              metrics.requests[i].load());
+  out.head("strata_http_request_seconds", "histogram",
+           "Time until the answer to a request is ready, without the transfer of its body.");
+  out.histogram("strata_http_request_seconds", {}, metrics.request_times);
+  out.head("strata_problems_total", "counter", "Problems that were sent to clients, by code.");
+  for (std::size_t i = 0; i < metrics.problems.size(); ++i)
+    out.value("strata_problems_total", "{" + label("code", name(static_cast<ErrorCode>(i))) + "}",
+              metrics.problems[i].load());
+  out.gauge("strata_open_connections", "TCP connections.", metrics.open_connections.load());
+  out.gauge("strata_open_sockets", "WebSocket connections.", metrics.open_sockets.load());
+  out.gauge("strata_waiting_requests", "Requests that wait for a worker.", gauges.waiting_requests);
+  out.gauge("strata_waiting_questions", "Questions that wait to be answered.",
+            gauges.waiting_questions);
+  out.gauge("strata_questions_under_way", "Questions that are being answered.",
+            gauges.questions_under_way);
+  out.counter("strata_questions_left_total",
+              "Questions whose client disconnected before the answer.",
+              metrics.questions_left.load());
+  out.counter("strata_question_steps_total",
+              "Steps of questions: texels times the parts of a condition.", gauges.question_steps);
+  out.counter("strata_messages_received_total", "WebSocket messages received.",
+              metrics.messages_received.load());
+  out.counter("strata_messages_refused_total", "WebSocket messages refused.",
+              metrics.messages_refused.load());
+}
+
+void write_edits(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+  out.counter("strata_edits_applied_total", "Edits that became visible.",
+              metrics.edits.applied.load());
+  out.counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits.saved.load());
+  out.counter("strata_edits_unsaved_total", "Edits that were visible and had to be taken back.",
+              metrics.edits.unsaved.load());
+  out.counter("strata_edits_refused_total", "Edits that were refused.",
+              metrics.edits.refused.load());
+  out.head("strata_edit_stage_seconds", "histogram", "Time of the stages of saved edits.");
+  for (std::size_t i = 0; i < room::kEditStages.size(); ++i) {
+    const std::string stage = "," + label("stage", room::kEditStages[i]);
+    out.histogram("strata_edit_stage_seconds", label("kind", "stroke") + stage,
+                  gauges.edits.strokes[i]);
+    out.histogram("strata_edit_stage_seconds", label("kind", "other") + stage,
+                  gauges.edits.other_edits[i]);
+  }
+  out.head("strata_journal_commit_seconds", "histogram",
+           "Time of a transaction of the journal in the database.");
+  out.histogram("strata_journal_commit_seconds", {}, gauges.commits);
+  out.gauge("strata_journal_waiting", "Edits that wait for the journal.", gauges.journal_waiting);
+  out.gauge("strata_journal_accepting", "1 if the journal accepts edits, otherwise 0.",
+            gauges.journal_accepting);
+  out.counter("strata_journal_failed_commits_total", "Transactions of the journal that failed.",
+              gauges.journal_failed_commits);
+}
+
+void write_drawing(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+  out.counter("strata_frames_sent_total", "Encoded pictures sent to viewers.",
+              metrics.frames_sent.load());
+  out.counter("strata_frame_bytes_sent_total", "Bytes of the pictures.",
+              metrics.frame_bytes_sent.load());
+  out.head("strata_frame_seconds", "histogram", "Time of the GPU thread for a picture.");
+  out.histogram("strata_frame_seconds", {}, gauges.frames);
+  out.gauge("strata_gpu_ready", "1 if the graphics context works, otherwise 0.", gauges.gpu_ready);
+  out.gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
+  out.gauge("strata_gpu_limit_bytes", "Limit of GPU memory (--gpu-memory).",
+            gauges.gpu_limit_bytes);
+}
+
+void write_machine(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+  out.head("strata_build_info", "gauge", "1, with the version of the server.");
+  out.value("strata_build_info", "{" + label("version", version()) + "}", 1);
+  out.gauge("strata_open_rooms", "Models in memory.", gauges.open_rooms);
+  out.gauge("strata_memory_bytes", "Main memory that open models hold.", gauges.memory_bytes);
+  out.gauge("strata_memory_limit_bytes", "Limit of main memory for open models (--memory).",
+            gauges.memory_limit_bytes);
+  out.gauge("strata_process_resident_bytes", "Main memory of the server process.",
+            gauges.resident_bytes);
+  if (gauges.disk_bytes > 0) {
+    out.gauge("strata_disk_bytes", "Size of the disk with the data folder.", gauges.disk_bytes);
+    out.gauge("strata_disk_free_bytes", "Free space of the disk with the data folder.",
+              gauges.disk_free_bytes);
+  }
+  out.gauge("strata_database_ready", "1 if the database answers, otherwise 0.",
+            gauges.database_ready);
+  out.head("strata_jobs", "gauge", "Jobs by state. Of the ended jobs, only the newest count.");
+  for (std::size_t i = 0; i < gauges.jobs.size(); ++i)
+    out.value("strata_jobs", "{" + label("state", kJobStates[i]) + "}", gauges.jobs[i]);
+  if (const auto end = metrics.certificate_end.load())
+    out.gauge("strata_certificate_end_seconds",
+              "End of the TLS certificate, in seconds since 1970.", end);
+}
+
+void write_node(Writer& out, const Gauges& gauges) {
+  if (!gauges.node) return;
+  out.gauge("strata_node_lease_seconds", "Time until the lease of the node ends. 0: it has ended.",
+            gauges.node->lease_s);
+  out.counter("strata_models_moved_total",
+              "Open models that this node gave to other nodes or lost to them.",
+              gauges.node->models_moved);
 }
 
 }  // namespace
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
-  std::string text =
-      "# HELP strata_http_requests_total HTTP responses by class of status code.\n# TYPE strata_http_requests_total counter\n";
-  for (std::size_t i = 1; i < metrics.requests.size(); ++i)
-    text += "strata_http_requests_total{status=\"" + std::to_string(i) + "xx\"} " +
-            std::to_string(metrics.requests[i].load()) + "\n";
-  auto counter = [&](std::string_view name, std::string_view help,
-                     const std::atomic<std::uint64_t>& value) {
-    add(text, name, "counter", help, std::to_string(value.load()));
-  };
-  auto gauge = [&](std::string_view name, std::string_view help, auto value) {
-    add(text, name, "gauge", help, std::to_string(value));
-  };
-  gauge("strata_open_connections", "TCP connections.", metrics.open_connections.load());
-  gauge("strata_open_sockets", "WebSocket connections.", metrics.open_sockets.load());
-  gauge("strata_open_rooms", "Models in memory.", gauges.open_rooms);
-  gauge("strata_waiting_requests", "Requests that wait for a worker.", gauges.waiting_requests);
-  gauge("strata_waiting_questions", "Questions that wait to be answered.",
-        gauges.waiting_questions);
-  gauge("strata_questions_under_way", "Questions that are being answered.",
-        gauges.questions_under_way);
-  gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
-  gauge("strata_memory_bytes", "Main memory that open models use.", gauges.memory_bytes);
-  counter("strata_edits_applied_total", "Edits that became visible.", metrics.edits.applied);
-  counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits.saved);
-  counter("strata_edits_unsaved_total", "Visible edits that could not be saved and were undone.",
-          metrics.edits.unsaved);
-  counter("strata_edits_refused_total", "Edits that were refused.", metrics.edits.refused);
-  counter("strata_frames_sent_total", "Encoded frames sent to viewers.", metrics.frames_sent);
-  counter("strata_frame_bytes_sent_total", "Bytes of the encoded frames.",
-          metrics.frame_bytes_sent);
-  counter("strata_messages_received_total", "WebSocket messages received.",
-          metrics.messages_received);
-  counter("strata_messages_refused_total", "WebSocket messages refused.", metrics.messages_refused);
-  counter("strata_questions_left_total", "Questions whose client disconnected before the answer.",
-          metrics.questions_left);
-  add(text, "strata_question_steps_total", "counter",
-      "Steps of questions: texels times the parts of a condition.",
-      std::to_string(gauges.question_steps));
-  if (gauges.node) {
-    gauge("strata_node_lease_seconds", "Time until the lease of the node ends. 0: it has ended.",
-          gauges.node->lease_s);
-    add(text, "strata_models_moved_total", "counter",
-        "Open models that this node gave to other nodes or lost to them.",
-        std::to_string(gauges.node->models_moved));
-  }
-  return text;
+  Writer out;
+  write_requests(out, metrics, gauges);
+  write_edits(out, metrics, gauges);
+  write_drawing(out, metrics, gauges);
+  write_machine(out, metrics, gauges);
+  write_node(out, gauges);
+  return out.text();
 }
 
 }  // namespace strata::net

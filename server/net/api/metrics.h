@@ -7,6 +7,9 @@
 #include <string>
 
 #include "app/edits.h"
+#include "core/error.h"
+#include "core/histogram.h"
+#include "room/edit_timings.h"
 
 namespace strata::net {
 
@@ -19,7 +22,13 @@ struct Metrics {
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
   std::atomic<std::uint64_t> questions_left{0};  // the client disconnected before the response
+  // The end of the TLS certificate, in seconds since 1970. 0: plain HTTP.
+  std::atomic<std::int64_t> certificate_end{0};
 
+  std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(kLastErrorCode) + 1> problems{};
+  Histogram request_times;  // until the response is ready, without the time to receive the body
+
+  void count_problem(ErrorCode code) { ++problems[static_cast<std::size_t>(code)]; }
   void count_request(int status) { ++requests[status >= 100 && status < 600 ? status / 100 : 0]; }
 };
 
@@ -29,13 +38,23 @@ struct NodeGauges {
   std::uint64_t models_moved = 0;
 };
 
+// The values of other modules. The histograms must exist during the call of `metrics_text`.
 struct Gauges {
+  const room::EditTimings& edits;
+  const Histogram& frames;
+  const Histogram& commits;
   std::size_t open_rooms = 0;
-  std::uint64_t gpu_bytes = 0, memory_bytes = 0;
+  std::uint64_t gpu_bytes = 0, gpu_limit_bytes = 0, memory_bytes = 0, memory_limit_bytes = 0;
+  std::uint64_t resident_bytes = 0;                   // of the process
+  std::uint64_t disk_bytes = 0, disk_free_bytes = 0;  // 0: unknown
   std::size_t waiting_requests = 0;
   std::size_t waiting_questions = 0, questions_under_way = 0;
   std::uint64_t question_steps = 0;
   std::optional<NodeGauges> node{};  // empty if the server runs alone
+  std::size_t journal_waiting = 0;
+  std::uint64_t journal_failed_commits = 0;
+  bool journal_accepting = false, database_ready = false, gpu_ready = false;
+  std::array<std::size_t, 5> jobs{};  // by jobs::JobState
 };
 
 // Returns the metrics in the Prometheus text format 0.0.4.

@@ -101,6 +101,7 @@ void apply_edit(const RouteContext& context, const Request& request,
   if (auto known = app::check_keys(context.store, *layer, room::painted_by(*layer, edit)); !known)
     return respond(known.error());
   if (Question* question = Question::current()) edit.question = question->shared_from_this();
+  edit.trace = request.trace.trace;
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
     if (auto same = context.edit_idempotency.begin(room->model().id, edit); !same)

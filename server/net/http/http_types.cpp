@@ -22,6 +22,11 @@ std::string_view Request::header(std::string_view lower_case_name) const {
   return {};
 }
 
+std::string Request::path_for_log() const {
+  const bool is_secret = !segments.empty() && segments.front() == "kiosk";
+  return is_secret ? "/kiosk/…" : path;
+}
+
 std::string Request::query_or(const std::string& key, const std::string& fallback) const {
   auto found = query.find(key);
   return found == query.end() ? fallback : found->second;
@@ -81,6 +86,7 @@ Response problem_response(const Error& problem) {
       json_response(protocol::problem_body(problem), protocol::http_status(problem.code));
   response.headers = {{"Content-Type", "application/problem+json"}};
   if (!problem.location.empty()) response.with("Location", problem.location);
+  response.problem = problem.code;
   if (response.status == 401) response.with("WWW-Authenticate", "Bearer realm=\"strata\"");
   if (response.status == 429 || response.status == 503) response.with("Retry-After", "1");
   return response;

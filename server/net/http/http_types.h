@@ -18,6 +18,7 @@
 #include "core/temporary_file.h"
 #include "core/text/ascii.h"
 #include "core/text/number_text.h"
+#include "core/trace.h"
 #include "domain/people/role.h"
 
 namespace strata::net {
@@ -74,8 +75,11 @@ struct Request {
   bool as_kiosk = false;
   // The query contains `moved=1`: another node redirected the request to this node.
   bool was_moved = false;
+  TraceContext trace{};  // the span is this server's
 
   std::string_view header(std::string_view lower_case_name) const;  // empty if absent
+  // Returns the path for the log. The address of a kiosk contains its secret, which is left out.
+  std::string path_for_log() const;
   const std::string& param(const std::string& name) const { return params.at(name); }
   std::string query_or(const std::string& name, const std::string& fallback) const;
   // Only for routes that require a principal.
@@ -107,6 +111,7 @@ struct Response {
     std::function<std::optional<std::string>()> next;
   };
   std::optional<Events> events;
+  std::optional<ErrorCode> problem{};  // set by `problem_response`, for the metrics
 
   Response& with(std::string header_name, std::string value);
   std::string_view header(std::string_view name) const;  // `name` as in `with`; empty if absent

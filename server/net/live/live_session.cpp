@@ -284,6 +284,7 @@ void LiveSession::edit(const protocol::EditRequest& message) {
     if (auto known = app::check_keys(*shared_->store, *layer, room::painted_by(*layer, *request));
         !known)
       return refuse(known.error(), message.id);
+  request->trace = continued_trace(message.traceparent.value_or("")).trace;
   submit(std::move(*request), std::nullopt);
 }
 
@@ -304,6 +305,7 @@ void LiveSession::step_through_history(const Message& message) {
   else
     request.edit = room::RedoEdit{};
   request.record = {{"op", std::string(Message::kOp)}};
+  request.trace = continued_trace(message.traceparent.value_or("")).trace;
   submit(std::move(request), std::nullopt);
 }
 
@@ -723,6 +725,7 @@ void LiveSession::send(const protocol::ServerMessage& message) {
 }
 
 void LiveSession::refuse(const Error& problem, const std::string& ref) {
+  shared_->metrics->count_problem(problem.code);
   ++shared_->metrics->messages_refused;
   send(protocol::problem_message(problem, ref));
 }

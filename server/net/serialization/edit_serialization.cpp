@@ -168,7 +168,8 @@ Result<app::StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const La
   tool.record = protocol::to_json(begin);
   tool.record["op"] = "stroke";
   if (found.shape) tool.record["shape"] = found.id;
-  for (const char* member : {"id", "layer", "stroke"}) tool.record.erase(member);
+  tool.trace = continued_trace(begin.traceparent.value_or("")).trace;
+  for (const char* member : {"id", "layer", "stroke", "traceparent"}) tool.record.erase(member);
   return tool;
 }
 
@@ -177,6 +178,7 @@ room::EditRequest batch_request(app::StrokeTracker::Batch batch, const Uuid& str
   room::EditRequest request{id, std::move(author), batch.tool.layer_id};
   request.record = std::move(batch.tool.record);
   request.record["n"] = n;
+  request.trace = batch.tool.trace;
   nlohmann::json path = nlohmann::json::array();
   for (const auto& point : batch.path) path.push_back({point.x, point.y});
   request.record["path"] = std::move(path);

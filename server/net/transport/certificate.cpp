@@ -2,7 +2,9 @@
 
 #include <openssl/err.h>
 #include <openssl/ssl.h>
+#include <openssl/x509.h>
 
+#include <ctime>
 #include <fstream>
 
 #include "core/log.h"
@@ -70,6 +72,13 @@ Result<Certificate> Certificate::load(fs::path chain, fs::path key) {
   auto context = STRATA_TRY(certificate.read());
   certificate.context_ = std::move(context);
   return certificate;
+}
+
+std::int64_t Certificate::end() const {
+  const X509* certificate = SSL_CTX_get0_certificate(context_->native_handle());
+  std::tm utc{};
+  if (!certificate || ASN1_TIME_to_tm(X509_get0_notAfter(certificate), &utc) != 1) return 0;
+  return timegm(&utc);
 }
 
 std::shared_ptr<ssl::context> Certificate::context() {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <boost/asio/ssl/context.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 
@@ -20,6 +21,8 @@ class Certificate {
   // Returns the TLS context for a new connection. Reads the files again if they have changed. If
   // they are invalid, logs the error and keeps the previous context.
   std::shared_ptr<boost::asio::ssl::context> context();
+  // Returns the end of the current certificate, in seconds since 1970.
+  std::int64_t end() const;
 
  private:
   using Times = std::array<std::filesystem::file_time_type, 2>;

@@ -14,6 +14,7 @@
 #include <future>
 
 #include "core/log.h"
+#include "core/trace.h"
 #include "core/uuid.h"
 #include "net/http/origin.h"
 #include "net/http/token_bucket.h"
@@ -107,6 +108,57 @@ class BodyClock {
  private:
   const seconds at_least_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+// Returns the trace of a request. A request with two headers `traceparent` begins a new trace.
+TraceContext trace_of(const http::request<http::empty_body>& head) {
+  const auto [first, last] = head.equal_range("traceparent");
+  if (first == last || std::next(first) != last) return continued_trace({});
+  return continued_trace(first->value());
+}
+
+// Measures the stages of one request. The time to receive the body depends on the client, so it
+// does not count.
+class RequestTimes {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // Ends the stage that began with the previous call.
+  void admitted() { admit_ = next(); }
+  void received() { body_ = next(); }
+  void handled() { handle_ = next(); }
+  Clock::duration total() const { return admit_ + handle_; }
+
+  // Writes one line if the request was slow, if it failed, or if the level of `net` is debug.
+  void report(const Request& request, const Response& response,
+              std::chrono::milliseconds slow_after) const {
+    const bool is_slow = slow_after.count() > 0 && total() >= slow_after;
+    const bool has_failed = response.status >= 500;
+    const auto level = is_slow || has_failed ? log::Level::info : log::Level::debug;
+    if (!log::is_enabled(level)) return;
+    const std::string path = request.path_for_log();
+    const log::Field fields[] = {{"method", name(request.method)},
+                                 {"path", path},
+                                 {"status", std::int64_t(response.status)},
+                                 {"admit_ms", ms(admit_)},
+                                 {"body_ms", ms(body_)},
+                                 {"handle_ms", ms(handle_)},
+                                 {"total_ms", ms(total())}};
+    const TraceScope scope(request.trace.trace);
+    log::write(level, has_failed ? "request failed" : is_slow ? "slow request" : "request", fields);
+  }
+
+ private:
+  Clock::duration next() {
+    const auto now = Clock::now();
+    return now - std::exchange(last_, now);
+  }
+  static double ms(Clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+  }
+
+  Clock::time_point last_ = Clock::now();
+  Clock::duration admit_{}, body_{}, handle_{};
 };
 
 class CountAtWork {
@@ -223,6 +275,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const CountAtWork at_work(connections_->requests_at_work);
     const bool keep_alive = head.keep_alive() && !connections_->stopping;
     http_version_ = head.get().version();
+    trace_ = trace_of(head.get());
+    RequestTimes times;
     auto parsed = request_of(head.get());
     if (parsed)
       if (auto framed = check_framing(*parsed, http_version_); !framed)
@@ -234,6 +288,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const auto request = std::make_shared<Request>(std::move(*parsed));
     request->peer = peer_;
     request->by_tls = stream_.has_tls();
+    request->trace = trace_;
     by_https_ = came_by_https(*request);
     Response response;
     if (!bucket_.take()) {
@@ -257,11 +312,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       co_return co_await refuse(head, *request, response, keep_alive);
     }
     const Work admit = [this, request, route](const Respond& respond) {
+      const TraceScope traced(request->trace.trace);
       auto refused = api_.admit(*request, *route);
       respond(refused ? std::move(*refused) : empty_response(100));
     };
     response = co_await on_worker(connections_, stream_.get_executor(), admit);
-    if (response.status != 100) co_return co_await refuse(head, *request, response, keep_alive);
+    times.admitted();
+    if (response.status != 100) {
+      times.report(*request, response, api_.options().slow_after);
+      co_return co_await refuse(head, *request, response, keep_alive);
+    }
 
     const bool has_body = !head.is_done();
     if (has_body) {
@@ -284,6 +344,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         co_return co_await send(response, request->method, false);
       }
     }
+    times.received();
     std::shared_ptr<Question> question;
     std::optional<ClientWatch> watch;
     if (route->is_question || route->is_long_edit) {
@@ -294,6 +355,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     const Work handle = [this, request, route, has_body, question](const Respond& respond) {
       const Question::Scope scope(question);
+      const TraceScope traced(request->trace.trace);
       if (has_body)
         if (auto refused = api_.admit_again(*request, *route)) return respond(std::move(*refused));
       api_.handle(*request, *route, respond);
@@ -302,6 +364,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response = co_await on_worker(connections_, stream_.get_executor(), handle, at_desk);
     watch.reset();
     remove_body_file(*request);
+    times.handled();
+    api_.metrics().request_times.add(times.total());
+    times.report(*request, response, api_.options().slow_after);
     // While a response is streamed, the failing write detects that the client has disconnected.
     if (question) question->let_take_time();
     stream_question_ = response.stream ? std::move(question) : nullptr;
@@ -435,6 +500,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     message.result(static_cast<unsigned>(response.status));
     message.reason(reason_phrase(response.status));
     message.set(http::field::server, "strata");
+    message.insert("traceparent", to_traceparent(trace_));
     for (const auto& [key, value] : security_headers())
       if (response.header(key).empty()) message.insert(key, value);
     // Browsers then use HTTPS for all later requests, even for http links (RFC 6797).
@@ -464,6 +530,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   // Returns false if the connection must end.
   asio::awaitable<bool> send(Response& response, Method method, bool keep_alive) {
     api_.metrics().count_request(response.status);
+    if (response.problem) api_.metrics().count_problem(*response.problem);
     if (response.stream) co_return co_await send_stream(response, method, keep_alive);
     if (response.events) co_return co_await send_events(response, method, keep_alive);
     if (!response.file.empty()) {
@@ -542,8 +609,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     auto whole = std::make_shared<bool>(false);
     auto stream = *response.stream;
     const Work pump = [this, self = shared_from_this(), stream, whole, in_chunks,
-                       question = std::move(stream_question_)](const Respond& respond) {
+                       question = std::move(stream_question_),
+                       trace = trace_.trace](const Respond& respond) {
       const Question::Scope scope(question);
+      const TraceScope traced(trace);
       std::uint64_t sent = 0;
       bool written = false;
       try {
@@ -661,6 +730,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     auto entry = std::make_shared<Api::LiveEntry>();
     auto elsewhere = std::make_shared<std::optional<std::string>>();  // set: the model has moved
     const Work admit = [this, request, entry, elsewhere](const Respond& respond) {
+      const TraceScope traced(request->trace.trace);
       auto may_enter = api_.admit_live(*request);
       if (!may_enter && may_enter.error().code == ErrorCode::moved)
         *elsewhere = may_enter.error().location;
@@ -707,10 +777,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   Api& api_;
   beast::flat_buffer buffer_;
   TokenBucket bucket_;
-  const std::string policy_;    // RateLimit-Policy header for `bucket_`
-  std::string peer_;            // address of the client
-  unsigned http_version_ = 11;  // of the request: 10 or 11
-  bool by_https_ = false;       // the request used HTTPS, to this server or to a proxy
+  const std::string policy_;                  // RateLimit-Policy header for `bucket_`
+  std::string peer_;                          // address of the client
+  unsigned http_version_ = 11;                // of the request: 10 or 11
+  TraceContext trace_ = continued_trace({});  // of the request
+  bool by_https_ = false;  // the request used HTTPS, to this server or to a proxy
   bool handed_over_ = false;
   std::shared_ptr<Question> stream_question_;  // the question whose response is being streamed
 };

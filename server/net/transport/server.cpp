@@ -87,7 +87,9 @@ struct Server::Impl {
         io(std::make_shared<asio::io_context>(api.options().http_threads)),
         connections(new Connections{io, api, 0, 0, false}),
         acceptor(*io),
-        certificate(std::move(own_certificate)) {}
+        certificate(std::move(own_certificate)) {
+    if (certificate) api.metrics().certificate_end = certificate->end();
+  }
 
   asio::awaitable<void> accept() {
     for (;;) {
@@ -107,6 +109,7 @@ struct Server::Impl {
       if (open >= static_cast<std::int64_t>(api.options().max_connections)) continue;
       start_http_session(std::move(socket), connections,
                          certificate ? certificate->context() : nullptr);
+      if (certificate) api.metrics().certificate_end = certificate->end();
     }
   }
 

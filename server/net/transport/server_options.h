@@ -45,6 +45,8 @@ struct ServerOptions {
   double requests_per_second = 1000;  // per connection
   double request_burst = 2000;
   int trash_days = 30;  // days until deleted entities are erased; 0: immediately
+  // Requests that take longer, without the transfer of bodies, are logged. 0: no limit.
+  std::chrono::milliseconds slow_after{1000};
   Timeouts timeouts;
   LiveLimits live;
   const app::NodeLease* lease = nullptr;  // of a site with several nodes; null: the server is alone

@@ -114,7 +114,8 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::load(const RoomServices& services, M
   room->pipeline_ = std::make_shared<EditPipeline>(
       EditPipeline::Parts{services.store, services.writer, services.renderer, services.workers,
                           services.readers, room->strand_, room->maps_, room->surface_lookup_,
-                          services.memory, epoch},
+                          services.memory, epoch, room->model_id_, services.timings,
+                          services.options.slow_after},
       *room, journal->last_sequence);
   // Painting needs the maps of the existing layers, so they are baked in the background.
   for (const auto& state : room->layer_states())

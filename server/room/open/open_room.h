@@ -25,6 +25,7 @@
 #include "room/caches/surface_image_cache.h"
 #include "room/caches/surface_lookup.h"
 #include "room/caches/surface_maps.h"
+#include "room/edit_timings.h"
 #include "room/open/contents.h"
 #include "room/pipeline/edit_pipeline.h"
 #include "room/pipeline/layer_state.h"
@@ -53,6 +54,7 @@ struct RoomServices {
   RoomOptions options;
   // Called on a worker after a room has found out that another server has its model.
   std::function<void(const std::shared_ptr<OpenRoom>&, const Error& why)> on_deposed;
+  EditTimings& timings;
 };
 
 // The implementation of a room: its state, its lifetime, and its recovery. The parts of the room

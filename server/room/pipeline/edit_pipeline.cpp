@@ -123,13 +123,19 @@ void EditPipeline::edit(EditRequest request, Applied applied, Saved saved) {
   if (parts_.memory.exceeded())
     return saved(tl::unexpected(parts_.memory.used_up(0, "the data of an edit")));
   running_[request.id].user = request.author.user;
-  waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
+  EditTrace trace{request.trace ? request.trace : random_trace_id()};
+  waiting_.push_back({.request = std::move(request),
+                      .applied = std::move(applied),
+                      .saved = std::move(saved),
+                      .work = {},
+                      .trace = trace});
   step();
 }
 
 void EditPipeline::when_idle(Work work) {
   if (closed_) return work(tl::unexpected(*closed_));
-  waiting_.push_back({EditRequest{{}, {{}, Role::viewer}}, {}, {}, std::move(work)});
+  waiting_.push_back(
+      {.request = {{}, {{}, Role::viewer}}, .applied = {}, .saved = {}, .work = std::move(work)});
   step();
 }
 
@@ -304,6 +310,8 @@ void EditPipeline::start_stroke(Waiting taken, const LayerState& layer) {
   ++in_flight_;
   auto item = std::make_shared<Waiting>(std::move(taken));
   item->hold = layer.mirror->hold();
+  item->trace.started = EditTrace::Clock::now();
+  const TraceScope scope(item->trace.id);
   parts_.renderer.paint(layer.handles.content, std::get<StrokeEdit>(item->request.edit).batch,
                         then([this, item](Result<render::StrokeOutcome> outcome) {
                           --in_flight_;
@@ -312,12 +320,14 @@ void EditPipeline::start_stroke(Waiting taken, const LayerState& layer) {
 }
 
 void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outcome) {
+  const TraceScope scope(item.trace.id);
   if (!outcome) return refuse(item, gpu_problem(outcome.error()));
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer)
     return refuse(item,
                   {ErrorCode::not_found, "Layer not found", "The layer was deleted.", "layer"});
+  item.trace.paint_ms = outcome->edit_ms;
   ComputedEdit computed;
   for (const auto& tile : outcome->tiles) {
     auto before = layer->mirror->tile(tile.address);
@@ -334,6 +344,7 @@ void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outc
 void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
   busy_ = true;
   auto item = std::make_shared<Waiting>(std::move(taken));
+  item->trace.started = EditTrace::Clock::now();
   auto done = then(
       [this, item](Result<ComputedEdit> computed) { upload_computed(item, std::move(computed)); });
   std::vector<query::LayerView> layers;
@@ -355,6 +366,7 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
       question = std::make_shared<Question>(author.user, limits_of(author.role), nullptr);
     question->skip_turns();
     const Question::Scope scope(question);
+    const TraceScope traced(item->trace.id);
     try {
       question->check();
       done(compute_edit(item->request, meta,
@@ -375,6 +387,8 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
 void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
                                    Result<ComputedEdit> computed) {
   busy_ = false;
+  const TraceScope scope(item->trace.id);
+  item->trace.computed = EditTrace::Clock::now();
   if (!computed) return refuse(*item, computed.error());
   if (closed_) return refuse(*item, *closed_);
   LayerState* layer = host_->find_layer(item->request.layer_id);
@@ -396,6 +410,7 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
 
 void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
                                      const Result<void>& uploaded) {
+  const TraceScope scope(item.trace.id);
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer)
@@ -417,6 +432,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   const auto map = parts_.maps->get(layer.layer.resolution);
   const Model& model = host_->pipeline_model();
   const std::int64_t sequence = ++sequence_;
+  item.trace.painted = EditTrace::Clock::now();
 
   store::JournalEntry entry;
   const bool is_provisional = waits_for_review(layer.layer, item.request);
@@ -468,6 +484,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   entry.sequence = sequence;
   entry.epoch = parts_.epoch;
   entry.id = item.request.id;
+  entry.trace = item.trace.id;
   entry.user = item.request.author.user;
   entry.stroke = stroke ? stroke->stroke : item.request.id;
   entry.op = op_name(item.request);
@@ -491,11 +508,12 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   if (item.applied) item.applied(answer);
 
   pending_.push_back({event, std::move(computed.changes), std::move(provisional_before),
-                      sequence_before, std::move(item.saved), false});
+                      sequence_before, std::move(item.saved), item.trace, false});
   if (failure_) {
     pending_.back().answered = true;
     return;
   }
+  pending_.back().trace.submitted = EditTrace::Clock::now();
   const bool taken = parts_.writer.submit(
       std::move(entry),
       then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
@@ -550,6 +568,7 @@ void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
   Pending pending = std::move(*found);
   pending_.erase(found);
   durable_ = sequence;
+  report(pending, nullptr);
   if (host_) host_->edit_saved(pending.event);
   answer(pending.event.id, pending.saved, pending.event.answer);
 }
@@ -591,7 +610,10 @@ void EditPipeline::roll_back_when_answered() {
   log::warning("undid " + std::to_string(events.size()) +
                " edits that could not be saved: " + why.title + ": " + why.detail);
   if (!closed_) host_->edits_unsaved(events, why);
-  for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
+  for (auto& pending : taken_back) {
+    report(pending, &why);
+    answer(pending.event.id, pending.saved, tl::unexpected(why));
+  }
 }
 
 // Writes the content of the mirrors to the GPU where it may differ. Writes empty tiles first,
@@ -645,10 +667,18 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
 }
 
 void EditPipeline::refuse(Waiting& item, const Error& why) {
-  if (item.work)
-    item.work(tl::unexpected(why));
-  else
-    answer(item.request.id, item.saved, tl::unexpected(why));
+  if (item.work) return item.work(tl::unexpected(why));
+  report_edit(item.trace,
+              {parts_.model_id, item.request.layer_id, op_name(item.request),
+               std::holds_alternative<StrokeEdit>(item.request.edit)},
+              &why, parts_.timings, parts_.slow_after);
+  answer(item.request.id, item.saved, tl::unexpected(why));
+}
+
+void EditPipeline::report(const Pending& pending, const Error* why) {
+  report_edit(pending.trace,
+              {parts_.model_id, pending.event.layer_id, pending.event.op, pending.event.is_stroke},
+              why, parts_.timings, parts_.slow_after);
 }
 
 void EditPipeline::refuse_waiting(const Error& why) {

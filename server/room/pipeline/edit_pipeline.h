@@ -3,6 +3,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <map>
@@ -18,6 +19,7 @@
 #include "room/edits.h"
 #include "room/listener.h"
 #include "room/pipeline/computed_edit.h"
+#include "room/pipeline/edit_trace.h"
 #include "room/pipeline/layer_state.h"
 #include "room/pipeline/strand.h"
 #include "room/pipeline/tile_changes.h"
@@ -84,6 +86,9 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     std::shared_ptr<SurfaceLookup> surface;
     const MemoryLedger& memory;
     std::int64_t epoch;  // of the claim of the model (store/nodes/nodes.h)
+    ModelId model_id;
+    EditTimings& timings;
+    std::chrono::milliseconds slow_after;  // see report_edit
   };
   EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence);
 
@@ -133,6 +138,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     enum class Lookup { none, requested, is_new } lookup = Lookup::none;
     // Holds the mirror while the GPU is ahead of it.
     std::shared_ptr<const void> hold = {};
+    EditTrace trace = {};
   };
   // An applied edit that is not yet in the journal, with the data for a rollback.
   struct Pending {
@@ -141,6 +147,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     TileMap provisional;  // tiles of the texels that waited for review before the edit
     std::int64_t layer_sequence_before = 0;
     Saved saved;
+    EditTrace trace;
     bool answered = false;
   };
 
@@ -168,6 +175,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   bool repair();  // returns false if the GPU is up to date
   void repaired(const std::optional<Error>& failure);
   void refuse(Waiting& item, const Error& why);
+  void report(const Pending& pending, const Error* why);
   void answer(const Uuid& id, const Saved& saved, const Result<EditAnswer>& result);
 
   // Returns a callback. It passes its argument to `handler` and then calls `step`, both on the

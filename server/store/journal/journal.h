@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/ids.h"
+#include "core/trace.h"
 #include "core/uuid.h"
 #include "domain/layers/review.h"
 #include "domain/layers/tile.h"
@@ -62,6 +63,7 @@ struct JournalEntry {
     Review becomes = Review::pending;
   };
   std::optional<Reviewed> reviewed;  // the decision that the entry makes
+  TraceId trace{};                   // of the edit, for the log; not stored
 };
 
 // A row of the history of a layer (GET …/edits), which is sorted newest first.

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/log.h"
+#include "core/trace.h"
 #include "store/journal/journal_commit.h"
 #include "store/store_impl.h"
 
@@ -68,6 +69,9 @@ struct JournalWriter::Impl {
   bool closing = false;
   bool failing = false;  // the last commit failed and is being retried
 
+  Histogram commit_times;
+  std::atomic<std::uint64_t> failed_commits{0};
+
   // Only the thread of the writer uses these members.
   std::optional<PgConnection> connection;
   std::thread thread;
@@ -96,6 +100,7 @@ struct JournalWriter::Impl {
   void answer_front(std::deque<WaitingEntry>& group, const Result<void>& result) {
     std::size_t bytes = 0;
     {
+      const TraceScope scope(group.front().entry.trace);
       WaitingEntry waiting = std::move(group.front());
       group.pop_front();
       waiting.done(result);
@@ -168,8 +173,29 @@ struct JournalWriter::Impl {
   tl::expected<void, CommitFailure> attempt(std::deque<WaitingEntry>& group, bool retry) {
     auto to = STRATA_TRY(connected());
     if (retry) STRATA_TRY(skip_saved(*to, group));
-    return group.empty() ? tl::expected<void, CommitFailure>{}
-                         : commit_entries(*to, pointers(group));
+    return group.empty() ? tl::expected<void, CommitFailure>{} : commit(*to, pointers(group));
+  }
+
+  // Commits the entries, and counts the time of the transaction. Log lines about the transaction
+  // have the trace of its first entry.
+  tl::expected<void, CommitFailure> commit(PgConnection& to,
+                                           std::span<const JournalEntry* const> entries) {
+    const TraceScope scope(entries.front()->trace);
+    const auto begin = Clock::now();
+    auto committed = commit_entries(to, entries);
+    const auto duration = Clock::now() - begin;
+    if (committed)
+      commit_times.add(duration);
+    else
+      failed_commits.fetch_add(1, std::memory_order_relaxed);
+    if (log::is_enabled(log::Level::debug)) {
+      const log::Field fields[] = {
+          {"entries", static_cast<std::int64_t>(entries.size())},
+          {"commit_ms", std::chrono::duration<double, std::milli>(duration).count()}};
+      log::write(log::Level::debug, committed ? "journal: committed" : "journal: a commit failed",
+                 fields);
+    }
+    return committed;
   }
 
   // Commits each entry in a separate transaction, because one entry of the group can never be
@@ -195,7 +221,7 @@ struct JournalWriter::Impl {
         continue;
       }
       auto to = STRATA_TRY(connected());
-      auto committed = commit_entries(*to, std::span(&entry, 1));
+      auto committed = commit(*to, std::span(&entry, 1));
       if (!committed && committed.error().transient) return committed;
       bool saved = committed.has_value();
       if (!saved) {
@@ -262,6 +288,14 @@ bool JournalWriter::accepting() const {
   return !impl_->closing && !impl_->failing &&
          impl_->waiting_bytes < impl_->options.max_waiting_bytes;
 }
+
+std::size_t JournalWriter::waiting() const {
+  std::lock_guard lock(impl_->mutex);
+  return static_cast<std::size_t>(impl_->submitted - impl_->answered);
+}
+
+const Histogram& JournalWriter::commit_times() const { return impl_->commit_times; }
+std::uint64_t JournalWriter::failed_commits() const { return impl_->failed_commits; }
 
 void JournalWriter::drain() {
   std::unique_lock lock(impl_->mutex);

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
 
 #include "core/error.h"
+#include "core/histogram.h"
 #include "store/journal/journal.h"
 #include "store/pg/pg_limits.h"
 
@@ -36,6 +39,11 @@ class JournalWriter {
   // `accepting()` returns the same in advance.
   bool submit(JournalEntry entry, Done done);
   bool accepting() const;
+  // For the metrics of the server: entries without a result, the times of successful transactions,
+  // and the number of failed ones.
+  std::size_t waiting() const;
+  const Histogram& commit_times() const;
+  std::uint64_t failed_commits() const;
   void drain();  // waits until all earlier entries are done and new entries are accepted
 
   // Sets an earlier time for the objects that were made in a project since `since`: comments,

@@ -815,6 +815,8 @@ export interface StrokeBegin {
   through?: boolean;
   depth_bias?: DepthBias;
   max_angle_deg?: SlantLimit;
+  /** The trace of the stroke (W3C Trace Context), for the log of the server. The server ignores a malformed value. Default: a new trace. */
+  traceparent?: string;
 }
 
 /** Next batch of points of a stroke. The brush moves from the last point of the previous batch to the first point of this one. */
@@ -841,6 +843,8 @@ export interface EditRequest {
   id: string;
   layer: LayerRef;
   edit: Edit;
+  /** The trace of the edit (W3C Trace Context), for the log of the server. The server ignores a malformed value. Default: a new trace. */
+  traceparent?: string;
 }
 
 /** Undo the caller's last stroke on the layer. */
@@ -848,6 +852,8 @@ export interface Undo {
   op: "undo";
   id: string;
   layer: LayerRef;
+  /** The trace of the edit (W3C Trace Context), for the log of the server. The server ignores a malformed value. Default: a new trace. */
+  traceparent?: string;
 }
 
 /** Redo the edit that the caller last undid. */
@@ -855,6 +861,8 @@ export interface Redo {
   op: "redo";
   id: string;
   layer: LayerRef;
+  /** The trace of the edit (W3C Trace Context), for the log of the server. The server ignores a malformed value. Default: a new trace. */
+  traceparent?: string;
 }
 
 /** The user starts or stops editing a record. Informs the other participants that this user is editing the record (`record.editors`). This is not a lock: the version of the record protects its data. Editing ends when the connection is closed. If another user is already editing the record, the message has no effect, unless `take_over` is true. */
@@ -1200,6 +1208,25 @@ export interface Problem {
   instance?: string;
   /** The errors in each line, if the request contains many records. */
   rows?: RecordsReport;
+}
+
+/** Level of the log. The server writes lines of this level and of the levels after it. */
+export type LogLevel = "debug" | "info" | "warning" | "error";
+
+/** Module of the server. A folder of the server's source. `other` is all other code. */
+export type LogModule = "app" | "cli" | "core" | "domain" | "expression" | "figure" | "gl" | "jobs" | "media" | "mesh" | "net" | "query" | "render" | "room" | "store" | "stream" | "vocabulary" | "other";
+
+/** Log level of a module. */
+export interface ModuleLogLevel {
+  module: LogModule;
+  level: LogLevel;
+}
+
+/** Levels of the server's log. */
+export interface LogLevels {
+  default: LogLevel;
+  /** The modules with their own level. Each module is listed at most once. */
+  modules: ModuleLogLevel[];
 }
 
 /** Sign-in. With a user name and password, or with the secret of an owner link. */

@@ -491,6 +491,74 @@ void read(const nlohmann::json& json, SnapshotEventEvent& value) {
 
 nlohmann::json to_json(const SnapshotEventEvent& value) { return name(value); }
 
+std::string_view name(LogLevel value) {
+  switch (value) {
+    case LogLevel::debug: return "debug";
+    case LogLevel::info: return "info";
+    case LogLevel::warning: return "warning";
+    case LogLevel::error: return "error";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, LogLevel& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "debug") value = LogLevel::debug;
+  if (text == "info") value = LogLevel::info;
+  if (text == "warning") value = LogLevel::warning;
+  if (text == "error") value = LogLevel::error;
+}
+
+nlohmann::json to_json(const LogLevel& value) { return name(value); }
+
+std::string_view name(LogModule value) {
+  switch (value) {
+    case LogModule::app: return "app";
+    case LogModule::cli: return "cli";
+    case LogModule::core: return "core";
+    case LogModule::domain: return "domain";
+    case LogModule::expression: return "expression";
+    case LogModule::figure: return "figure";
+    case LogModule::gl: return "gl";
+    case LogModule::jobs: return "jobs";
+    case LogModule::media: return "media";
+    case LogModule::mesh: return "mesh";
+    case LogModule::net: return "net";
+    case LogModule::query: return "query";
+    case LogModule::render: return "render";
+    case LogModule::room: return "room";
+    case LogModule::store: return "store";
+    case LogModule::stream: return "stream";
+    case LogModule::vocabulary: return "vocabulary";
+    case LogModule::other: return "other";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, LogModule& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "app") value = LogModule::app;
+  if (text == "cli") value = LogModule::cli;
+  if (text == "core") value = LogModule::core;
+  if (text == "domain") value = LogModule::domain;
+  if (text == "expression") value = LogModule::expression;
+  if (text == "figure") value = LogModule::figure;
+  if (text == "gl") value = LogModule::gl;
+  if (text == "jobs") value = LogModule::jobs;
+  if (text == "media") value = LogModule::media;
+  if (text == "mesh") value = LogModule::mesh;
+  if (text == "net") value = LogModule::net;
+  if (text == "query") value = LogModule::query;
+  if (text == "render") value = LogModule::render;
+  if (text == "room") value = LogModule::room;
+  if (text == "store") value = LogModule::store;
+  if (text == "stream") value = LogModule::stream;
+  if (text == "vocabulary") value = LogModule::vocabulary;
+  if (text == "other") value = LogModule::other;
+}
+
+nlohmann::json to_json(const LogModule& value) { return name(value); }
+
 std::string_view name(PersonState value) {
   switch (value) {
     case PersonState::invited: return "invited";
@@ -1435,6 +1503,7 @@ void read(const nlohmann::json& json, StrokeBegin& value) {
   read_optional_member(json, "through", value.through);
   read_optional_member(json, "depth_bias", value.depth_bias);
   read_optional_member(json, "max_angle_deg", value.max_angle_deg);
+  read_optional_member(json, "traceparent", value.traceparent);
 }
 
 nlohmann::json to_json(const StrokeBegin& value) {
@@ -1452,6 +1521,7 @@ nlohmann::json to_json(const StrokeBegin& value) {
   write_member(json, "through", value.through);
   write_optional_member(json, "depth_bias", value.depth_bias);
   write_optional_member(json, "max_angle_deg", value.max_angle_deg);
+  write_optional_member(json, "traceparent", value.traceparent);
   return json;
 }
 
@@ -1496,6 +1566,7 @@ void read(const nlohmann::json& json, EditRequest& value) {
   read_member(json, "id", value.id);
   read_member(json, "layer", value.layer);
   read_member(json, "edit", value.edit);
+  read_optional_member(json, "traceparent", value.traceparent);
 }
 
 nlohmann::json to_json(const EditRequest& value) {
@@ -1504,6 +1575,7 @@ nlohmann::json to_json(const EditRequest& value) {
   write_member(json, "id", value.id);
   write_member(json, "layer", value.layer);
   write_member(json, "edit", value.edit);
+  write_optional_member(json, "traceparent", value.traceparent);
   return json;
 }
 
@@ -1515,6 +1587,7 @@ Result<void> check(const EditRequest& value, const std::string& field) {
 void read(const nlohmann::json& json, Undo& value) {
   read_member(json, "id", value.id);
   read_member(json, "layer", value.layer);
+  read_optional_member(json, "traceparent", value.traceparent);
 }
 
 nlohmann::json to_json(const Undo& value) {
@@ -1522,12 +1595,14 @@ nlohmann::json to_json(const Undo& value) {
   json["op"] = "undo";
   write_member(json, "id", value.id);
   write_member(json, "layer", value.layer);
+  write_optional_member(json, "traceparent", value.traceparent);
   return json;
 }
 
 void read(const nlohmann::json& json, Redo& value) {
   read_member(json, "id", value.id);
   read_member(json, "layer", value.layer);
+  read_optional_member(json, "traceparent", value.traceparent);
 }
 
 nlohmann::json to_json(const Redo& value) {
@@ -1535,6 +1610,7 @@ nlohmann::json to_json(const Redo& value) {
   json["op"] = "redo";
   write_member(json, "id", value.id);
   write_member(json, "layer", value.layer);
+  write_optional_member(json, "traceparent", value.traceparent);
   return json;
 }
 
@@ -2037,6 +2113,30 @@ nlohmann::json to_json(const ProblemMessage& value) {
   write_optional_member(json, "length", value.length);
   write_optional_member(json, "suggestions", value.suggestions);
   write_optional_member(json, "reason", value.reason);
+  return json;
+}
+
+void read(const nlohmann::json& json, ModuleLogLevel& value) {
+  read_member(json, "module", value.module);
+  read_member(json, "level", value.level);
+}
+
+nlohmann::json to_json(const ModuleLogLevel& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "module", value.module);
+  write_member(json, "level", value.level);
+  return json;
+}
+
+void read(const nlohmann::json& json, LogLevels& value) {
+  read_member(json, "default", value.default_value);
+  read_member(json, "modules", value.modules);
+}
+
+nlohmann::json to_json(const LogLevels& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "default", value.default_value);
+  write_member(json, "modules", value.modules);
   return json;
 }
 

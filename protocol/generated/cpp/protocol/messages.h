@@ -156,6 +156,10 @@ enum class Schema {
   Picked,
   ProblemMessage,
   Problem,
+  LogLevel,
+  LogModule,
+  ModuleLogLevel,
+  LogLevels,
   Login,
   Me,
   PasswordChange,
@@ -356,7 +360,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 330;
+constexpr int kSchemaCount = 334;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -969,6 +973,9 @@ struct StrokeBegin {
   bool through = false;
   std::optional<double> depth_bias;
   std::optional<double> max_angle_deg;
+  // The trace of the stroke (W3C Trace Context), for the log of the server. The server ignores a
+  // malformed value. Default: a new trace.
+  std::optional<std::string> traceparent;
   bool operator==(const StrokeBegin&) const = default;
 };
 void read(const nlohmann::json& json, StrokeBegin& value);
@@ -1010,6 +1017,9 @@ struct EditRequest {
   Uuid id;
   LayerRef layer;
   Edit edit;
+  // The trace of the edit (W3C Trace Context), for the log of the server. The server ignores a
+  // malformed value. Default: a new trace.
+  std::optional<std::string> traceparent;
   bool operator==(const EditRequest&) const = default;
 };
 void read(const nlohmann::json& json, EditRequest& value);
@@ -1023,6 +1033,9 @@ struct Undo {
   static constexpr std::string_view kOp = "undo";
   Uuid id;
   LayerRef layer;
+  // The trace of the edit (W3C Trace Context), for the log of the server. The server ignores a
+  // malformed value. Default: a new trace.
+  std::optional<std::string> traceparent;
   bool operator==(const Undo&) const = default;
 };
 void read(const nlohmann::json& json, Undo& value);
@@ -1035,6 +1048,9 @@ struct Redo {
   static constexpr std::string_view kOp = "redo";
   Uuid id;
   LayerRef layer;
+  // The trace of the edit (W3C Trace Context), for the log of the server. The server ignores a
+  // malformed value. Default: a new trace.
+  std::optional<std::string> traceparent;
   bool operator==(const Redo&) const = default;
 };
 void read(const nlohmann::json& json, Redo& value);
@@ -1508,6 +1524,41 @@ void read(const nlohmann::json& json, ProblemMessage& value);
 nlohmann::json to_json(const ProblemMessage& value);
 template <>
 inline constexpr Schema kSchemaOf<ProblemMessage> = Schema::ProblemMessage;
+
+// Level of the log. The server writes lines of this level and of the levels after it.
+enum class LogLevel { debug, info, warning, error };
+std::string_view name(LogLevel value);
+void read(const nlohmann::json& json, LogLevel& value);
+nlohmann::json to_json(const LogLevel& value);
+
+// Module of the server. A folder of the server's source. `other` is all other code.
+enum class LogModule { app, cli, core, domain, expression, figure, gl, jobs, media, mesh, net, query, render, room, store, stream, vocabulary, other };
+std::string_view name(LogModule value);
+void read(const nlohmann::json& json, LogModule& value);
+nlohmann::json to_json(const LogModule& value);
+
+// Log level of a module.
+struct ModuleLogLevel {
+  LogModule module{};
+  LogLevel level{};
+  bool operator==(const ModuleLogLevel&) const = default;
+};
+void read(const nlohmann::json& json, ModuleLogLevel& value);
+nlohmann::json to_json(const ModuleLogLevel& value);
+template <>
+inline constexpr Schema kSchemaOf<ModuleLogLevel> = Schema::ModuleLogLevel;
+
+// Levels of the server's log.
+struct LogLevels {
+  LogLevel default_value{};
+  // The modules with their own level. Each module is listed at most once.
+  std::vector<ModuleLogLevel> modules;
+  bool operator==(const LogLevels&) const = default;
+};
+void read(const nlohmann::json& json, LogLevels& value);
+nlohmann::json to_json(const LogLevels& value);
+template <>
+inline constexpr Schema kSchemaOf<LogLevels> = Schema::LogLevels;
 
 // Sign-in. With a user name and password, or with the secret of an owner link.
 struct Login {

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/ids.h"
+#include "core/trace.h"
+#include "room/edit_timings.h"
+
+namespace strata::room {
+
+// The trace of one edit, and the times when its stages began. A stage that has not begun has no
+// time.
+struct EditTrace {
+  using Clock = std::chrono::steady_clock;
+  using Time = std::optional<Clock::time_point>;
+
+  TraceId id;
+  Clock::time_point arrived = Clock::now();
+  Time started{};       // the end of the queue and of the look-up in the journal
+  Time computed{};      // only for edits that a worker computes
+  Time painted{};       // the texels are in the mirror
+  Time submitted{};     // to the journal
+  double paint_ms = 0;  // the part of the time on the GPU thread, without the wait for it
+};
+
+struct TracedEdit {
+  ModelId model_id = 0;
+  LayerId layer_id = 0;
+  std::string_view op;
+  bool is_stroke = false;
+};
+
+// Counts the stages of an edit that has ended, and writes one line with their times if the edit
+// took at least `slow_after` (0: no such limit), if the server caused its failure, or if the level
+// of the module `room` is debug. `why` is null if the edit was saved.
+void report_edit(const EditTrace& trace, const TracedEdit& edit, const Error* why,
+                 EditTimings& timings, std::chrono::milliseconds slow_after);
+
+}  // namespace strata::room
