@@ -33,6 +33,7 @@ namespace {
 
 constexpr int kMaxTrashDays = 36500;
 constexpr int kMaxTimeout_s = 3600;
+constexpr int kMaxSlow_ms = 3'600'000;
 
 struct ServeOptions {
   DataOptions data;
@@ -44,6 +45,9 @@ struct ServeOptions {
   net::Timeouts timeouts;
   int samples_at_rest = 16, smooth_samples = 0;
   bool debug = false;
+  log::Levels log_levels;
+  log::Format log_format = log::Format::text;
+  int slow_after_ms = 1000;
 };
 
 struct Address {
@@ -163,7 +167,39 @@ void add_timeout(CLI::App& command, const std::string& name, std::chrono::second
       ->default_str(std::to_string(timeout.count()));
 }
 
+void add_log_options(CLI::App& command, ServeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--log-level",
+          [&options](const std::string& text) { options.log_levels = *log::parse_levels(text); },
+          "Least level of the log, also for single modules, for example warning,store=debug")
+      ->envname("STRATA_LOG_LEVEL")
+      ->check([](const std::string& text) {
+        const auto levels = log::parse_levels(text);
+        return levels ? std::string() : levels.error().detail;
+      })
+      ->default_str("info");
+  command
+      .add_option_function<std::string>(
+          "--log-format",
+          [&options](const std::string& text) {
+            options.log_format = text == "json" ? log::Format::json : log::Format::text;
+          },
+          "Format of log lines: text or json")
+      ->envname("STRATA_LOG_FORMAT")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->default_str("text");
+  command
+      .add_option("--slow-after", options.slow_after_ms,
+                  "Milliseconds after which a request or edit is logged as slow; 0 logs none")
+      ->envname("STRATA_SLOW_AFTER")
+      ->check(CLI::Range(0, kMaxSlow_ms))
+      ->capture_default_str();
+}
+
 int run(ServeOptions options) {
+  log::set_format(options.log_format);
+  log::set_levels(options.log_levels);
   raise_descriptor_limit();
   auto address = parse_listen(options.listen);
   if (!address) return report(address.error());
@@ -209,6 +245,7 @@ int run(ServeOptions options) {
   room::RoomOptions room_options;
   room_options.memory_bytes = options.memory;
   if (node) room_options.node = node->id;
+  room_options.slow_after = std::chrono::milliseconds(options.slow_after_ms);
   room::Rooms rooms(store, **renderer, {renderer->get(), &encoder, options.samples_at_rest},
                     room_options);
   jobs::JobQueue jobs(&store.jobs(), room_options.node);
@@ -235,6 +272,7 @@ int run(ServeOptions options) {
   server_options.trash_days = options.trash_days;
   server_options.timeouts = options.timeouts;
   server_options.lease = lease.get();
+  server_options.slow_after = std::chrono::milliseconds(options.slow_after_ms);
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
@@ -352,6 +390,7 @@ Command add_serve(CLI::App& app) {
       ->envname("STRATA_SAMPLES_IN_MOTION")
       ->check(CLI::Range(0, render::kMaxSmoothSamples))
       ->capture_default_str();
+  add_log_options(*command, *options);
   command->add_flag("--gl-debug", options->debug,
                     "Log debug messages of the graphics driver (slow)");
   return [options] { return run(*options); };

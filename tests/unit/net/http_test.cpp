@@ -9,7 +9,6 @@
 
 #include "core/byte_budget.h"
 #include "core/uuid.h"
-#include "net/api/metrics.h"
 #include "net/api/node_redirect.h"
 #include "net/api/problems_page.h"
 #include "net/http/accept.h"
@@ -584,29 +583,6 @@ TEST(Moved, a_problem_has_the_address_of_the_node) {
   EXPECT_EQ(problem_response(moved_to("http://b")).header("Location"), "http://b");
   EXPECT_EQ(problem_response(moved_to({})).header("Location"), "");
   EXPECT_EQ(problem_response(moved_to({})).status, 307);
-}
-
-TEST(Metrics, text_names_every_counter_once) {
-  Metrics metrics;
-  metrics.count_request(204);
-  metrics.count_request(404);
-  metrics.count_request(404);
-  metrics.frames_sent = 7;
-  const std::string text = metrics_text(metrics, {2, 1024, 0});
-  EXPECT_NE(text.find("strata_http_requests_total{status=\"4xx\"} 2\n"), std::string::npos);
-  EXPECT_NE(text.find("strata_frames_sent_total 7\n"), std::string::npos);
-  EXPECT_NE(text.find("strata_open_rooms 2\n"), std::string::npos);
-  EXPECT_NE(text.find("strata_gpu_bytes 1024\n"), std::string::npos);
-  EXPECT_EQ(text.find("strata_node_lease_seconds"), std::string::npos);
-}
-
-TEST(Metrics, a_node_has_its_lease_and_the_models_that_moved) {
-  const Metrics metrics;
-  Gauges gauges;
-  gauges.node = NodeGauges{2.5, 3};
-  const std::string text = metrics_text(metrics, gauges);
-  EXPECT_NE(text.find("\nstrata_node_lease_seconds 2.5"), std::string::npos);
-  EXPECT_NE(text.find("\nstrata_models_moved_total 3\n"), std::string::npos);
 }
 
 }  // namespace
