@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/install_dirs.h"
 #include "cli/open_database.h"
+#include "cli/support_bundle.h"
 #include "render/renderer.h"
 #include "store/cluster/inspect.h"
 
@@ -15,25 +16,31 @@ namespace {
 
 constexpr double kGiB = 1024.0 * 1024 * 1024;
 
-// Prints one line per result, with advice after an arrow.
+// Prints one line per result, with advice after an arrow. Keeps the text for the support bundle.
 class Report {
  public:
   void good(const std::string& what, const std::string& value) { line("ok  ", what, value); }
   void warn(const std::string& what, const std::string& value, const std::string& advice) {
     line("warn", what, value);
-    std::cout << "      → " << advice << "\n";
+    print("      → " + advice);
   }
   void bad(const std::string& what, const std::string& value, const std::string& advice) {
     line("FAIL", what, value);
-    std::cout << "      → " << advice << "\n";
+    print("      → " + advice);
     failed_ = true;
   }
   bool failed() const { return failed_; }
+  const std::string& text() const { return text_; }
 
  private:
-  static void line(const char* mark, const std::string& what, const std::string& value) {
-    std::cout << mark << "  " << what << ": " << value << "\n";
+  void line(const char* mark, const std::string& what, const std::string& value) {
+    print(std::string(mark) + "  " + what + ": " + value);
   }
+  void print(const std::string& text) {
+    std::cout << text << "\n";
+    text_ += text + "\n";
+  }
+  std::string text_;
   bool failed_ = false;
 };
 
@@ -43,14 +50,17 @@ std::string gib(double bytes) {
   return text;
 }
 
-void check_gpu(Report& report) {
+// Returns what OpenGL says about itself.
+nlohmann::json check_gpu(Report& report) {
   render::RendererOptions options;
   options.shader_dir = install_dirs().shaders.string();
   auto renderer = render::Renderer::start(options);
-  if (!renderer)
-    return report.bad(
+  if (!renderer) {
+    report.bad(
         "Graphics", renderer.error().detail,
         "Install libegl1 and libgl1-mesa-dri (software), or the GPU vendor's driver with EGL support.");
+    return {{"problem", renderer.error().detail}};
+  }
   const auto info = (*renderer)->info();
   report.good("OpenGL vendor", info.vendor);
   report.good("OpenGL version", info.version);
@@ -67,6 +77,16 @@ void check_gpu(Report& report) {
   if (info.max_texture_size < 8192)
     report.warn("Layer resolution", "at most " + std::to_string(info.max_texture_size),
                 "Use layers of up to that resolution.");
+  return {{"vendor", info.vendor},
+          {"renderer", info.renderer},
+          {"version", info.version},
+          {"software", info.software},
+          {"paints_by", info.edit_path == render::EditPath::kernel ? "processor" : "GPU"},
+          {"memory_limit_bytes", (*renderer)->gpu_bytes_limit()},
+          {"max_texture_size", info.max_texture_size},
+          {"max_array_layers", info.max_array_layers},
+          {"max_texture_units", info.max_texture_units},
+          {"max_image_units", info.max_image_units}};
 }
 
 void check_schema(Report& report, const store::DatabaseState& state) {
@@ -139,13 +159,32 @@ Command add_doctor(CLI::App& app) {
   auto* command =
       app.add_subcommand("doctor", "Check graphics, PostgreSQL and the machine, and give advice");
   auto options = std::make_shared<DataOptions>();
+  auto support = std::make_shared<SupportOptions>();
   add_data_options(*command, *options);
-  return [options] {
+  auto* file = command->add_option(
+      "--support", support->file,
+      "Also write a zip file for a report of a problem, without secrets and names");
+  command
+      ->add_option("--log-file", support->log_files,
+                   "Log whose last lines the bundle contains (repeat for several)")
+      ->needs(file);
+  command
+      ->add_option("--listen", support->listen,
+                   "Address of the running server, HOST:PORT, for its metrics")
+      ->envname("STRATA_LISTEN")
+      ->capture_default_str();
+  return [options, support] {
     Report report;
-    check_gpu(report);
+    const nlohmann::json graphics = check_gpu(report);
     check_database(report, *options);
     check_machine(report, options->data);
     std::cout << std::flush;
+    if (!support->file.empty()) {
+      auto written = write_support_bundle(*options, *support, report.text(), graphics);
+      if (!written) return cli::report(written.error());
+      std::cout << "wrote " << support->file.string()
+                << "\nRead it before you send it: MANIFEST.txt lists its files." << std::endl;
+    }
     return report.failed() ? 1 : 0;
   };
 }

@@ -11,10 +11,10 @@ namespace {
 constexpr std::string_view kJobStates[] = {"queued", "running", "done", "failed", "cancelled"};
 
 // Writes the lines of one metric after another.
-class Writer {
+class MetricsWriter {
  public:
   // A rate is the difference of two sums, so a long-running server needs many digits.
-  Writer() { text_.precision(15); }
+  MetricsWriter() { text_.precision(15); }
   void head(std::string_view name, std::string_view type, std::string_view help) {
     text_ << "# HELP " << name << ' ' << help << "\n# TYPE " << name << ' ' << type << '\n';
   }
@@ -58,21 +58,23 @@ class Writer {
   std::ostringstream text_;
 };
 
-std::string label(std::string_view name, std::string_view value) {
+std::string metric_label(std::string_view name, std::string_view value) {
   return std::string(name) + "=\"" + std::string(value) + "\"";
 }
 
-void write_requests(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+void write_requests(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges) {
   out.head("strata_http_requests_total", "counter", "HTTP answers by class of status.");
   for (std::size_t i = 1; i < metrics.requests.size(); ++i)
-    out.value("strata_http_requests_total", "{" + label("status", std::to_string(i) + "xx") + "}",
+    out.value("strata_http_requests_total",
+              "{" + metric_label("status", std::to_string(i) + "xx") + "}",
               metrics.requests[i].load());
   out.head("strata_http_request_seconds", "histogram",
            "Time until the answer to a request is ready, without the transfer of its body.");
   out.histogram("strata_http_request_seconds", {}, metrics.request_times);
   out.head("strata_problems_total", "counter", "Problems that were sent to clients, by code.");
   for (std::size_t i = 0; i < metrics.problems.size(); ++i)
-    out.value("strata_problems_total", "{" + label("code", name(static_cast<ErrorCode>(i))) + "}",
+    out.value("strata_problems_total",
+              "{" + metric_label("code", name(static_cast<ErrorCode>(i))) + "}",
               metrics.problems[i].load());
   out.gauge("strata_open_connections", "TCP connections.", metrics.open_connections.load());
   out.gauge("strata_open_sockets", "WebSocket connections.", metrics.open_sockets.load());
@@ -92,7 +94,7 @@ void write_requests(Writer& out, const Metrics& metrics, const Gauges& gauges) {
               metrics.messages_refused.load());
 }
 
-void write_edits(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+void write_edits(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges) {
   out.counter("strata_edits_applied_total", "Edits that became visible.",
               metrics.edits.applied.load());
   out.counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits.saved.load());
@@ -102,10 +104,10 @@ void write_edits(Writer& out, const Metrics& metrics, const Gauges& gauges) {
               metrics.edits.refused.load());
   out.head("strata_edit_stage_seconds", "histogram", "Time of the stages of saved edits.");
   for (std::size_t i = 0; i < room::kEditStages.size(); ++i) {
-    const std::string stage = "," + label("stage", room::kEditStages[i]);
-    out.histogram("strata_edit_stage_seconds", label("kind", "stroke") + stage,
+    const std::string stage = "," + metric_label("stage", room::kEditStages[i]);
+    out.histogram("strata_edit_stage_seconds", metric_label("kind", "stroke") + stage,
                   gauges.edits.strokes[i]);
-    out.histogram("strata_edit_stage_seconds", label("kind", "other") + stage,
+    out.histogram("strata_edit_stage_seconds", metric_label("kind", "other") + stage,
                   gauges.edits.other_edits[i]);
   }
   out.head("strata_journal_commit_seconds", "histogram",
@@ -118,7 +120,7 @@ void write_edits(Writer& out, const Metrics& metrics, const Gauges& gauges) {
               gauges.journal_failed_commits);
 }
 
-void write_drawing(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+void write_drawing(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges) {
   out.counter("strata_frames_sent_total", "Encoded pictures sent to viewers.",
               metrics.frames_sent.load());
   out.counter("strata_frame_bytes_sent_total", "Bytes of the pictures.",
@@ -131,9 +133,9 @@ void write_drawing(Writer& out, const Metrics& metrics, const Gauges& gauges) {
             gauges.gpu_limit_bytes);
 }
 
-void write_machine(Writer& out, const Metrics& metrics, const Gauges& gauges) {
+void write_machine(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges) {
   out.head("strata_build_info", "gauge", "1, with the version of the server.");
-  out.value("strata_build_info", "{" + label("version", version()) + "}", 1);
+  out.value("strata_build_info", "{" + metric_label("version", version()) + "}", 1);
   out.gauge("strata_open_rooms", "Models in memory.", gauges.open_rooms);
   out.gauge("strata_memory_bytes", "Main memory that open models hold.", gauges.memory_bytes);
   out.gauge("strata_memory_limit_bytes", "Limit of main memory for open models (--memory).",
@@ -149,7 +151,7 @@ void write_machine(Writer& out, const Metrics& metrics, const Gauges& gauges) {
             gauges.database_ready);
   out.head("strata_jobs", "gauge", "Jobs by state. Of the ended jobs, only the newest count.");
   for (std::size_t i = 0; i < gauges.jobs.size(); ++i)
-    out.value("strata_jobs", "{" + label("state", kJobStates[i]) + "}", gauges.jobs[i]);
+    out.value("strata_jobs", "{" + metric_label("state", kJobStates[i]) + "}", gauges.jobs[i]);
   if (const auto end = metrics.certificate_end.load())
     out.gauge("strata_certificate_end_seconds",
               "End of the TLS certificate, in seconds since 1970.", end);
@@ -167,7 +169,7 @@ void write_node(Writer& out, const Gauges& gauges) {
 }  // namespace
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
-  Writer out;
+  MetricsWriter out;
   write_requests(out, metrics, gauges);
   write_edits(out, metrics, gauges);
   write_drawing(out, metrics, gauges);

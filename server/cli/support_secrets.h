@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+namespace strata::cli {
+
+// The secrets that a support bundle must not contain.
+struct KnownSecrets {
+  struct Secret {
+    std::string what;  // for the message: "the owner's token"
+    std::string text;
+  };
+  std::vector<Secret> texts;
+  std::unordered_set<std::string> hashes;  // SHA-256 of tokens and links, 32 bytes each
+
+  // Ignores an empty text.
+  void add(std::string what, std::string text);
+  // Returns what the first secret in the text is. A short secret counts only as a whole word.
+  std::optional<std::string> find_in(std::string_view text) const;
+};
+
+// Replaces what has the form of a secret: tokens, links to sign in, links of kiosks, passwords in
+// addresses and in connection strings.
+std::string redacted(std::string_view text);
+
+// Replaces names of people by pseudonyms, the same name always by the same one.
+class Pseudonyms {
+ public:
+  // Names of the server's own accounts, such as owner, are kept.
+  explicit Pseudonyms(const std::vector<std::string>& names);
+  // Replaces whole words only, in upper and lower case. Also replaces the folders of users.
+  std::string replaced_in(std::string_view text) const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> pseudonyms_;  // lower-case name; longest first
+};
+
+}  // namespace strata::cli
