@@ -29,6 +29,7 @@ const howTo = {
     "install",
     "operate-a-site",
     "run-several-nodes",
+    "watch-the-server",
     "back-up-and-restore",
     "manage-people",
     "limit-visibility",
