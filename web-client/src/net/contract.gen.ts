@@ -300,6 +300,24 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/log-levels": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Get the levels of the server's log */
+        get: operations["get_log_levels"];
+        /** Set the levels of the server's log */
+        put: operations["set_log_levels"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/login": {
         parameters: {
             query?: never;
@@ -2612,6 +2630,18 @@ export interface components {
         ListedTerm: wire.ListedTerm;
         /** Sign-in */
         Login: wire.Login;
+        /**
+         * Level of the log
+         * @enum {string}
+         */
+        LogLevel: wire.LogLevel;
+        /** Levels of the server's log */
+        LogLevels: wire.LogLevels;
+        /**
+         * Module of the server
+         * @enum {string}
+         */
+        LogModule: wire.LogModule;
         /** Surface image of a model */
         Look: wire.Look;
         /** Surface images of a model, in their order */
@@ -2654,6 +2684,8 @@ export interface components {
         ModelList: wire.ModelList;
         /** Changes to a model's metadata */
         ModelPatch: wire.ModelPatch;
+        /** Log level of a module */
+        ModuleLogLevel: wire.ModuleLogLevel;
         /** Model of a node */
         NodeModel: wire.NodeModel;
         /** Open edges: loops of edges that belong to only one triangle */
@@ -3864,6 +3896,50 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Kiosk"];
+                };
+            };
+        };
+    };
+    get_log_levels: {
+        parameters: {
+            query?: never;
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LogLevels"];
+                };
+            };
+        };
+    };
+    set_log_levels: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LogLevels"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LogLevels"];
                 };
             };
         };
