@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -20,6 +21,7 @@ struct Values {
   Metrics metrics;
   room::EditTimings edits;
   Histogram frames, commits;
+  std::optional<NodeGauges> node = NodeGauges{2.5, 3};
 
   std::string text(bool has_disk = true) {
     Gauges gauges{edits, frames, commits};
@@ -28,6 +30,7 @@ struct Values {
     gauges.gpu_ready = true;
     gauges.jobs = {0, 1, 5, 2, 0};
     if (has_disk) gauges.disk_bytes = 1u << 30;
+    gauges.node = node;
     return metrics_text(metrics, gauges);
   }
 };
@@ -108,6 +111,14 @@ TEST(Metrics, a_value_that_does_not_exist_is_left_out) {
   EXPECT_EQ(values.text().find("strata_certificate_end_seconds"), std::string::npos);
   values.metrics.certificate_end = 1'900'000'000;
   EXPECT_TRUE(has_line(values.text(), "strata_certificate_end_seconds 1900000000"));
+}
+
+TEST(Metrics, only_a_node_has_a_lease_and_models_that_moved) {
+  Values values;
+  EXPECT_TRUE(has_line(values.text(), "strata_node_lease_seconds 2.5"));
+  EXPECT_TRUE(has_line(values.text(), "strata_models_moved_total 3"));
+  values.node.reset();
+  EXPECT_EQ(values.text().find("strata_node"), std::string::npos);
 }
 
 TEST(Metrics, the_dashboard_and_the_alerts_use_only_metrics_that_exist) {
