@@ -26,6 +26,34 @@ CREATE FUNCTION analysis.wkt(places jsonb, of_model bigint DEFAULT NULL::bigint)
   ) one
 $$;
 
+CREATE FUNCTION public.account_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF TG_OP = 'INSERT' THEN
+    PERFORM audit('account_created', 'person', NEW.id, NEW.name, NULL, jsonb_build_object('role', NEW.role));
+    RETURN NULL;
+  END IF;
+  IF NEW.deleted IS NOT NULL AND OLD.deleted IS NULL THEN
+    PERFORM audit('account_deleted', 'person', OLD.id, OLD.name, NULL, jsonb_build_object('role', OLD.role));
+    RETURN NULL;
+  END IF;
+  IF NEW.role <> OLD.role THEN
+    PERFORM audit('role_changed', 'person', NEW.id, NEW.name, NULL, jsonb_build_object('before', OLD.role, 'after', NEW.role));
+  END IF;
+  IF (NEW.disabled IS NULL) <> (OLD.disabled IS NULL) THEN
+    PERFORM audit(CASE WHEN NEW.disabled IS NULL THEN 'account_enabled' ELSE 'account_disabled' END, 'person', NEW.id, NEW.name, NULL);
+  END IF;
+  IF NEW.password IS DISTINCT FROM OLD.password THEN
+    PERFORM audit('password_changed', 'person', NEW.id, NEW.name, NULL);
+  END IF;
+  IF NEW.name <> OLD.name OR NEW.full_name <> OLD.full_name THEN
+    PERFORM audit('account_renamed', 'person', NEW.id, NEW.name, NULL,
+      jsonb_build_object('name', CASE WHEN NEW.name = OLD.name THEN 'full_name' ELSE 'user' END));
+  END IF;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.activity_author() RETURNS text
     LANGUAGE sql STABLE
     AS $$ SELECT coalesce(current_setting('strata.user', true), '') $$;
@@ -158,6 +186,94 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.audit(of_action text, of_kind text, of_id bigint, of_subject text, of_project bigint, of_details jsonb DEFAULT '{}'::jsonb) RETURNS void
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  actor text := coalesce(nullif(current_setting('strata.actor', true), ''), activity_author());
+  kind text := coalesce(nullif(current_setting('strata.actor_kind', true), ''), CASE WHEN actor = '' THEN 'server' ELSE 'person' END);
+BEGIN
+  INSERT INTO audit_log (actor_kind, actor, person_id, address, action, subject_kind, subject_id, subject, project_id, details)
+  VALUES (kind, audit_text(actor, 255), (SELECT u.id FROM users u WHERE u.name = actor AND u.deleted IS NULL),
+    audit_text(current_setting('strata.address', true), 100), of_action, of_kind, of_id, audit_text(of_subject, 255), of_project,
+    jsonb_strip_nulls(of_details));
+END $$;
+
+CREATE FUNCTION public.audit_failed_sign_in(tried text, way text) RETURNS void
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  origin text := audit_text(current_setting('strata.address', true), 100);
+  tried_name text := audit_text(tried, 255);
+  minute timestamptz := date_trunc('minute', clock_timestamp());
+BEGIN
+  -- One transaction at a time for each address, so that two attempts do not make two rows.
+  PERFORM pg_advisory_xact_lock(hashtextextended('strata.audit ' || origin, 0));
+  IF NOT EXISTS (SELECT 1 FROM audit_log l WHERE l.action = 'sign_in_failed' AND l.address = origin AND l.time >= minute AND l.actor = tried_name)
+    AND (SELECT count(*) FROM audit_log l WHERE l.action = 'sign_in_failed' AND l.address = origin AND l.time >= minute) >= 20 THEN
+    tried_name := '';
+  END IF;
+  UPDATE audit_log l SET count = l.count + 1 WHERE l.id = (SELECT f.id FROM audit_log f WHERE f.action = 'sign_in_failed'
+    AND f.address = origin AND f.time >= minute AND f.actor = tried_name AND f.details ->> 'method' = way ORDER BY f.id LIMIT 1);
+  IF NOT FOUND THEN
+    INSERT INTO audit_log (actor_kind, actor, person_id, address, action, subject_kind, subject_id, subject, details)
+    VALUES (CASE WHEN way = 'link' THEN 'link' ELSE 'person' END, tried_name,
+      (SELECT u.id FROM users u WHERE lower(u.name) = lower(tried_name) AND u.deleted IS NULL), origin, 'sign_in_failed', 'session', NULL, '',
+      jsonb_build_object('method', way));
+  END IF;
+END $$;
+
+CREATE FUNCTION public.audit_is_kept() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF TG_OP = 'UPDATE' THEN
+    IF OLD.action = 'sign_in_failed' AND NEW.count = OLD.count + 1 AND OLD.time > clock_timestamp() - interval '2 minutes'
+      AND to_jsonb(NEW) - 'count' = to_jsonb(OLD) - 'count' THEN
+      RETURN NEW;
+    END IF;
+  ELSIF TG_OP = 'DELETE' THEN
+    -- `audit_purge` sets the limit. A row of the last day can never be deleted.
+    IF OLD.time < least(nullif(current_setting('strata.audit_limit', true), '')::timestamptz, clock_timestamp() - interval '1 day')
+      AND coalesce(current_setting('strata.audit_limit', true), '') <> '' THEN
+      RETURN OLD;
+    END IF;
+  END IF;
+  RAISE EXCEPTION 'rows of the audit log cannot be changed or deleted' USING ERRCODE = 'insufficient_privilege';
+END $$;
+
+CREATE FUNCTION public.audit_purge(days integer, most integer) RETURNS bigint
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  older_than timestamptz := date_trunc('day', clock_timestamp()) - days * interval '1 day';
+  deleted bigint;
+BEGIN
+  IF days < 1 THEN
+    RAISE EXCEPTION 'the audit log keeps its rows for at least one day' USING ERRCODE = 'invalid_parameter_value';
+  END IF;
+  PERFORM set_config('strata.audit_limit', older_than::text, true);
+  DELETE FROM audit_log l WHERE l.id IN (SELECT o.id FROM audit_log o WHERE o.time < older_than ORDER BY o.time, o.id LIMIT most);
+  GET DIAGNOSTICS deleted = ROW_COUNT;
+  PERFORM set_config('strata.audit_limit', '', true);
+  IF deleted > 0 THEN
+    PERFORM audit('audit_purged', 'audit', NULL, '', NULL, jsonb_build_object('rows', deleted, 'before', older_than, 'days', days));
+  END IF;
+  RETURN deleted;
+END $$;
+
+CREATE FUNCTION public.audit_text(given text, longest integer) RETURNS text
+    LANGUAGE plpgsql IMMUTABLE
+    AS $$
+DECLARE
+  short text := left(coalesce(given, ''), longest);
+BEGIN
+  WHILE octet_length(short) > longest LOOP
+    short := left(short, length(short) - greatest((octet_length(short) - longest) / 4, 1));
+  END LOOP;
+  RETURN short;
+END $$;
+
 CREATE FUNCTION public.bin_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -190,6 +306,26 @@ CREATE FUNCTION public.changed_columns(before jsonb, after jsonb) RETURNS text[]
     AND a.key NOT IN ('version', 'sequence', 'computed_sequence', 'summed', 'bounds_min', 'bounds_max', 'area')
 $$;
 
+CREATE FUNCTION public.column_deletion_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM audit(CASE WHEN NEW.hidden THEN 'deletion' ELSE 'restored' END, 'column', NEW.id, NEW.properties ->> 'name', t.project_id,
+    jsonb_build_object('table', t.id)) FROM record_tables t WHERE t.id = NEW.table_id;
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.comment_deletion_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF OLD.deleted IS NULL AND coalesce(nullif(current_setting('strata.actor', true), ''), activity_author()) <> '' THEN
+    PERFORM audit('deletion', 'comment', OLD.id, '', m.project_id, jsonb_build_object('by', OLD.user_name))
+      FROM all_models m WHERE m.id = OLD.model_id AND NOT m.erasing;
+  END IF;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.comment_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -216,6 +352,28 @@ BEGIN
     line.op := 'reopened';
   END IF;
   PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.deletion_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  thing jsonb := to_jsonb(OLD);
+  of_project bigint := CASE WHEN TG_TABLE_NAME = 'projects' THEN OLD.id ELSE (thing ->> 'project_id')::bigint END;
+BEGIN
+  IF coalesce(nullif(current_setting('strata.actor', true), ''), activity_author()) = '' OR coalesce((thing ->> 'erasing')::boolean, false) THEN
+    RETURN NULL;
+  END IF;
+  IF thing ? 'model_id' THEN
+    SELECT m.project_id INTO of_project FROM all_models m WHERE m.id = (thing ->> 'model_id')::bigint AND NOT m.erasing;
+    IF NOT FOUND THEN
+      RETURN NULL;
+    END IF;
+  ELSIF TG_TABLE_NAME <> 'projects' AND of_project IS NOT NULL AND NOT EXISTS (SELECT 1 FROM projects p WHERE p.id = of_project) THEN
+    RETURN NULL;
+  END IF;
+  PERFORM audit('deletion', TG_ARGV[0], OLD.id, coalesce(thing ->> 'name', ''), of_project);
   RETURN NULL;
 END $$;
 
@@ -252,6 +410,20 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.group_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF TG_OP = 'INSERT' THEN
+    PERFORM audit('group_created', 'group', NEW.id, NEW.name, NULL);
+  ELSIF TG_OP = 'DELETE' THEN
+    PERFORM audit('deletion', 'group', OLD.id, OLD.name, NULL);
+  ELSIF NEW.name <> OLD.name THEN
+    PERFORM audit('group_renamed', 'group', NEW.id, NEW.name, NULL, jsonb_build_object('before', audit_text(OLD.name, 255)));
+  END IF;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.group_person_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -279,6 +451,64 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.group_person_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  member group_people := CASE WHEN TG_OP = 'DELETE' THEN OLD ELSE NEW END;
+  group_name text;
+BEGIN
+  SELECT g.name INTO group_name FROM groups g WHERE g.id = member.group_id;
+  IF FOUND THEN
+    PERFORM audit(CASE TG_OP WHEN 'INSERT' THEN 'member_added' ELSE 'member_removed' END, 'person', member.user_id,
+      (SELECT u.name FROM users u WHERE u.id = member.user_id), NULL, jsonb_build_object('group', audit_text(group_name, 255)));
+  END IF;
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.in_trash_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  thing jsonb := to_jsonb(NEW);
+  of_project bigint := coalesce((thing ->> 'project_id')::bigint,
+    (SELECT m.project_id FROM all_models m WHERE m.id = (thing ->> 'model_id')::bigint));
+BEGIN
+  IF (OLD.binned IS NULL) <> (NEW.binned IS NULL) THEN
+    PERFORM audit(CASE WHEN NEW.binned IS NULL THEN 'restored' ELSE 'deletion' END, TG_ARGV[0], NEW.id, NEW.name, of_project);
+  END IF;
+  IF NEW.erasing AND NOT OLD.erasing THEN
+    PERFORM audit('erased', TG_ARGV[0], NEW.id, NEW.name, of_project);
+  END IF;
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.kiosk_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  kiosk kiosks := CASE WHEN TG_OP = 'DELETE' THEN OLD ELSE NEW END;
+  tour record;
+BEGIN
+  SELECT t.name, m.project_id INTO tour FROM tours t JOIN all_models m ON m.id = t.model_id WHERE t.id = kiosk.tour_id;
+  IF TG_OP = 'INSERT' THEN
+    PERFORM audit('kiosk_created', 'kiosk', kiosk.id, kiosk.name, tour.project_id,
+      jsonb_build_object('tour', audit_text(tour.name, 255), 'expires', kiosk.expires, 'phones', kiosk.phone IS NOT NULL));
+  ELSIF TG_OP = 'DELETE' THEN
+    -- Old links, which were not valid any more, have a row already.
+    IF least(kiosk.revoked, kiosk.expires) IS NULL OR least(kiosk.revoked, kiosk.expires) > clock_timestamp() THEN
+      PERFORM audit('kiosk_deleted', 'kiosk', kiosk.id, kiosk.name, tour.project_id);
+    END IF;
+  ELSIF OLD.revoked IS NULL AND NEW.revoked IS NOT NULL THEN
+    PERFORM audit('kiosk_deleted', 'kiosk', kiosk.id, kiosk.name, tour.project_id);
+  ELSIF (NEW.phone IS NULL) <> (OLD.phone IS NULL) THEN
+    PERFORM audit('kiosk_changed', 'kiosk', kiosk.id, kiosk.name, tour.project_id, jsonb_build_object('phones', NEW.phone IS NOT NULL));
+  ELSIF NEW.wants_reload AND NOT OLD.wants_reload THEN
+    PERFORM audit('kiosk_changed', 'kiosk', kiosk.id, kiosk.name, tour.project_id, jsonb_build_object('reload', true));
+  END IF;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.member_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -302,6 +532,21 @@ BEGIN
     line.role := NEW.role;
   END IF;
   PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.model_access_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF NEW.project_id <> OLD.project_id THEN
+    PERFORM audit('visibility_changed', 'model', NEW.id, NEW.name, NEW.project_id,
+      jsonb_build_object('project_before', OLD.project_id, 'project_after', NEW.project_id));
+  END IF;
+  IF NEW.source_download <> OLD.source_download THEN
+    PERFORM audit('visibility_changed', 'model', NEW.id, NEW.name, NEW.project_id,
+      jsonb_build_object('files_before', OLD.source_download, 'files_after', NEW.source_download));
+  END IF;
   RETURN NULL;
 END $$;
 
@@ -361,6 +606,70 @@ BEGIN
     line.role := NEW.role;
   END IF;
   PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.project_settings_are_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM audit('setting_changed', 'project', NEW.id, NEW.name, NEW.id,
+    jsonb_build_object('setting', 'require_if_match', 'before', OLD.require_if_match, 'after', NEW.require_if_match));
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.record_deletion_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  of_table record;
+  ended record;
+BEGIN
+  SELECT t.project_id, t.name INTO of_table FROM record_tables t WHERE t.id = NEW.table_id;
+  IF NOT FOUND THEN
+    RETURN NULL;
+  END IF;
+  SELECT count(*) FILTER (WHERE c.after -> 'exists' = 'false') AS deleted, count(*) FILTER (WHERE c.after -> 'exists' = 'true') AS restored,
+      count(*) AS records, min(c.subject_id) AS key
+    INTO ended FROM table_changes c WHERE c.table_id = NEW.table_id AND c.sequence = NEW.sequence AND c.subject = 'record';
+  IF NEW.op = 'detach' THEN
+    PERFORM audit('deletion', 'attachment', (NEW.record -> 'attachments' ->> 0)::bigint, of_table.name, of_table.project_id,
+      jsonb_build_object('table', NEW.table_id, 'records', ended.records, 'sequence', NEW.sequence));
+  END IF;
+  IF ended.deleted > 0 THEN
+    PERFORM audit('deletion', 'record', CASE WHEN ended.records = 1 THEN ended.key END, of_table.name, of_table.project_id,
+      jsonb_build_object('table', NEW.table_id, 'records', ended.deleted, 'sequence', NEW.sequence));
+  END IF;
+  IF ended.restored > 0 THEN
+    PERFORM audit('restored', 'record', CASE WHEN ended.records = 1 THEN ended.key END, of_table.name, of_table.project_id,
+      jsonb_build_object('table', NEW.table_id, 'records', ended.restored, 'sequence', NEW.sequence));
+  END IF;
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.role_in_project_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  member jsonb := CASE WHEN TG_OP = 'DELETE' THEN to_jsonb(OLD) ELSE to_jsonb(NEW) END;
+  member_id bigint := coalesce((member ->> 'user_id')::bigint, (member ->> 'group_id')::bigint);
+  member_name text;
+  project_name text;
+BEGIN
+  SELECT p.name INTO project_name FROM projects p WHERE p.id = (member ->> 'project_id')::bigint;
+  IF NOT FOUND OR (TG_OP = 'UPDATE' AND to_jsonb(OLD) ->> 'role' = member ->> 'role') THEN
+    RETURN NULL;
+  END IF;
+  IF TG_ARGV[0] = 'person' THEN
+    SELECT u.name INTO member_name FROM users u WHERE u.id = member_id;
+  ELSE
+    SELECT g.name INTO member_name FROM groups g WHERE g.id = member_id;
+  END IF;
+  PERFORM audit(CASE TG_OP WHEN 'INSERT' THEN 'member_added' WHEN 'UPDATE' THEN 'role_changed' ELSE 'member_removed' END,
+    TG_ARGV[0], member_id, member_name, (member ->> 'project_id')::bigint,
+    jsonb_build_object('project', audit_text(project_name, 255),
+      'before', CASE WHEN TG_OP <> 'INSERT' THEN to_jsonb(OLD) ->> 'role' END,
+      'after', CASE WHEN TG_OP <> 'DELETE' THEN member ->> 'role' END));
   RETURN NULL;
 END $$;
 
@@ -445,6 +754,64 @@ BEGIN
     END IF;
   END IF;
   PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.token_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  person bigint;
+  label text := audit_text(NEW.label, 255);
+  way text := coalesce(nullif(current_setting('strata.sign_in', true), ''), 'password');
+BEGIN
+  SELECT u.id INTO person FROM users u WHERE u.name = NEW.user_name;
+  IF TG_OP = 'UPDATE' THEN
+    IF OLD.revoked IS NULL AND NEW.revoked IS NOT NULL THEN
+      IF NEW.kind = 'script' THEN
+        PERFORM audit('token_revoked', 'token', NEW.id, label, NEW.project_id, jsonb_build_object('user', NEW.user_name));
+      ELSIF NEW.kind = 'session' THEN
+        PERFORM audit('sign_out', 'session', NEW.id, NEW.user_name, NULL);
+      END IF;
+    END IF;
+    RETURN NULL;
+  END IF;
+  IF NEW.kind = 'session' THEN
+    INSERT INTO audit_log (actor_kind, actor, person_id, address, action, subject_kind, subject_id, subject, details)
+    VALUES (CASE WHEN way IN ('link', 'invitation') THEN 'link' WHEN way = 'token' THEN 'token' ELSE 'person' END, NEW.user_name, person,
+      audit_text(current_setting('strata.address', true), 100), 'sign_in', 'session', NEW.id, NEW.user_name,
+      jsonb_build_object('method', way));
+  ELSIF NEW.kind = 'script' THEN
+    PERFORM audit('token_created', 'token', NEW.id, label, NEW.project_id,
+      jsonb_build_object('user', NEW.user_name, 'role', NEW.role, 'expires', NEW.expires));
+  ELSE
+    PERFORM audit('link_created', 'person', person, NEW.user_name, NULL, jsonb_build_object('link', NEW.kind, 'expires', NEW.expires));
+  END IF;
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.tool_deletion_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM audit('deletion', 'tool', OLD.id, OLD.name, NULL);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.visibility_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  thing jsonb := to_jsonb(NEW);
+  of_project bigint;
+BEGIN
+  IF TG_TABLE_NAME = 'all_layers' THEN
+    SELECT m.project_id INTO of_project FROM all_models m WHERE m.id = (thing ->> 'model_id')::bigint;
+  ELSE
+    SELECT t.project_id INTO of_project FROM record_tables t WHERE t.id = (thing ->> 'table_id')::bigint;
+  END IF;
+  PERFORM audit('visibility_changed', TG_ARGV[0], NEW.id, coalesce(thing ->> 'name', thing -> 'properties' ->> 'name'), of_project,
+    jsonb_build_object('before', OLD.visibility, 'after', NEW.visibility));
   RETURN NULL;
 END $$;
 
@@ -935,6 +1302,39 @@ ALTER TABLE public.attachments ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY 
     CACHE 1
 );
 
+CREATE TABLE public.audit_log (
+    id bigint NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    actor_kind text NOT NULL,
+    actor text NOT NULL,
+    person_id bigint,
+    address text NOT NULL,
+    action text NOT NULL,
+    subject_kind text NOT NULL,
+    subject_id bigint,
+    subject text NOT NULL,
+    project_id bigint,
+    count bigint DEFAULT 1 NOT NULL,
+    details jsonb DEFAULT '{}'::jsonb NOT NULL,
+    CONSTRAINT audit_log_action_check CHECK ((action = ANY (ARRAY['sign_in'::text, 'sign_in_failed'::text, 'sign_out'::text, 'password_changed'::text, 'account_created'::text, 'account_deleted'::text, 'account_renamed'::text, 'account_disabled'::text, 'account_enabled'::text, 'role_changed'::text, 'member_added'::text, 'member_removed'::text, 'group_created'::text, 'group_renamed'::text, 'token_created'::text, 'token_revoked'::text, 'link_created'::text, 'export'::text, 'deletion'::text, 'erased'::text, 'restored'::text, 'visibility_changed'::text, 'kiosk_created'::text, 'kiosk_changed'::text, 'kiosk_deleted'::text, 'setting_changed'::text, 'oidc_bound'::text, 'audit_purged'::text]))),
+    CONSTRAINT audit_log_actor_check CHECK ((octet_length(actor) <= 255)),
+    CONSTRAINT audit_log_actor_kind_check CHECK ((actor_kind = ANY (ARRAY['person'::text, 'token'::text, 'kiosk'::text, 'link'::text, 'server'::text]))),
+    CONSTRAINT audit_log_address_check CHECK ((octet_length(address) <= 100)),
+    CONSTRAINT audit_log_count_check CHECK ((count >= 1)),
+    CONSTRAINT audit_log_details_check CHECK (((jsonb_typeof(details) = 'object'::text) AND (octet_length((details)::text) <= 4096))),
+    CONSTRAINT audit_log_subject_check CHECK ((octet_length(subject) <= 255)),
+    CONSTRAINT audit_log_subject_kind_check CHECK ((octet_length(subject_kind) <= 30))
+);
+
+ALTER TABLE public.audit_log ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.audit_log_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.blob_chunks (
     sha256 bytea NOT NULL,
     chunk integer NOT NULL,
@@ -1407,6 +1807,9 @@ ALTER TABLE ONLY public.answers
 ALTER TABLE ONLY public.attachments
     ADD CONSTRAINT attachments_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.audit_log
+    ADD CONSTRAINT audit_log_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_pkey PRIMARY KEY (sha256, chunk);
 
@@ -1572,6 +1975,14 @@ CREATE INDEX attachments_blob ON public.attachments USING btree (sha256);
 
 CREATE INDEX attachments_table ON public.attachments USING btree (table_id);
 
+CREATE INDEX audit_log_actor ON public.audit_log USING btree (lower(actor), id);
+
+CREATE INDEX audit_log_failed ON public.audit_log USING btree (address, "time") WHERE (action = 'sign_in_failed'::text);
+
+CREATE INDEX audit_log_project ON public.audit_log USING btree (project_id, id) WHERE (project_id IS NOT NULL);
+
+CREATE INDEX audit_log_time ON public.audit_log USING btree ("time", id);
+
 CREATE INDEX comments_layer ON public.comments USING btree (layer_id);
 
 CREATE INDEX comments_model ON public.comments USING btree (model_id, id);
@@ -1664,39 +2075,89 @@ CREATE INDEX tour_files_tour ON public.tour_files USING btree (tour_id);
 
 CREATE UNIQUE INDEX users_name_in_any_case ON public.users USING btree (lower(name));
 
+CREATE TRIGGER account_is_audited AFTER INSERT OR UPDATE OF name, full_name, role, password, disabled, deleted ON public.users FOR EACH ROW EXECUTE FUNCTION public.account_is_audited();
+
+CREATE TRIGGER attachment_visibility_is_audited AFTER UPDATE OF visibility ON public.attachments FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.visibility_is_audited('attachment');
+
+CREATE TRIGGER audit_is_kept BEFORE DELETE OR UPDATE ON public.audit_log FOR EACH ROW EXECUTE FUNCTION public.audit_is_kept();
+
+CREATE TRIGGER audit_is_not_emptied BEFORE TRUNCATE ON public.audit_log FOR EACH STATEMENT EXECUTE FUNCTION public.audit_is_kept();
+
+CREATE TRIGGER column_deletion_is_audited AFTER UPDATE OF hidden ON public.record_columns FOR EACH ROW WHEN ((old.hidden <> new.hidden)) EXECUTE FUNCTION public.column_deletion_is_audited();
+
 CREATE CONSTRAINT TRIGGER column_is_changed AFTER UPDATE ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN (((old.hidden <> new.hidden) OR ((old.properties -> 'name'::text) <> (new.properties -> 'name'::text)) OR ((old.properties -> 'order'::text) <> (new.properties -> 'order'::text)))) EXECUTE FUNCTION public.analysis_table_changed();
 
 CREATE CONSTRAINT TRIGGER column_is_hidden_or_seen AFTER UPDATE ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.analysis_table_changed();
 
 CREATE CONSTRAINT TRIGGER column_is_shown AFTER INSERT ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((NOT new.hidden)) EXECUTE FUNCTION public.analysis_table_changed();
 
+CREATE TRIGGER column_visibility_is_audited AFTER UPDATE OF visibility ON public.record_columns FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.visibility_is_audited('column');
+
+CREATE TRIGGER comment_deletion_is_audited AFTER DELETE ON public.comments FOR EACH ROW EXECUTE FUNCTION public.comment_deletion_is_audited();
+
+CREATE TRIGGER comment_emptied_is_audited AFTER UPDATE OF deleted ON public.comments FOR EACH ROW WHEN (((old.deleted IS NULL) AND (new.deleted IS NOT NULL))) EXECUTE FUNCTION public.comment_deletion_is_audited();
+
 CREATE TRIGGER comment_is_activity AFTER INSERT OR DELETE OR UPDATE OF resolved, deleted ON public.comments FOR EACH ROW EXECUTE FUNCTION public.comment_is_activity();
 
 CREATE TRIGGER edits_are_activity AFTER INSERT ON public.edits REFERENCING NEW TABLE AS added FOR EACH STATEMENT EXECUTE FUNCTION public.edits_are_activity();
 
+CREATE TRIGGER group_is_audited AFTER INSERT OR DELETE OR UPDATE OF name ON public.groups FOR EACH ROW EXECUTE FUNCTION public.group_is_audited();
+
 CREATE TRIGGER group_person_is_activity AFTER INSERT OR DELETE ON public.group_people FOR EACH ROW EXECUTE FUNCTION public.group_person_is_activity();
+
+CREATE TRIGGER group_person_is_audited AFTER INSERT OR DELETE ON public.group_people FOR EACH ROW EXECUTE FUNCTION public.group_person_is_audited();
+
+CREATE TRIGGER kiosk_is_audited AFTER INSERT OR DELETE OR UPDATE OF revoked, phone, wants_reload ON public.kiosks FOR EACH ROW EXECUTE FUNCTION public.kiosk_is_audited();
+
+CREATE TRIGGER layer_deletion_is_audited AFTER DELETE ON public.all_layers FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('layer');
 
 CREATE TRIGGER layer_gone_is_activity AFTER DELETE ON public.all_layers FOR EACH ROW WHEN ((old.binned IS NULL)) EXECUTE FUNCTION public.thing_is_activity('layer');
 
 CREATE TRIGGER layer_in_bin_is_activity AFTER UPDATE OF binned ON public.all_layers FOR EACH ROW WHEN (((old.binned IS NULL) <> (new.binned IS NULL))) EXECUTE FUNCTION public.bin_is_activity('layer');
 
+CREATE TRIGGER layer_in_trash_is_audited AFTER UPDATE OF binned, erasing ON public.all_layers FOR EACH ROW EXECUTE FUNCTION public.in_trash_is_audited('layer');
+
 CREATE TRIGGER layer_is_activity AFTER INSERT OR UPDATE OF name, slug, type, unit, description, palette, opacity, blend, visible, draw_order, group_name, expression, automatic, locked, review, visibility ON public.all_layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
+
+CREATE TRIGGER layer_visibility_is_audited AFTER UPDATE OF visibility ON public.all_layers FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.visibility_is_audited('layer');
+
+CREATE TRIGGER look_deletion_is_audited AFTER DELETE ON public.looks FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('surface_image');
 
 CREATE TRIGGER look_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, description, opacity, visible, draw_order ON public.looks FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('look');
 
 CREATE TRIGGER member_is_activity AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_members FOR EACH ROW EXECUTE FUNCTION public.member_is_activity();
 
+CREATE TRIGGER member_is_audited AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_members FOR EACH ROW EXECUTE FUNCTION public.role_in_project_is_audited('person');
+
+CREATE TRIGGER model_access_is_audited AFTER UPDATE OF project_id, source_download ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.model_access_is_audited();
+
+CREATE TRIGGER model_deletion_is_audited AFTER DELETE ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('model');
+
 CREATE TRIGGER model_gone_is_activity AFTER DELETE ON public.all_models FOR EACH ROW WHEN ((old.binned IS NULL)) EXECUTE FUNCTION public.thing_is_activity('model');
 
 CREATE TRIGGER model_in_bin_is_activity AFTER UPDATE OF binned ON public.all_models FOR EACH ROW WHEN (((old.binned IS NULL) <> (new.binned IS NULL))) EXECUTE FUNCTION public.bin_is_activity('model');
 
+CREATE TRIGGER model_in_trash_is_audited AFTER UPDATE OF binned, erasing ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.in_trash_is_audited('model');
+
 CREATE TRIGGER model_is_activity AFTER INSERT OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
+
+CREATE TRIGGER project_deletion_is_audited AFTER DELETE ON public.projects FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('project');
 
 CREATE TRIGGER project_group_is_activity AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_groups FOR EACH ROW EXECUTE FUNCTION public.project_group_is_activity();
 
+CREATE TRIGGER project_group_is_audited AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_groups FOR EACH ROW EXECUTE FUNCTION public.role_in_project_is_audited('group');
+
 CREATE TRIGGER project_is_activity AFTER INSERT OR UPDATE OF name, slug, description ON public.projects FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('project');
 
+CREATE TRIGGER project_settings_are_audited AFTER UPDATE OF require_if_match ON public.projects FOR EACH ROW WHEN ((old.require_if_match <> new.require_if_match)) EXECUTE FUNCTION public.project_settings_are_audited();
+
+CREATE CONSTRAINT TRIGGER record_deletion_is_audited AFTER INSERT ON public.table_edits DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((new.op = ANY (ARRAY['delete'::text, 'detach'::text, 'restore'::text, 'undo'::text, 'redo'::text]))) EXECUTE FUNCTION public.record_deletion_is_audited();
+
+CREATE TRIGGER snapshot_deletion_is_audited AFTER DELETE ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('snapshot');
+
 CREATE TRIGGER snapshot_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('snapshot');
+
+CREATE TRIGGER table_deletion_is_audited AFTER DELETE ON public.record_tables FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('table');
 
 CREATE CONSTRAINT TRIGGER table_edit_is_activity AFTER INSERT ON public.table_edits DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.table_edit_is_activity();
 
@@ -1706,7 +2167,15 @@ CREATE CONSTRAINT TRIGGER table_is_renamed AFTER UPDATE ON public.record_tables 
 
 CREATE CONSTRAINT TRIGGER table_is_shown AFTER INSERT ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.analysis_table_changed();
 
+CREATE TRIGGER token_is_audited AFTER INSERT OR UPDATE OF revoked ON public.tokens FOR EACH ROW EXECUTE FUNCTION public.token_is_audited();
+
+CREATE TRIGGER tool_deletion_is_audited AFTER UPDATE OF deleted ON public.tool_shapes FOR EACH ROW WHEN (((old.deleted IS NULL) AND (new.deleted IS NOT NULL))) EXECUTE FUNCTION public.tool_deletion_is_audited();
+
+CREATE TRIGGER tour_deletion_is_audited AFTER DELETE ON public.tours FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('tour');
+
 CREATE TRIGGER tour_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.tours FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('tour');
+
+CREATE TRIGGER view_deletion_is_audited AFTER DELETE ON public.views FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('view');
 
 CREATE TRIGGER view_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.views FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('view');
 

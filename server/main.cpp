@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
       {"doctor", strata::cli::add_doctor(app)},   {"user", strata::cli::add_user(app)},
       {"token", strata::cli::add_token(app)},     {"backup", strata::cli::add_backup(app)},
       {"restore", strata::cli::add_restore(app)}, {"kiosk", strata::cli::add_kiosk(app)},
+      {"audit", strata::cli::add_audit(app)},
   };
   try {
     app.parse(argc, argv);

@@ -10,8 +10,11 @@ constexpr std::chrono::minutes kAfterFailure{1};  // the database may be reachab
 
 }  // namespace
 
-TrashPurger::TrashPurger(store::Trash& trash, std::chrono::days keep)
-    : trash_(trash), keep_(keep), thread_([this] { run(); }) {}
+TrashPurger::TrashPurger(store::Trash& trash, std::chrono::days keep, store::Audit& audit,
+                         std::chrono::days keep_audit)
+    : trash_(trash), keep_(keep), audit_(audit), keep_audit_(keep_audit), thread_([this] {
+        run();
+      }) {}
 
 void TrashPurger::check_now() {
   const std::lock_guard lock(mutex_);
@@ -33,6 +36,20 @@ bool TrashPurger::is_stopping() {
   return stopping_;
 }
 
+// Both functions return false when they are done, and true if the server stops before.
+Result<bool> TrashPurger::empty_trash() {
+  STRATA_TRY(trash_.expire(keep_));
+  Result<bool> some = true;
+  while (some && *some && !is_stopping()) some = trash_.erase_some();
+  return some;
+}
+
+Result<bool> TrashPurger::purge_audit() {
+  Result<bool> some = keep_audit_.count() > 0;
+  while (some && *some && !is_stopping()) some = audit_.purge_some(keep_audit_);
+  return some;
+}
+
 void TrashPurger::run() {
   std::chrono::minutes pause = kBetweenLooks;
   for (;;) {
@@ -42,13 +59,16 @@ void TrashPurger::run() {
       if (stopping_) return;
       must_check_ = false;
     }
-    auto expired = trash_.expire(keep_);
-    Result<bool> some = expired ? Result<bool>(true) : tl::unexpected(expired.error());
-    while (some && *some && !is_stopping()) some = trash_.erase_some();
-    pause = some ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
-    if (!some && !is_stopping())
+    const auto emptied = empty_trash();
+    const auto purged = purge_audit();
+    pause = emptied && purged ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
+    if (is_stopping()) continue;
+    if (!emptied)
       log::warning("the server could not empty the Trash and will try again: " +
-                   some.error().detail);
+                   emptied.error().detail);
+    if (!purged)
+      log::warning("the server could not delete old rows of the audit log and will try again: " +
+                   purged.error().detail);
   }
 }
 

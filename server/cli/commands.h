@@ -17,6 +17,7 @@ Command add_doctor(CLI::App& app);
 Command add_user(CLI::App& app);
 Command add_token(CLI::App& app);
 Command add_kiosk(CLI::App& app);
+Command add_audit(CLI::App& app);
 Command add_backup(CLI::App& app);
 Command add_restore(CLI::App& app);
 

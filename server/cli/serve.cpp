@@ -31,7 +31,7 @@
 namespace strata::cli {
 namespace {
 
-constexpr int kMaxTrashDays = 36500;
+constexpr int kMaxTrashDays = 36500, kMaxAuditDays = 36500;
 constexpr int kMaxTimeout_s = 3600;
 constexpr int kMaxSlow_ms = 3'600'000;
 
@@ -42,6 +42,7 @@ struct ServeOptions {
   std::filesystem::path tls_cert, tls_key;
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
+  int audit_days = net::ServerOptions{}.audit_days;
   net::Timeouts timeouts;
   int samples_at_rest = 16, smooth_samples = 0;
   bool debug = false;
@@ -270,6 +271,7 @@ int run(ServeOptions options) {
   server_options.tls_key = options.tls_key;
   server_options.owner_token = owner_token();
   server_options.trash_days = options.trash_days;
+  server_options.audit_days = options.audit_days;
   server_options.timeouts = options.timeouts;
   server_options.lease = lease.get();
   server_options.slow_after = std::chrono::milliseconds(options.slow_after_ms);
@@ -368,6 +370,12 @@ Command add_serve(CLI::App& app) {
           "Days for which deleted layers and models stay in the trash; 0: erase immediately")
       ->envname("STRATA_BIN_DAYS")
       ->check(CLI::Range(0, kMaxTrashDays))
+      ->capture_default_str();
+  command
+      ->add_option("--audit-days", options->audit_days,
+                   "Days for which the audit log keeps its rows; 0 keeps them for ever")
+      ->envname("STRATA_AUDIT_DAYS")
+      ->check(CLI::Range(0, kMaxAuditDays))
       ->capture_default_str();
   add_timeout(*command, "head-timeout", options->timeouts.head,
               "Seconds from the connection to the end of the first request head");

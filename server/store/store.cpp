@@ -51,6 +51,7 @@ Kiosks& Store::kiosks() { return impl_->kiosks; }
 TourFiles& Store::tour_files() { return impl_->tour_files; }
 Groups& Store::groups() { return impl_->groups; }
 Trash& Store::trash() { return impl_->trash; }
+Audit& Store::audit() { return impl_->audit; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {

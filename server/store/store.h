@@ -15,6 +15,7 @@ class Accounts;
 class Answers;
 class Attachments;
 class Trash;
+class Audit;
 class Comments;
 class Groups;
 class Jobs;
@@ -91,6 +92,7 @@ class Store {
   TourFiles& tour_files();
   Groups& groups();
   Trash& trash();
+  Audit& audit();  // store/people/audit.h
 
  private:
   Store();

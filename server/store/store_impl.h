@@ -20,6 +20,7 @@
 #include "store/journal/journal_reads.h"
 #include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
+#include "store/people/audit.h"
 #include "store/people/groups.h"
 #include "store/people/kiosks.h"
 #include "store/people/members.h"
@@ -115,6 +116,7 @@ struct Store::Impl {
   Nodes nodes{pool};
   Groups groups{pool};
   Trash trash{pool};
+  Audit audit{pool};
   Projects projects{pool};
   Models models{pool};
   SurfaceImages images{pool};

@@ -10,6 +10,7 @@
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/api/site/routes_demo.h"
+#include "net/auth/audit_trail.h"
 #include "net/auth/kiosk_authorization.h"
 #include "net/auth/project_authorization.h"
 #include "net/auth/session_recheck.h"
@@ -107,7 +108,8 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
       questions_({.threads = options_.question_threads, .waiting = options_.max_waiting_requests}),
-      trash_purger_(store.trash(), std::chrono::days(options_.trash_days)),
+      trash_purger_(store.trash(), std::chrono::days(options_.trash_days), store.audit(),
+                    std::chrono::days(options_.audit_days)),
       table_events_(rooms, *shared_->sockets),
       context_{{store, rooms, shared_->metrics->edits, table_events_},
                options_,
@@ -133,6 +135,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_group_routes(router_, context_);
   add_node_routes(router_, context_);
   add_activity_routes(router_, context_);
+  add_audit_routes(router_, context_);
   add_trash_routes(router_, context_);
   add_model_routes(router_, context_);
   add_import_routes(router_, context_);
@@ -302,8 +305,9 @@ std::optional<Response> Api::admit_again(Request& request, const Route& route) {
 
 void Api::handle(const Request& request, const Route& route, const Respond& send) {
   const bool reads = request.method == Method::get || request.method == Method::head;
+  const store::ActingAs acting(actor_of(request));
   const Respond respond(
-      [send, target = request.target, again = request.was_moved,
+      [this, &request, send, target = request.target, again = request.was_moved,
        coding = std::string(request.header("accept-encoding")), known = request.known_tags,
        accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
         if (response.status == 307)
@@ -316,6 +320,10 @@ void Api::handle(const Request& request, const Route& route, const Respond& send
                                            std::string(response.header("Content-Type")) +
                                            ", but `Accept` does not allow this.",
                                        "Accept"});
+        // Only handlers that respond before they return send files, so the request still exists.
+        if (!response.header("Content-Disposition").empty())
+          if (auto audited = audit_export(context_, request, response); !audited)
+            response = problem_response(audited.error());
         compress(response, coding, known);
         send(std::move(response));
       });

@@ -15,6 +15,7 @@ void add_node_routes(Router& router, const RouteContext& context);
 void add_member_routes(Router& router, const RouteContext& context);
 void add_group_routes(Router& router, const RouteContext& context);
 void add_activity_routes(Router& router, const RouteContext& context);
+void add_audit_routes(Router& router, const RouteContext& context);
 void add_trash_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);

@@ -44,7 +44,8 @@ struct ServerOptions {
   std::uint64_t max_positions_bytes = 16u << 20;
   double requests_per_second = 1000;  // per connection
   double request_burst = 2000;
-  int trash_days = 30;  // days until deleted entities are erased; 0: immediately
+  int trash_days = 30;   // days until deleted entities are erased; 0: immediately
+  int audit_days = 730;  // days until rows of the audit log are deleted; 0: never
   // Requests that take longer, without the transfer of bodies, are logged. 0: no limit.
   std::chrono::milliseconds slow_after{1000};
   Timeouts timeouts;

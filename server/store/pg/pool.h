@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "store/pg/acting.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {
@@ -53,7 +54,7 @@ class Pool {
   }
 
   // Runs `work(connection)` in one transaction, and commits if it succeeds. Repeats the whole
-  // transaction after a deadlock.
+  // transaction after a deadlock. The transaction names the actor of this thread (ActingAs).
   template <class Work>
   auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     return write_within(limits_, std::forward<Work>(work));
@@ -65,6 +66,7 @@ class Pool {
     auto lease = STRATA_TRY(acquire(limits));
     for (int tries_left = 3;; --tries_left) {
       auto transaction = STRATA_TRY(Transaction::begin(*lease));
+      STRATA_TRY(name_actor(*lease));
       Outcome result = work(*lease);
       if (!result) {
         if ((*lease).take_deadlock() && tries_left > 0) continue;

@@ -1599,6 +1599,48 @@ export interface ActivityList {
   next?: string;
 }
 
+/** Action in the audit log. */
+export type AuditAction = "sign_in" | "sign_in_failed" | "sign_out" | "password_changed" | "account_created" | "account_deleted" | "account_renamed" | "account_disabled" | "account_enabled" | "role_changed" | "member_added" | "member_removed" | "group_created" | "group_renamed" | "token_created" | "token_revoked" | "link_created" | "export" | "deletion" | "erased" | "restored" | "visibility_changed" | "kiosk_created" | "kiosk_changed" | "kiosk_deleted" | "setting_changed" | "oidc_bound" | "audit_purged";
+
+/** Value of a detail. */
+export type AuditDetail = string | number | boolean;
+
+/** Entry of the audit log. */
+export interface AuditEntry {
+  id: number;
+  /** Time of the action. For failed sign-ins, time of the first one. */
+  time: string;
+  /** `token`: a token for scripts, or the owner's token. `link`: a sign-in link or an invitation. `server`: the server itself, or its command line. */
+  actor_kind: "person" | "token" | "kiosk" | "link" | "server";
+  /** User name at the time of the action. For failed sign-ins, the name that was entered. Absent for the server, and if the name is unknown. */
+  actor?: string;
+  /** Id of the actor's account, which may be deleted. */
+  person?: number;
+  /** Address of the client. Only the first half of an IPv6 address. Absent if no client caused the action. */
+  address?: string;
+  action: AuditAction;
+  /** Kind of the item, such as `person`, `layer` or `kiosk`. */
+  subject_kind?: string;
+  subject_id?: number;
+  /** Name of the item at the time of the action. */
+  subject?: string;
+  /** Id of the project, which may be deleted. */
+  project?: number;
+  /** Present slug of the project. Absent if the project is deleted. */
+  project_slug?: string;
+  /** Number of failed sign-ins with the same address and name in one minute. 1 for other actions. */
+  count: number;
+  /** More about the action, such as the roles `before` and `after`. */
+  details: Record<string, AuditDetail>;
+}
+
+/** Audit log, newest first. */
+export interface AuditList {
+  entries: AuditEntry[];
+  /** Number of days that the server keeps entries. 0: for ever. */
+  days: number;
+}
+
 /** Kind of a deleted item. */
 export type BinKind = "layer" | "model" | "record";
 

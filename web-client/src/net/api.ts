@@ -82,6 +82,20 @@ export class Api {
     return found;
   }
 
+  /**
+   * Reads one page of a list. `next` is the address of the next page, which is null after the last
+   * one. Pass it as `at` to read that page.
+   */
+  async page<C extends Call>(
+    call: C,
+    options: Options<C>,
+    at: string | null = null,
+  ): Promise<{ value: Answer<C>; next: string | null }> {
+    const response = await this.request(call, {}, at ?? targetOf(call, options as AnyOptions));
+    const value = await parsed<Answer<C>>(response);
+    return { value, next: nextPage(response.headers.get("Link")) };
+  }
+
   /** Reads a file. The request can be canceled, also during the transfer. */
   async blob<C extends Call>(call: C, ...[options]: Given<Options<C>>): Promise<Blob> {
     const given: AnyOptions | undefined = options;

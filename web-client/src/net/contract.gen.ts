@@ -23,6 +23,23 @@ export interface paths {
         patch: operations["change_attachment"];
         trace?: never;
     };
+    "/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Read the audit log */
+        get: operations["list_audit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/auth/kiosk": {
         parameters: {
             query?: never;
@@ -2415,6 +2432,17 @@ export interface components {
         /** Changes to an attached file */
         AttachmentPatch: wire.AttachmentPatch;
         /**
+         * Action in the audit log
+         * @enum {string}
+         */
+        AuditAction: wire.AuditAction;
+        /** Value of a detail */
+        AuditDetail: wire.AuditDetail;
+        /** Entry of the audit log */
+        AuditEntry: wire.AuditEntry;
+        /** Audit log, newest first */
+        AuditList: wire.AuditList;
+        /**
          * Up direction
          * @enum {string}
          */
@@ -3360,6 +3388,38 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Attachment"];
+                };
+            };
+        };
+    };
+    list_audit: {
+        parameters: {
+            query?: {
+                action?: components["schemas"]["AuditAction"];
+                actor?: string;
+                after?: components["parameters"]["after"];
+                f?: "json" | "jsonl";
+                from?: string;
+                limit?: components["parameters"]["limit"];
+                project?: string;
+                subject_kind?: string;
+                to?: string;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditList"];
+                    "application/x-ndjson": string;
                 };
             };
         };

@@ -633,6 +633,74 @@ void read(const nlohmann::json& json, ActivityKind& value) {
 
 nlohmann::json to_json(const ActivityKind& value) { return name(value); }
 
+std::string_view name(AuditAction value) {
+  switch (value) {
+    case AuditAction::sign_in: return "sign_in";
+    case AuditAction::sign_in_failed: return "sign_in_failed";
+    case AuditAction::sign_out: return "sign_out";
+    case AuditAction::password_changed: return "password_changed";
+    case AuditAction::account_created: return "account_created";
+    case AuditAction::account_deleted: return "account_deleted";
+    case AuditAction::account_renamed: return "account_renamed";
+    case AuditAction::account_disabled: return "account_disabled";
+    case AuditAction::account_enabled: return "account_enabled";
+    case AuditAction::role_changed: return "role_changed";
+    case AuditAction::member_added: return "member_added";
+    case AuditAction::member_removed: return "member_removed";
+    case AuditAction::group_created: return "group_created";
+    case AuditAction::group_renamed: return "group_renamed";
+    case AuditAction::token_created: return "token_created";
+    case AuditAction::token_revoked: return "token_revoked";
+    case AuditAction::link_created: return "link_created";
+    case AuditAction::export: return "export";
+    case AuditAction::deletion: return "deletion";
+    case AuditAction::erased: return "erased";
+    case AuditAction::restored: return "restored";
+    case AuditAction::visibility_changed: return "visibility_changed";
+    case AuditAction::kiosk_created: return "kiosk_created";
+    case AuditAction::kiosk_changed: return "kiosk_changed";
+    case AuditAction::kiosk_deleted: return "kiosk_deleted";
+    case AuditAction::setting_changed: return "setting_changed";
+    case AuditAction::oidc_bound: return "oidc_bound";
+    case AuditAction::audit_purged: return "audit_purged";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, AuditAction& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "sign_in") value = AuditAction::sign_in;
+  if (text == "sign_in_failed") value = AuditAction::sign_in_failed;
+  if (text == "sign_out") value = AuditAction::sign_out;
+  if (text == "password_changed") value = AuditAction::password_changed;
+  if (text == "account_created") value = AuditAction::account_created;
+  if (text == "account_deleted") value = AuditAction::account_deleted;
+  if (text == "account_renamed") value = AuditAction::account_renamed;
+  if (text == "account_disabled") value = AuditAction::account_disabled;
+  if (text == "account_enabled") value = AuditAction::account_enabled;
+  if (text == "role_changed") value = AuditAction::role_changed;
+  if (text == "member_added") value = AuditAction::member_added;
+  if (text == "member_removed") value = AuditAction::member_removed;
+  if (text == "group_created") value = AuditAction::group_created;
+  if (text == "group_renamed") value = AuditAction::group_renamed;
+  if (text == "token_created") value = AuditAction::token_created;
+  if (text == "token_revoked") value = AuditAction::token_revoked;
+  if (text == "link_created") value = AuditAction::link_created;
+  if (text == "export") value = AuditAction::export;
+  if (text == "deletion") value = AuditAction::deletion;
+  if (text == "erased") value = AuditAction::erased;
+  if (text == "restored") value = AuditAction::restored;
+  if (text == "visibility_changed") value = AuditAction::visibility_changed;
+  if (text == "kiosk_created") value = AuditAction::kiosk_created;
+  if (text == "kiosk_changed") value = AuditAction::kiosk_changed;
+  if (text == "kiosk_deleted") value = AuditAction::kiosk_deleted;
+  if (text == "setting_changed") value = AuditAction::setting_changed;
+  if (text == "oidc_bound") value = AuditAction::oidc_bound;
+  if (text == "audit_purged") value = AuditAction::audit_purged;
+}
+
+nlohmann::json to_json(const AuditAction& value) { return name(value); }
+
 std::string_view name(BinKind value) {
   switch (value) {
     case BinKind::layer: return "layer";

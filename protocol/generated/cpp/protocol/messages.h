@@ -203,6 +203,10 @@ enum class Schema {
   Activity,
   ChangedProperty,
   ActivityList,
+  AuditAction,
+  AuditDetail,
+  AuditEntry,
+  AuditList,
   BinKind,
   BinEntry,
   BinEntryId,
@@ -360,7 +364,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 334;
+constexpr int kSchemaCount = 338;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1711,6 +1715,12 @@ enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, 
 std::string_view name(ActivityKind value);
 void read(const nlohmann::json& json, ActivityKind& value);
 nlohmann::json to_json(const ActivityKind& value);
+
+// Action in the audit log.
+enum class AuditAction { sign_in, sign_in_failed, sign_out, password_changed, account_created, account_deleted, account_renamed, account_disabled, account_enabled, role_changed, member_added, member_removed, group_created, group_renamed, token_created, token_revoked, link_created, export, deletion, erased, restored, visibility_changed, kiosk_created, kiosk_changed, kiosk_deleted, setting_changed, oidc_bound, audit_purged };
+std::string_view name(AuditAction value);
+void read(const nlohmann::json& json, AuditAction& value);
+nlohmann::json to_json(const AuditAction& value);
 
 // Kind of a deleted item.
 enum class BinKind { layer, model, record };

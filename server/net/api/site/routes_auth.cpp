@@ -6,6 +6,7 @@
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/auth/audit_trail.h"
 #include "net/auth/auth.h"
 #include "net/auth/login_throttle.h"
 #include "net/auth/project_authorization.h"
@@ -17,6 +18,7 @@
 #include "net/transport/server_options.h"
 #include "store/content/projects.h"
 #include "store/people/accounts.h"
+#include "store/people/audit.h"
 #include "store/people/password.h"
 #include "store/people/people.h"
 #include "store/people/tokens.h"
@@ -70,14 +72,38 @@ namespace {
 
 using store::TokenKind;
 
+// Writes the failure to the audit log unless the server itself failed.
+tl::unexpected<Error> failed_sign_in(const RouteContext& context, const std::string& user,
+                                     std::string_view way, const Error& why) {
+  if (why.code == ErrorCode::unauthenticated || why.code == ErrorCode::forbidden)
+    if (auto audited = context.store.audit().failed_sign_in(user, way); !audited)
+      return tl::unexpected(audited.error());
+  return tl::unexpected(why);
+}
+
+Result<Response> sign_in_by_link(const RouteContext& context, LoginThrottle& gate,
+                                 const Request& request) {
+  STRATA_TRY(gate.pass(address_of(request), {}));
+  const store::ActingAs acting(signing_in(request, "link"));
+  auto session = context.auth.session_for_link(request.query_or("link", {}), agent_of(request));
+  if (!session) return failed_sign_in(context, {}, "link", session.error());
+  gate.was_right(address_of(request), {});
+  return empty_response(303)
+      .with("Location", "/")
+      .with("Set-Cookie", Authenticator::set_cookie(*session, needs_secure_cookie(request)))
+      .with("Cache-Control", "no-store");
+}
+
 Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::Login>(request));
   const std::string user = body.user.value_or(""), address = address_of(request);
   STRATA_TRY(gate.pass(address, user));
+  const std::string way = body.token ? "token" : "password";
+  const store::ActingAs acting(signing_in(request, way));
   const auto session =
       body.token ? context.auth.session_for_token(*body.token, agent_of(request))
                  : context.auth.session_for_password(user, *body.password, agent_of(request));
-  if (!session) return tl::unexpected(session.error());
+  if (!session) return failed_sign_in(context, user, way, session.error());
   gate.was_right(address, user);
   return signed_in(context, request, *session);
 }
@@ -113,9 +139,12 @@ Result<Response> change_password(const RouteContext& context, LoginThrottle& gat
     const auto fits =
         body.current ? store::password_fits(hash, *body.current) : Result<bool>(false);
     if (!fits) return tl::unexpected(fits.error());
-    if (!*fits)
+    if (!*fits) {
+      // A guess of the password counts, also at the browser of its user.
+      STRATA_TRY(context.store.audit().failed_sign_in(request.user(), "password"));
       return fail(ErrorCode::invalid, "Wrong current password",
                   "The current password is wrong. Enter it again.", "current");
+    }
     gate.was_right(address_of(request), request.user());
   }
   const auto chosen = STRATA_TRY(store::hash_password(body.password));
@@ -237,17 +266,8 @@ void add_auth_routes(Router& router, const RouteContext& context) {
 
   router.add({.method = Method::get,
               .pattern = "/login",
-              .handler = answering([&context, gate](const Request& request) -> Result<Response> {
-                STRATA_TRY(gate->pass(address_of(request), {}));
-                auto session =
-                    context.auth.session_for_link(request.query_or("link", {}), agent_of(request));
-                if (!session) return tl::unexpected(session.error());
-                gate->was_right(address_of(request), {});
-                return empty_response(303)
-                    .with("Location", "/")
-                    .with("Set-Cookie",
-                          Authenticator::set_cookie(*session, needs_secure_cookie(request)))
-                    .with("Cache-Control", "no-store");
+              .handler = answering([&context, gate](const Request& request) {
+                return sign_in_by_link(context, *gate, request);
               }),
               .role = std::nullopt,
               .query = {"link"}});

@@ -4,6 +4,7 @@
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/auth/audit_trail.h"
 #include "net/auth/auth.h"
 #include "net/http/origin.h"
 #include "net/http/page.h"
@@ -14,6 +15,7 @@
 #include "room/rooms.h"
 #include "store/content/projects.h"
 #include "store/people/accounts.h"
+#include "store/people/audit.h"
 #include "store/people/password.h"
 #include "store/people/people.h"
 #include "store/people/tokens.h"
@@ -152,7 +154,13 @@ Result<Response> show_invitation(const RouteContext& context, const Request& req
 
 Result<Response> accept_invitation(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::InvitationAccept>(request));
-  const auto person = STRATA_TRY(invited_by(context, body.invitation));
+  const auto invited = invited_by(context, body.invitation);
+  if (!invited && invited.error().code == ErrorCode::unauthenticated) {
+    const store::ActingAs acting(signing_in(request, "invitation"));
+    STRATA_TRY(context.store.audit().failed_sign_in({}, "invitation"));
+  }
+  const Person person = STRATA_TRY(invited);
+  const store::ActingAs acting(signing_in(request, "invitation", person.name));
   STRATA_TRY(store::check_password(body.password, person.name, "password"));
   const auto hash = STRATA_TRY(store::hash_password(body.password));
   const auto session = STRATA_TRY(context.store.accounts().accept_invitation(

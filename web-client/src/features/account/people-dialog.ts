@@ -12,6 +12,7 @@ import type { Group, Invitation, Person, PersonPatch } from "../../core/protocol
 import type { Me, Role } from "../../core/types";
 import "../../ui/made-link";
 import { ask } from "../../ui/dialog";
+import "./audit-log";
 import "./group-list";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
@@ -25,7 +26,7 @@ const words = texts.site_people;
 const kUsualRole: Role = "annotator";
 
 type Field = "user" | "full_name" | "role";
-type Part = "people" | "groups";
+type Part = "people" | "groups" | "audit";
 
 @customElement("strata-people-dialog")
 export class StrataPeopleDialog extends LitElement {
@@ -63,11 +64,12 @@ export class StrataPeopleDialog extends LitElement {
         choices: [
           { value: "people", content: words.people },
           { value: "groups", content: texts.groups.title },
+          { value: "audit", content: texts.audit.title },
         ],
         chosen: this._part,
         choose: (part) => (this._part = part),
       })}
-      ${this._people ? (this._part === "groups" ? this.groupList(this._people) : this.content(this._people)) : html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>`}
+      ${this._people ? this.shown(this._people) : html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>`}
       ${
         this._problem
           ? html`<p class="error" role="alert">${this._problem}</p>
@@ -80,6 +82,15 @@ export class StrataPeopleDialog extends LitElement {
           : nothing
       }
     </strata-dialog>`;
+  }
+
+  private shown(people: readonly Person[]): TemplateResult {
+    if (this._part === "audit")
+      return html`<strata-audit-log
+        .api=${this.api}
+        @signed-out=${() => this.dispatchEvent(new CustomEvent("signed-out"))}
+      ></strata-audit-log>`;
+    return this._part === "groups" ? this.groupList(people) : this.content(people);
   }
 
   private groupList(people: readonly Person[]): TemplateResult {

@@ -1,0 +1,30 @@
+#include "store/pg/acting.h"
+
+#include <utility>
+
+#include "store/pg/pg.h"
+
+namespace strata::store {
+namespace {
+
+thread_local const Actor* acting = nullptr;
+
+}  // namespace
+
+ActingAs::ActingAs(Actor actor)
+    : actor_(std::move(actor)), before_(std::exchange(acting, &actor_)) {}
+
+ActingAs::~ActingAs() { acting = before_; }
+
+const Actor* ActingAs::current() { return acting; }
+
+Result<void> name_actor(PgConnection& connection) {
+  if (!acting) return {};
+  STRATA_TRY(connection.query(
+      "SELECT set_config('strata.actor_kind', $1, true), set_config('strata.actor', $2, true), "
+      "set_config('strata.address', $3, true), set_config('strata.sign_in', $4, true)",
+      Params().text(acting->kind).text(acting->name).text(acting->address).text(acting->sign_in)));
+  return {};
+}
+
+}  // namespace strata::store

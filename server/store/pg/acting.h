@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+
+#include "core/error.h"
+
+namespace strata::store {
+
+class PgConnection;
+
+// The person, token, kiosk or link that causes the changes of a thread. The audit log names it
+// (db/migrations/000042_audit.sql).
+struct Actor {
+  std::string kind;     // "person", "token", "kiosk" or "link"
+  std::string name;     // empty if it is unknown, such as before a sign-in
+  std::string address;  // of the client
+  // the way of a sign-in: "password", "token", "link", "invitation" or "oidc"
+  std::string sign_in;
+};
+
+// Names the actor of all transactions that this thread begins during the lifetime of this object.
+// Without one, the author of a change (IdempotentResponse::user) is the actor, or else the server.
+class ActingAs {
+ public:
+  explicit ActingAs(Actor actor);
+  ~ActingAs();
+  ActingAs(const ActingAs&) = delete;
+  ActingAs& operator=(const ActingAs&) = delete;
+
+  static const Actor* current();  // of this thread; may be null
+
+ private:
+  const Actor actor_;
+  const Actor* const before_;
+};
+
+// Names the actor of this thread in the current transaction.
+Result<void> name_actor(PgConnection& connection);
+
+}  // namespace strata::store
