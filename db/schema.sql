@@ -495,7 +495,7 @@ BEGIN
     PERFORM audit('kiosk_created', 'kiosk', kiosk.id, kiosk.name, tour.project_id,
       jsonb_build_object('tour', audit_text(tour.name, 255), 'expires', kiosk.expires, 'phones', kiosk.phone IS NOT NULL));
   ELSIF TG_OP = 'DELETE' THEN
-    -- Old links, which were not valid any more, have a row already.
+    -- Old links, which were no longer valid, already have a row.
     IF least(kiosk.revoked, kiosk.expires) IS NULL OR least(kiosk.revoked, kiosk.expires) > clock_timestamp() THEN
       PERFORM audit('kiosk_deleted', 'kiosk', kiosk.id, kiosk.name, tour.project_id);
     END IF;

@@ -20,6 +20,7 @@ const howTo = {
     "comment",
     "review-edits",
     "follow-activity",
+    "read-the-audit-log",
     "see-the-past",
     "use-the-trash",
   ],

@@ -45,7 +45,7 @@ struct AuditRow {
   std::optional<std::int64_t> subject_id;
   std::string subject;
   std::optional<ProjectId> project;
-  std::string project_slug;  // empty if the project does not exist any more
+  std::string project_slug;  // empty if the project no longer exists
   std::int64_t count = 1;    // number of failed sign-ins
   nlohmann::json details;
 };

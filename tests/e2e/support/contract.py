@@ -73,7 +73,7 @@ class Contract:
         assert (
             media_type in content or "*/*" in content
         ), f"{method} {path} {answer.status}: {media_type} is not in the contract"
-        if media_type.endswith("json") and "schema" in content.get(media_type, {}):
+        if media_type.endswith(("/json", "+json")) and "schema" in content.get(media_type, {}):
             wrong = list(self.faults(content[media_type]["schema"], json.loads(body), "body"))
             assert (
                 not wrong

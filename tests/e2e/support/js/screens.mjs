@@ -426,6 +426,16 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       keyboard: true,
     },
     {
+      name: "people: audit",
+      start: async () => {
+        await account(w.account.people)();
+        await page.getByRole("radio", exact(w.audit.title)).click();
+        await page.locator("strata-audit-log tbody tr").first().waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
       name: "people: who is in a group",
       start: async () => {
         await account(w.account.people)();
