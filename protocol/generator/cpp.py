@@ -371,9 +371,13 @@ class Writer:
         )
 
 
+# Keywords of C++ that are values of enumerations in the contract.
+KEYWORDS = ("true", "false", "default", "delete", "export", "new")
+
+
 def identifier(word) -> str:
     text = str(word).replace("-", "_").replace(".", "_")
-    return text + "_" if text in ("true", "false", "default", "delete", "new") else text
+    return text + "_" if text in KEYWORDS else text
 
 
 def cpp_name(member) -> str:

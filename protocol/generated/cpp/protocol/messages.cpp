@@ -652,7 +652,7 @@ std::string_view name(AuditAction value) {
     case AuditAction::token_created: return "token_created";
     case AuditAction::token_revoked: return "token_revoked";
     case AuditAction::link_created: return "link_created";
-    case AuditAction::export: return "export";
+    case AuditAction::export_: return "export";
     case AuditAction::deletion: return "deletion";
     case AuditAction::erased: return "erased";
     case AuditAction::restored: return "restored";
@@ -686,7 +686,7 @@ void read(const nlohmann::json& json, AuditAction& value) {
   if (text == "token_created") value = AuditAction::token_created;
   if (text == "token_revoked") value = AuditAction::token_revoked;
   if (text == "link_created") value = AuditAction::link_created;
-  if (text == "export") value = AuditAction::export;
+  if (text == "export") value = AuditAction::export_;
   if (text == "deletion") value = AuditAction::deletion;
   if (text == "erased") value = AuditAction::erased;
   if (text == "restored") value = AuditAction::restored;

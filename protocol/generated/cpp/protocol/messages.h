@@ -1717,7 +1717,7 @@ void read(const nlohmann::json& json, ActivityKind& value);
 nlohmann::json to_json(const ActivityKind& value);
 
 // Action in the audit log.
-enum class AuditAction { sign_in, sign_in_failed, sign_out, password_changed, account_created, account_deleted, account_renamed, account_disabled, account_enabled, role_changed, member_added, member_removed, group_created, group_renamed, token_created, token_revoked, link_created, export, deletion, erased, restored, visibility_changed, kiosk_created, kiosk_changed, kiosk_deleted, setting_changed, oidc_bound, audit_purged };
+enum class AuditAction { sign_in, sign_in_failed, sign_out, password_changed, account_created, account_deleted, account_renamed, account_disabled, account_enabled, role_changed, member_added, member_removed, group_created, group_renamed, token_created, token_revoked, link_created, export_, deletion, erased, restored, visibility_changed, kiosk_created, kiosk_changed, kiosk_deleted, setting_changed, oidc_bound, audit_purged };
 std::string_view name(AuditAction value);
 void read(const nlohmann::json& json, AuditAction& value);
 nlohmann::json to_json(const AuditAction& value);
