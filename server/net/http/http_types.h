@@ -120,7 +120,7 @@ struct Response {
 Response json_response(const nlohmann::json& json, int status = 200);
 Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type);
 Response text_response(std::string text, std::string content_type);
-Response empty_response(int status);              // for 204 and 304
+Response empty_response(int status);  // for 204 and 304
 // RFC 9457. The header Location of `moved` is the address of the node.
 Response problem_response(const Error& problem);
 // Returns a download. Keeps the file until it has been sent.

@@ -48,9 +48,9 @@ Result<Response> list_nodes(const RouteContext& context, const Request& request)
   // The entries are sorted by the time of the start. Two nodes can start at the same time, so the
   // id follows as four numbers.
   const auto part = STRATA_TRY(slice_by(page, nodes, [](const store::Node& node) -> NumberKey {
-    NumberKey key = {std::chrono::duration_cast<std::chrono::microseconds>(
-                         node.started.time_since_epoch())
-                         .count()};
+    NumberKey key = {
+        std::chrono::duration_cast<std::chrono::microseconds>(node.started.time_since_epoch())
+            .count()};
     for (std::size_t i = 0; i < node.id.bytes.size(); i += 4) {
       std::int64_t word = 0;
       for (std::size_t k = 0; k < 4; ++k) word = word << 8 | node.id.bytes[i + k];
