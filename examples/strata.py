@@ -54,11 +54,18 @@ class Strata:
             # With this key, a request that is repeated after a broken connection has no second
             # effect.
             headers["Idempotency-Key"] = str(uuid.uuid4())
-        asked = urllib.request.Request(self.base + path, data=data, headers=headers, method=method)
+        return self._send(method, self.base + path, data, headers, 5)
+
+    def _send(self, method: str, url: str, data, headers: dict, redirections: int):
+        asked = urllib.request.Request(url, data=data, headers=headers, method=method)
         try:
             with urllib.request.urlopen(asked, timeout=300) as answer:
                 return answer.read(), answer.headers
         except urllib.error.HTTPError as refusal:
+            # Another node of the site has the model. Python itself does not repeat a POST.
+            if refusal.code == 307 and redirections > 0 and refusal.headers["Location"]:
+                there = urllib.parse.urljoin(url, refusal.headers["Location"])
+                return self._send(method, there, data, headers, redirections - 1)
             text = refusal.read()
             try:
                 problem = json.loads(text)

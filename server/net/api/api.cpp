@@ -37,6 +37,11 @@ bool changes(Method method) {
   return method != Method::get && method != Method::head && method != Method::options;
 }
 
+Response refusal(const Error& error, const Request& request) {
+  if (error.code != ErrorCode::moved) return problem_response(error);
+  return redirected_by_handler(error.location, request.target, request.was_moved);
+}
+
 Result<void> check_record(store::Store& store, ProjectId project_id,
                           const app::RecordEditLocks::Record& record) {
   const auto table = store.tables().find(to_string(record.table), Role::viewer);
@@ -259,6 +264,7 @@ Result<void> Api::identify(Request& request, const Route& route) {
   if (!request.principal)
     return fail(ErrorCode::unauthenticated, "Not signed in",
                 "Sign in, or send `Authorization: Bearer TOKEN`.");
+  STRATA_TRY(check_job_is_here(context_, request));
   auto inside = request.principal->kiosk ? enter_as_kiosk(context_, request, route)
                                          : enter_project(context_, request, route.project_in_query);
   if (!inside) return inside;
@@ -273,7 +279,7 @@ Result<void> Api::identify(Request& request, const Route& route) {
 std::optional<Response> Api::admit(Request& request, const Route& route) {
   // Public routes, such as the page, sign-in and health, must work even with an invalid cookie.
   if (route.role)
-    if (auto known = identify(request, route); !known) return problem_response(known.error());
+    if (auto known = identify(request, route); !known) return refusal(known.error(), request);
   if (changes(request.method))
     if (auto own = check_same_origin(request, options_.allowed_origins); !own)
       return problem_response(own.error());
@@ -294,7 +300,7 @@ std::optional<Response> Api::admit(Request& request, const Route& route) {
 std::optional<Response> Api::admit_again(Request& request, const Route& route) {
   if (!route.role) return std::nullopt;
   const std::string user = request.user();
-  if (auto known = identify(request, route); !known) return problem_response(known.error());
+  if (auto known = identify(request, route); !known) return refusal(known.error(), request);
   if (request.user() != user)
     return problem_response({ErrorCode::unauthenticated,
                              "Not signed in",

@@ -1,9 +1,23 @@
 #include "net/api/node_redirect.h"
 
+#include "app/nodes/node_lease.h"
+#include "jobs/job_queue.h"
+#include "net/auth/project_authorization.h"
+#include "net/transport/server_options.h"
 #include "room/rooms.h"
+#include "store/nodes/nodes.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
+
+std::string located(std::string_view node, std::string_view target, bool marked) {
+  std::string location(node);
+  location.append(target);
+  if (marked)
+    location.append(target.find('?') == std::string_view::npos ? "?" : "&").append(kMovedMark);
+  return location;
+}
 
 Response redirection(std::string location) {
   Response response = problem_response(moved_to({}));
@@ -19,7 +33,17 @@ std::optional<Response> redirect_to_owner(room::Rooms& rooms, const Request& req
   const auto owner = rooms.elsewhere(model->second);
   if (!owner) return problem_response(owner.error());
   if (!*owner) return std::nullopt;
-  return redirection(**owner + request.target);
+  return redirection(located(**owner, request.target, request.was_moved));
+}
+
+Result<void> check_job_is_here(const RouteContext& context, const Request& request) {
+  const app::NodeLease* lease = context.options.lease;
+  if (!lease || !request.params.contains("job")) return {};
+  const auto id = id_of<JobId>(request, "job");
+  if (!id || context.jobs.status(*id)) return {};
+  auto node = STRATA_TRY(context.store.nodes().node_of_job(*id, lease->node().id));
+  if (node) return tl::unexpected(moved_to(std::move(*node)));
+  return {};
 }
 
 Response redirected_by_handler(std::string_view node, std::string_view target, bool again) {
@@ -30,9 +54,7 @@ Response redirected_by_handler(std::string_view node, std::string_view target, b
          "Another node of the site has a model that this request needs, or the models that it needs "
          "are at different nodes. Send the request again in a few seconds.",
          {}});
-  std::string location(node);
-  location.append(target).append(target.find('?') == std::string_view::npos ? "?" : "&");
-  return redirection(location.append(kMovedParameter).append("=1"));
+  return redirection(located(node, target, true));
 }
 
 }  // namespace strata::net

@@ -170,6 +170,12 @@ Result<void> parse_target(std::string_view target, Request& request) {
   auto wrong = [](std::string detail) {
     return fail(ErrorCode::malformed, "Malformed address", std::move(detail));
   };
+  // Without the mark, because a repeated request (Idempotency-Key) may arrive without it.
+  if (target.ends_with(kMovedMark)) {
+    const std::string_view rest = target.substr(0, target.size() - kMovedMark.size());
+    request.was_moved = rest.ends_with('?') || rest.ends_with('&');
+    if (request.was_moved) target = rest.substr(0, rest.size() - 1);
+  }
   request.target = target;
   if (target.empty() || target[0] != '/')
     return wrong("The path of a request must begin with a slash.");
@@ -209,8 +215,6 @@ Result<void> parse_target(std::string_view target, Request& request) {
     request.as_kiosk = true;
     request.query.erase(as);
   }
-  // Neither does this one.
-  request.was_moved = request.query.erase(std::string(kMovedParameter)) > 0;
   return {};
 }
 

@@ -54,7 +54,7 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 
 struct Request {
   Method method = Method::get;
-  std::string target;                         // as the client sent it
+  std::string target;                         // as the client sent it, without kMovedMark
   std::string path;                           // decoded, without the query
   std::vector<std::string> segments;          // of the path, decoded
   std::map<std::string, std::string> query;   // decoded
@@ -73,7 +73,7 @@ struct Request {
   // The query contains `as=kiosk`. The kiosk's cookie is then the only valid one. Without
   // `as=kiosk`, that cookie is ignored.
   bool as_kiosk = false;
-  // The query contains `moved=1`: another node redirected the request to this node.
+  // Another node redirected the request to this node, and `target` ended with kMovedMark.
   bool was_moved = false;
   TraceContext trace{};  // the span is this server's
 
@@ -143,8 +143,9 @@ class Respond {
   std::shared_ptr<State> state_;
 };
 
-// The query parameter of a redirection to another node (net/api/node_redirect.h).
-constexpr std::string_view kMovedParameter = "moved";
+// The end of the query of some redirects to another node (net/api/node_redirect.h). It belongs
+// to no route.
+constexpr std::string_view kMovedMark = "moved=1";
 
 // Splits and decodes a request target. Refuses invalid percent escapes, NUL, invalid UTF-8, and
 // repeated query parameters.

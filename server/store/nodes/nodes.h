@@ -102,6 +102,9 @@ class Nodes {
   // nothing if there is no such model.
   Result<std::optional<Node>> owner_of(const std::string& ref);
 
+  // Returns the address of another node that runs or ran the job, if it has a lease.
+  Result<std::optional<std::string>> node_of_job(JobId job, const Uuid& self);
+
   // Returns all nodes, the longest running first.
   Result<std::vector<Node>> all();
   // Returns the models of each node, at most `most` of each.

@@ -26,4 +26,14 @@ Result<Ownership> Nodes::ownership(int most) {
   });
 }
 
+Result<std::optional<std::string>> Nodes::node_of_job(JobId job, const Uuid& self) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::optional<std::string>> {
+    auto rows = STRATA_TRY(
+        connection.query("SELECT n.url FROM jobs j JOIN nodes n ON n.id = j.node "
+                         "WHERE j.id = $1 AND n.id <> $2 AND n.lease_until > clock_timestamp()",
+                         Params().id(job).uuid(self)));
+    return rows.rows() > 0 ? std::optional(rows.text(0, 0)) : std::nullopt;
+  });
+}
+
 }  // namespace strata::store

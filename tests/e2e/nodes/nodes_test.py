@@ -177,6 +177,19 @@ def test_a_request_whose_path_does_not_name_the_model_is_redirected_once(site, m
     assert owner.get(f"/models/{model['id']}/layers/{layer}").status == 200
 
 
+def test_a_job_is_found_through_any_node(site):
+    first, second = site.nodes
+    asked = "/models?filename=sheet.ply&unit=mm&name=Sheet"
+    job = first.ok("POST", asked, folded_grid(9)).json()["id"]
+    answer = second.get(f"/jobs/{job}")
+    assert answer.status == 307, answer
+    assert answer.headers["Location"] == f"{first.node_url}/api/v1/jobs/{job}?moved=1"
+    assert first.get(f"/jobs/{job}?moved=1").status == 200
+    assert first.wait_for_job(job)["state"] == "done"
+    assert second.get(f"/jobs/{job}", token="x" * 40).status == 401
+    assert second.get("/jobs/999999999").status == 404
+
+
 def test_connections_survive_a_redirection(site, model):
     owner, other = owner_and_other(site, model)
     path = f"/api/v1/models/{model['id']}/layers/marks/edits"

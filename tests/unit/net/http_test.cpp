@@ -562,9 +562,22 @@ TEST(Moved, a_handler_redirects_a_request_once) {
   Request request;
   ASSERT_TRUE(parse_target("/api/v1/tables/3/records?limit=5&moved=1", request));
   EXPECT_TRUE(request.was_moved);
+  EXPECT_EQ(request.target, "/api/v1/tables/3/records?limit=5");
   EXPECT_EQ(request.query, (std::map<std::string, std::string>{{"limit", "5"}}));
   EXPECT_EQ(redirected_by_handler("https://museum.example/node/c", request.target, true).status,
             503);
+}
+
+TEST(Moved, only_the_mark_of_a_redirection_is_removed) {
+  const auto parsed = [](std::string_view target) {
+    Request request;
+    EXPECT_TRUE(parse_target(target, request));
+    return std::pair(request.target, request.was_moved);
+  };
+  EXPECT_EQ(parsed("/x?moved=1"), std::pair(std::string("/x"), true));
+  EXPECT_EQ(parsed("/x?removed=1"), std::pair(std::string("/x?removed=1"), false));
+  EXPECT_EQ(parsed("/x?moved=1&y=2"), std::pair(std::string("/x?moved=1&y=2"), false));
+  EXPECT_EQ(parsed("/moved=1"), std::pair(std::string("/moved=1"), false));
 }
 
 TEST(Moved, the_query_of_a_redirected_request_is_kept) {
