@@ -9,7 +9,7 @@
 namespace strata::store {
 namespace {
 
-// A renewal that takes longer than this is of no use, because the node no longer relies on it.
+// A renewal that takes longer cannot help, because the node no longer relies on its lease then.
 constexpr PgLimits kLeaseLimits{std::chrono::milliseconds(1500), std::chrono::milliseconds(1500),
                                 std::chrono::milliseconds(1000)};
 
