@@ -161,7 +161,8 @@ Result<void> write_zip(const Bundle& bundle, const std::filesystem::path& file) 
 Result<void> write_support_bundle(const DataOptions& data, const SupportOptions& options,
                                   const std::string& checks, const nlohmann::json& graphics) {
   std::string dsn = data.database;
-  if (dsn.empty()) dsn = store::Cluster::inspect(data.data).dsn;
+  if (dsn.empty())
+    if (const auto state = store::Cluster::inspect(data.data); state.running) dsn = state.dsn;
   std::optional<store::SupportFacts> facts;
   std::string why_no_facts = "the database is not running";
   if (!dsn.empty()) {
