@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 #include <string_view>
 
 #include "core/error.h"
@@ -11,19 +10,18 @@
 
 namespace strata::room {
 
-// The trace of one edit, and the times when its stages began. A stage that has not begun has no
-// time.
+// The trace of one edit, and the times when its stages began. The time of a stage
+// that has not begun is zero.
 struct EditTrace {
   using Clock = std::chrono::steady_clock;
-  using Time = std::optional<Clock::time_point>;
 
   TraceId id;
   Clock::time_point arrived = Clock::now();
-  Time started{};       // the end of the queue and of the look-up in the journal
-  Time computed{};      // only for edits that a worker computes
-  Time painted{};       // the texels are in the mirror
-  Time submitted{};     // to the journal
-  double paint_ms = 0;  // the part of the time on the GPU thread, without the wait for it
+  Clock::time_point started{};    // the end of the queue and of the look-up in the journal
+  Clock::time_point computed{};   // only for edits that a worker computes
+  Clock::time_point painted{};    // the texels are in the mirror
+  Clock::time_point submitted{};  // to the journal
+  double paint_ms = 0;            // the part of the time on the GPU thread, without the wait for it
 };
 
 struct TracedEdit {
