@@ -186,11 +186,11 @@ BEGIN
   RETURN NULL;
 END $$;
 
-CREATE FUNCTION public.audit(of_action text, of_kind text, of_id bigint, of_subject text, of_project bigint, of_details jsonb DEFAULT '{}'::jsonb) RETURNS void
+CREATE FUNCTION public.audit(of_action text, of_kind text, of_id bigint, of_subject text, of_project bigint, of_details jsonb DEFAULT '{}'::jsonb, author text DEFAULT NULL::text) RETURNS void
     LANGUAGE plpgsql
     AS $$
 DECLARE
-  actor text := coalesce(nullif(current_setting('strata.actor', true), ''), activity_author());
+  actor text := coalesce(nullif(current_setting('strata.actor', true), ''), author, activity_author());
   kind text := coalesce(nullif(current_setting('strata.actor_kind', true), ''), CASE WHEN actor = '' THEN 'server' ELSE 'person' END);
 BEGIN
   INSERT INTO audit_log (actor_kind, actor, person_id, address, action, subject_kind, subject_id, subject, project_id, details)
@@ -634,15 +634,15 @@ BEGIN
     INTO ended FROM table_changes c WHERE c.table_id = NEW.table_id AND c.sequence = NEW.sequence AND c.subject = 'record';
   IF NEW.op = 'detach' THEN
     PERFORM audit('deletion', 'attachment', (NEW.record -> 'attachments' ->> 0)::bigint, of_table.name, of_table.project_id,
-      jsonb_build_object('table', NEW.table_id, 'records', ended.records, 'sequence', NEW.sequence));
+      jsonb_build_object('table', NEW.table_id, 'records', ended.records, 'sequence', NEW.sequence), NEW.user_name);
   END IF;
   IF ended.deleted > 0 THEN
     PERFORM audit('deletion', 'record', CASE WHEN ended.records = 1 THEN ended.key END, of_table.name, of_table.project_id,
-      jsonb_build_object('table', NEW.table_id, 'records', ended.deleted, 'sequence', NEW.sequence));
+      jsonb_build_object('table', NEW.table_id, 'records', ended.deleted, 'sequence', NEW.sequence), NEW.user_name);
   END IF;
   IF ended.restored > 0 THEN
     PERFORM audit('restored', 'record', CASE WHEN ended.records = 1 THEN ended.key END, of_table.name, of_table.project_id,
-      jsonb_build_object('table', NEW.table_id, 'records', ended.restored, 'sequence', NEW.sequence));
+      jsonb_build_object('table', NEW.table_id, 'records', ended.restored, 'sequence', NEW.sequence), NEW.user_name);
   END IF;
   RETURN NULL;
 END $$;

@@ -60,12 +60,12 @@ END $$;
 CREATE TRIGGER audit_is_kept BEFORE UPDATE OR DELETE ON audit_log FOR EACH ROW EXECUTE FUNCTION audit_is_kept();
 CREATE TRIGGER audit_is_not_emptied BEFORE TRUNCATE ON audit_log FOR EACH STATEMENT EXECUTE FUNCTION audit_is_kept();
 
--- Adds a row about the person, token, kiosk or link for which the transaction runs (Pool::write and Store's changes set them). An empty name means
--- the server.
-CREATE FUNCTION audit(of_action text, of_kind text, of_id bigint, of_subject text, of_project bigint, of_details jsonb DEFAULT '{}')
-RETURNS void LANGUAGE plpgsql AS $$
+-- Adds a row about the person, token, kiosk or link for which the transaction runs (Pool::write and Store's changes set them), or else about the
+-- `author` of the change. An empty name means the server.
+CREATE FUNCTION audit(of_action text, of_kind text, of_id bigint, of_subject text, of_project bigint, of_details jsonb DEFAULT '{}',
+  author text DEFAULT NULL) RETURNS void LANGUAGE plpgsql AS $$
 DECLARE
-  actor text := coalesce(nullif(current_setting('strata.actor', true), ''), activity_author());
+  actor text := coalesce(nullif(current_setting('strata.actor', true), ''), author, activity_author());
   kind text := coalesce(nullif(current_setting('strata.actor_kind', true), ''), CASE WHEN actor = '' THEN 'server' ELSE 'person' END);
 BEGIN
   INSERT INTO audit_log (actor_kind, actor, person_id, address, action, subject_kind, subject_id, subject, project_id, details)
@@ -354,15 +354,15 @@ BEGIN
     INTO ended FROM table_changes c WHERE c.table_id = NEW.table_id AND c.sequence = NEW.sequence AND c.subject = 'record';
   IF NEW.op = 'detach' THEN
     PERFORM audit('deletion', 'attachment', (NEW.record -> 'attachments' ->> 0)::bigint, of_table.name, of_table.project_id,
-      jsonb_build_object('table', NEW.table_id, 'records', ended.records, 'sequence', NEW.sequence));
+      jsonb_build_object('table', NEW.table_id, 'records', ended.records, 'sequence', NEW.sequence), NEW.user_name);
   END IF;
   IF ended.deleted > 0 THEN
     PERFORM audit('deletion', 'record', CASE WHEN ended.records = 1 THEN ended.key END, of_table.name, of_table.project_id,
-      jsonb_build_object('table', NEW.table_id, 'records', ended.deleted, 'sequence', NEW.sequence));
+      jsonb_build_object('table', NEW.table_id, 'records', ended.deleted, 'sequence', NEW.sequence), NEW.user_name);
   END IF;
   IF ended.restored > 0 THEN
     PERFORM audit('restored', 'record', CASE WHEN ended.records = 1 THEN ended.key END, of_table.name, of_table.project_id,
-      jsonb_build_object('table', NEW.table_id, 'records', ended.restored, 'sequence', NEW.sequence));
+      jsonb_build_object('table', NEW.table_id, 'records', ended.restored, 'sequence', NEW.sequence), NEW.user_name);
   END IF;
   RETURN NULL;
 END $$;

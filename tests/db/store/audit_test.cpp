@@ -40,14 +40,18 @@ class AuditLog : public ::testing::Test {
   // Returns the rows since the last call as "kind:actor action subject_kind subject", oldest first.
   std::vector<std::string> fresh() {
     std::vector<std::string> lines;
-    for (const AuditRow& row : store_->audit().rows({.limit = 1000}).value())
+    const auto rows = store_->audit().rows({.limit = 1000}).value();
+    for (const AuditRow& row : rows)
       if (row.id > last_seen_)
         lines.insert(lines.begin(), row.actor_kind + ":" + row.actor + " " + row.action + " " +
                                         row.subject_kind + " " + row.subject);
     last_seen_ = newest();
     return lines;
   }
-  AuditRow last() { return store_->audit().rows({.limit = 1}).value().front(); }
+  AuditRow last() {
+    const auto rows = store_->audit().rows({.limit = 1}).value();
+    return rows.front();
+  }
   static Actor owner() { return {"person", "owner", "192.0.2.7", {}}; }
 
   const std::string dsn_ = test::fresh_database();
@@ -138,7 +142,8 @@ TEST_F(AuditLog, many_failed_sign_ins_are_counted_in_one_row) {
   for (int i = 0; i < 7; ++i) fail_as("192.0.2.9", "ada");
   fail_as("192.0.2.10", "ada");
   std::int64_t of_ada = 0;
-  for (const AuditRow& row : store_->audit().rows({.action = "sign_in_failed"}).value()) {
+  const auto failed = store_->audit().rows({.action = "sign_in_failed"}).value();
+  for (const AuditRow& row : failed) {
     EXPECT_EQ(row.person, ada_.id);
     of_ada += row.count;
   }
@@ -234,7 +239,7 @@ TEST_F(AuditLog, retention_deletes_only_old_rows_and_writes_a_row) {
   EXPECT_EQ(store_->audit().purge_some(std::chrono::days(8)), false);
   EXPECT_THAT(fresh(), ElementsAre("server: audit_purged audit "));
   EXPECT_EQ(last().details.value("rows", 0), 1);
-  EXPECT_THAT(*store_->audit().rows({.action = "sign_in_failed"}), IsEmpty());
+  EXPECT_EQ(store_->audit().rows({.action = "sign_in_failed"})->size(), 0u);
   EXPECT_FALSE(store_->audit().purge_some(std::chrono::days(0)));
 }
 
