@@ -157,7 +157,7 @@ void write_machine(MetricsWriter& out, const Metrics& metrics, const Gauges& gau
               "End of the TLS certificate, in seconds since 1970.", end);
 }
 
-void write_node(Writer& out, const Gauges& gauges) {
+void write_node(MetricsWriter& out, const Gauges& gauges) {
   if (!gauges.node) return;
   out.gauge("strata_node_lease_seconds", "Time until the lease of the node ends. 0: it has ended.",
             gauges.node->lease_s);

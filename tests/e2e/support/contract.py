@@ -62,7 +62,9 @@ class Contract:
             )
             # A call can reach a node that does not have the model that it needs.
             moved = answer.status == 307 and b"/problems#moved" in answer.body
-            assert forbidden or moved, f"{method} {path}: the contract has no {answer.status}: {answer}"
+            assert (
+                forbidden or moved
+            ), f"{method} {path}: the contract has no {answer.status}: {answer}"
             return
         media_type = (answer.headers.get("Content-Type") or "").split(";")[0]
         content = self._resolve(described).get("content", {})
