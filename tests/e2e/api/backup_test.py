@@ -191,7 +191,7 @@ def check_bad_backups(whole, data, folder):
             file.write(b"\xff" * 100)
 
     for name, change, told in (
-        ("cut", cut, "bytes; "),
+        ("cut", cut, " bytes were written"),
         ("flipped", flip, "checksum differs"),
         ("garbage", garbage, "manifest.json is not"),
         ("newer", edit(lambda m: m.update(schema_version=10**6)), "Newer backup"),

@@ -18,7 +18,9 @@ M = "/models/sheet"
 L = M + "/layers/cracks"
 SPAN = "00f067aa0ba902b7"
 TRACEPARENT = re.compile(r"00-([0-9a-f]{32})-([0-9a-f]{16})-0[01]")
+# No work counts as slow, because the lines of slow work have other messages.
 DEBUG = ["--log-format", "json", "--log-level", "info,net=debug,room=debug,store=debug"]
+DEBUG += ["--slow-after", "0"]
 
 
 @pytest.fixture(scope="module")

@@ -106,7 +106,9 @@ export class Contract {
     }
     const content = described.content ?? {};
     if (body.length === 0)
-      return Object.keys(content).length === 0 || "text/csv" in content
+      return Object.keys(content).length === 0 ||
+        "text/csv" in content ||
+        "application/x-ndjson" in content
         ? faults
         : [...faults, "there is no body"];
     const media_type = media_type_of(headers);
