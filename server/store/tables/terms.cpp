@@ -63,7 +63,7 @@ class TermIntake {
     return {};
   }
 
-  // Finds the record of each term, by URI or else by code. If there is none, the term gets one.
+  // Finds the record of each term, by URI or else by code. A term without a record gets a new one.
   Result<void> find_keys() {
     auto rows = STRATA_TRY(load_all_rows(connection_, open_.table.id, open_.all));
     for (Record& row : rows) {
