@@ -373,7 +373,7 @@ Command add_serve(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--audit-days", options->audit_days,
-                   "Days for which the audit log keeps its rows; 0 keeps them for ever")
+                   "Days for which the audit log keeps its rows; 0 keeps them permanently")
       ->envname("STRATA_AUDIT_DAYS")
       ->check(CLI::Range(0, kMaxAuditDays))
       ->capture_default_str();

@@ -46,8 +46,6 @@ class NodeLease {
   // Returns the time until the lease is over, by the clock of this process. At least 0.
   std::chrono::milliseconds left() const;
   bool draining() const { return draining_; }
-  // Returns whether a proxy may send new requests to this node.
-  bool ready() const { return holds() && !draining_; }
   const store::NewNode& node() const { return options_.node; }
 
   // Allows other nodes to claim the models of this node. It renews its lease until `leave`.

@@ -3,6 +3,7 @@
 #include "app/records/painted_keys.h"
 #include "core/digest.h"
 #include "core/text/slug.h"
+#include "core/text/timestamp.h"
 #include "core/uuid.h"
 #include "jobs/job_queue.h"
 #include "net/api/metrics.h"
@@ -168,6 +169,19 @@ Response job_response(const RouteContext& context, JobId job) {
                                                {"message", ""}},
                        202)
       .with("Location", "/api/v1/jobs/" + to_string(job));
+}
+
+Result<std::optional<std::string>> time_of(const Request& request, const std::string& name) {
+  const auto found = request.query.find(name);
+  if (found == request.query.end()) return std::nullopt;
+  auto utc = utc_timestamp(found->second);
+  if (!utc)
+    return fail(ErrorCode::invalid, "Invalid time",
+                "`" + name +
+                    "` must be a time such as 2026-05-04T12:00:00Z. "
+                    "Write the + of a time zone as %2B.",
+                name);
+  return utc;
 }
 
 Result<std::string> slug_of(const std::optional<std::string>& requested, const std::string& text) {

@@ -94,6 +94,10 @@ Result<void> check_source_download(const Request& request, const Model& model);
 // Returns 202 with the job and the address of the job.
 Response job_response(const RouteContext& context, JobId job);
 
+// Returns the time in a parameter of the query as UTC (core/text/timestamp.h), and nothing if the
+// parameter is absent.
+Result<std::optional<std::string>> time_of(const Request& request, const std::string& name);
+
 // Returns the requested slug, or a slug made from the name. Refuses a requested slug that contains
 // only digits.
 Result<std::string> slug_of(const std::optional<std::string>& requested, const std::string& name);

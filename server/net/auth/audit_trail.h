@@ -14,8 +14,8 @@ store::Actor actor_of(const Request& request);
 store::Actor signing_in(const Request& request, std::string way, std::string user = {});
 
 // Writes a response with a file that browsers save (Content-Disposition: attachment), or with the
-// first part of one, to the audit log. Ignores other responses. If this fails, the response must
-// not be sent. Blocks.
+// first part of one, to the audit log. Ignores other responses. The thread must act as the sender
+// (store::ActingAs). If this fails, the response must not be sent. Blocks.
 Result<void> audit_export(const RouteContext& context, const Request& request,
                           const Response& response);
 

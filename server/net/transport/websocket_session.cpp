@@ -258,39 +258,40 @@ class WebSocketSession final : public LiveSocket,
   websocket::close_reason reason_;
 };
 
-void log_failure(const std::exception_ptr& failure) {
-  if (!failure) return;
-  try {
-    std::rethrow_exception(failure);
-  } catch (const std::exception& error) {
-    log::error(std::string("a live connection failed: ") + error.what());
-  }
+// Runs a new session. `run` returns the coroutine of the session.
+template <class Run>
+void start(ConnectionStream stream, std::shared_ptr<Connections> connections, Run run) {
+  auto executor = stream.get_executor();
+  auto session = std::make_shared<WebSocketSession>(std::move(stream), std::move(connections));
+  asio::co_spawn(
+      executor, [session, run = std::move(run)]() mutable { return run(*session); },
+      [](const std::exception_ptr& failure) {
+        if (!failure) return;
+        try {
+          std::rethrow_exception(failure);
+        } catch (const std::exception& error) {
+          log::error(std::string("a live connection failed: ") + error.what());
+        }
+      });
 }
 
 }  // namespace
 
 void start_websocket(ConnectionStream stream, http::request<http::empty_body> request,
                      std::shared_ptr<Connections> connections, Api::LiveEntry entry) {
-  auto executor = stream.get_executor();
-  auto session = std::make_shared<WebSocketSession>(std::move(stream), std::move(connections));
-  asio::co_spawn(
-      executor,
-      [session, request = std::move(request), entry = std::move(entry)]() mutable {
-        return session->run(std::move(request), std::move(entry));
-      },
-      log_failure);
+  start(
+      std::move(stream), std::move(connections),
+      [request = std::move(request), entry = std::move(entry)](WebSocketSession& session) mutable {
+        return session.run(std::move(request), std::move(entry));
+      });
 }
 
 void start_moved_websocket(ConnectionStream stream, http::request<http::empty_body> request,
                            std::shared_ptr<Connections> connections, std::string url) {
-  auto executor = stream.get_executor();
-  auto session = std::make_shared<WebSocketSession>(std::move(stream), std::move(connections));
-  asio::co_spawn(
-      executor,
-      [session, request = std::move(request), url = std::move(url)]() mutable {
-        return session->run_moved(std::move(request), std::move(url));
-      },
-      log_failure);
+  start(std::move(stream), std::move(connections),
+        [request = std::move(request), url = std::move(url)](WebSocketSession& session) mutable {
+          return session.run_moved(std::move(request), std::move(url));
+        });
 }
 
 }  // namespace strata::net

@@ -59,11 +59,11 @@ Result<Error> claim_problem(PgConnection& connection, ModelId model,
     return Error{ErrorCode::unavailable, "Node not available",
                  "This node is stopping, or it has lost its connection to the database. Try again.",
                  ""};
-  if (self) return moved_to(rows.text(0, 1));
   Error error = moved_to(rows.text(0, 1));
-  error.detail =
-      "A node of this site has the model, and this server is not a node of the site. Use the "
-      "address of the site, or start this server with --node-url.";
+  if (!self)
+    error.detail =
+        "A node of this site has the model, and this server is not a node of the site. Use the "
+        "address of the site, or start this server with --node-url.";
   return error;
 }
 

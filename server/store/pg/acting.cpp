@@ -1,5 +1,6 @@
 #include "store/pg/acting.h"
 
+#include <deque>
 #include <utility>
 
 #include "store/pg/pg.h"
@@ -18,13 +19,19 @@ ActingAs::~ActingAs() { acting = before_; }
 
 const Actor* ActingAs::current() { return acting; }
 
-Result<void> name_actor(PgConnection& connection) {
-  if (!acting) return {};
-  STRATA_TRY(connection.query(
-      "SELECT set_config('strata.actor_kind', $1, true), set_config('strata.actor', $2, true), "
-      "set_config('strata.address', $3, true), set_config('strata.sign_in', $4, true)",
-      Params().text(acting->kind).text(acting->name).text(acting->address).text(acting->sign_in)));
-  return {};
+Result<Transaction> begin_as_actor(PgConnection& connection) {
+  if (!acting) return Transaction::begin(connection);
+  std::deque<PgConnection::Statement> statements;
+  statements.push_back({"BEGIN", {}});
+  Params params;
+  params.text(acting->kind).text(acting->name).text(acting->address).text(acting->sign_in);
+  statements.push_back(
+      {"SELECT set_config('strata.actor_kind', $1, true), set_config('strata.actor', $2, true), "
+       "set_config('strata.address', $3, true), set_config('strata.sign_in', $4, true)",
+       std::move(params)});
+  Transaction transaction = Transaction::adopt(connection);
+  STRATA_TRY(connection.pipeline(statements));
+  return transaction;
 }
 
 }  // namespace strata::store

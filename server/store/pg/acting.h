@@ -7,6 +7,7 @@
 namespace strata::store {
 
 class PgConnection;
+class Transaction;
 
 // The person, token, kiosk or link that causes the changes of a thread. The audit log names it
 // (db/migrations/000042_audit.sql).
@@ -34,7 +35,7 @@ class ActingAs {
   const Actor* const before_;
 };
 
-// Names the actor of this thread in the current transaction.
-Result<void> name_actor(PgConnection& connection);
+// Begins a transaction and names the actor of this thread in it, in one round trip.
+Result<Transaction> begin_as_actor(PgConnection& connection);
 
 }  // namespace strata::store

@@ -65,8 +65,7 @@ class Pool {
     using Outcome = std::invoke_result_t<Work, PgConnection&>;
     auto lease = STRATA_TRY(acquire(limits));
     for (int tries_left = 3;; --tries_left) {
-      auto transaction = STRATA_TRY(Transaction::begin(*lease));
-      STRATA_TRY(name_actor(*lease));
+      auto transaction = STRATA_TRY(begin_as_actor(*lease));
       Outcome result = work(*lease);
       if (!result) {
         if ((*lease).take_deadlock() && tries_left > 0) continue;

@@ -55,7 +55,7 @@ TEST_F(LeaseOfNode, rooms_close_while_a_renewal_hangs_and_open_again_after_it) {
     // Nothing can answer, so only the clock can have closed the rooms.
     ASSERT_TRUE(wait_until([&] { return !lease->holds() && rooms_->open_rooms() == 0; }));
     EXPECT_EQ(rooms_->open("pot", Role::owner).error().code, ErrorCode::unavailable);
-    EXPECT_FALSE(lease->ready());
+    EXPECT_FALSE(lease->holds());
     ASSERT_TRUE(wait_until([&] { return lease->left() == 0ms; }));
   }
   ASSERT_TRUE(wait_until([&] { return lease->holds(); }));
@@ -81,7 +81,8 @@ TEST_F(LeaseOfNode, rooms_close_before_a_node_whose_lease_is_over_joins_again) {
 TEST_F(LeaseOfNode, a_node_reports_its_load_drains_and_leaves) {
   const auto lease = start_lease(kLong);
   ASSERT_TRUE(lease);
-  EXPECT_TRUE(lease->ready());
+  EXPECT_TRUE(lease->holds());
+  EXPECT_FALSE(lease->draining());
   ASSERT_TRUE(wait_until([&] { return opens(); }));
   ASSERT_TRUE(wait_until([&] {
     const auto nodes = store_->nodes().all();
@@ -89,7 +90,6 @@ TEST_F(LeaseOfNode, a_node_reports_its_load_drains_and_leaves) {
   }));
   lease->begin_drain();
   EXPECT_TRUE(lease->draining());
-  EXPECT_FALSE(lease->ready());
   EXPECT_TRUE(store_->nodes().all().value().at(0).draining);
   rooms_->drain();
   lease->leave();

@@ -1,5 +1,6 @@
-"""The audit log over HTTP and on the command line: sign-ins, roles, exports, deletions, visibility
-and kiosks; who may read it; filters, pages and JSON lines; that nothing secret is in it."""
+"""The audit log over HTTP and on the command line. It has entries for sign-ins, roles, exports,
+deletions, visibility and kiosks, and contains no secrets. The tests also check who may read it, its
+filters, its pages and its JSON lines."""
 import json
 import subprocess
 

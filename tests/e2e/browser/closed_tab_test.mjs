@@ -5,30 +5,11 @@ import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { kLong_ms, StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
+import { unsaved_ids } from "../support/js/unsaved.mjs";
 
 const words = texts_of("en");
 
-/**
- * Returns the ids of the stroke batches, or of other messages, that the browser stores, in their
- * order.
- */
-const kept = (wanted = "stroke.extend") =>
-  page.evaluate(
-    (wanted) =>
-      new Promise((done, failed) => {
-        const request = indexedDB.open("strata");
-        request.onerror = () => failed(request.error);
-        request.onsuccess = () => {
-          const database = request.result;
-          const all = database.transaction("unsaved").objectStore("unsaved").getAll();
-          all.onsuccess = () => (
-            database.close(),
-            done(all.result.filter(({ op }) => op === wanted).map(({ id }) => id))
-          );
-        };
-      }),
-    wanted,
-  );
+const kept = (wanted) => unsaved_ids(page, wanted);
 const history = async () =>
   (await server.json("GET", "/models/demo-pot/layers/marks/edits?limit=1000")).edits;
 const ids = async () => (await history()).map(({ id }) => id);

@@ -7,6 +7,7 @@ import { attach_log, test } from "../support/js/cases.mjs";
 import { NodeSite } from "../support/js/nodes.mjs";
 import { kLong_ms, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
+import { unsaved_ids } from "../support/js/unsaved.mjs";
 
 const kModel = "demo-pot";
 const words = texts_of("en");
@@ -16,23 +17,7 @@ const kOfLostNode = [...kOfLostServer, "502", "503", "504"];
 const history = async () =>
   (await site.json("GET", `/models/${kModel}/layers/marks/edits?limit=1000`)).edits;
 
-/** Returns the ids of the stroke batches that the browser stores, in their order. */
-const kept = () =>
-  page.evaluate(
-    () =>
-      new Promise((done, failed) => {
-        const request = indexedDB.open("strata");
-        request.onerror = () => failed(request.error);
-        request.onsuccess = () => {
-          const database = request.result;
-          const all = database.transaction("unsaved").objectStore("unsaved").getAll();
-          all.onsuccess = () => (
-            database.close(),
-            done(all.result.filter(({ op }) => op === "stroke.extend").map(({ id }) => id))
-          );
-        };
-      }),
-  );
+const kept = () => unsaved_ids(page);
 
 async function shot(name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -97,7 +82,7 @@ test("the page paints at the node that nginx chooses", async () => {
   );
 });
 
-test("the node is killed in mid-stroke: the page goes on at another node", async () => {
+test("the node is killed during a stroke: the page continues at another node", async () => {
   const before = await site.command("owner", kModel);
   const edits_before = (await history()).length;
   let begun = 0;
@@ -128,7 +113,7 @@ test("the node is killed in mid-stroke: the page goes on at another node", async
   await site.command("start");
 });
 
-test("the node is stopped in mid-stroke: the page follows the model at once", async () => {
+test("the node is stopped during a stroke: the page follows the model at once", async () => {
   const before = await site.command("owner", kModel);
   const opened = sockets.length;
   let stopped;

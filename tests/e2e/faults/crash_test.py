@@ -120,11 +120,7 @@ def test_what_was_saved_survives_kills_of_the_database(crashes):
 
 
 def test_every_painter_has_an_answer(crashes, painters):
-    crashes.book.stopping.set()
-    for painter in painters:
-        painter.join(180)
-        assert not painter.is_alive(), f"{painter.name} still waits for an answer"
-    assert not crashes.book.faults, crashes.book.faults[:5]
+    crashes.end_painting(painters)
 
 
 def test_every_edit_is_in_the_history_once_and_no_other(crashes, story):

@@ -48,11 +48,7 @@ def test_painting_goes_on_while_owners_are_killed(site, painted):
 
 
 def test_every_painter_has_an_answer(painted, painters):
-    painted.book.stopping.set()
-    for painter in painters:
-        painter.join(180)
-        assert not painter.is_alive(), f"{painter.name} still waits for an answer"
-    assert not painted.book.faults, painted.book.faults[:5]
+    painted.end_painting(painters)
 
 
 def test_every_saved_edit_is_in_the_history_once_and_no_other(painted, story):

@@ -18,7 +18,7 @@ from support.live_client import AWAY
 from support.missing import missing
 from support.nginx import free_port
 from support.painters import HttpPainter
-from support.strata_server import LONG_S, StrataServer, _place_of_data, wait_for
+from support.strata_server import LONG_S, Requests, StrataServer, _place_of_data, wait_for
 
 # Lines that the logs of nodes may contain while other nodes are killed, stopped or frozen.
 FAULT_WORDS = [
@@ -164,7 +164,7 @@ class Node(StrataServer):
         return float(re.search(rf"^{name} (\S+)$", text, re.MULTILINE)[1])
 
 
-class Site:
+class Site(Requests):
     """The nodes of a site. Use it in a `with` block. Calls of `ok`, `get` and `post` go to a random
     running node and follow redirections, so a site can replace a server in the helpers of tests."""
 
@@ -240,17 +240,6 @@ class Site:
             assert time.monotonic() < end, f"{method} {path} got no answer in {LONG_S} s"
             time.sleep(0.05)
 
-    def get(self, path, **more):
-        return self.request("GET", path, **more)
-
-    def post(self, path, body=None, **more):
-        return self.request("POST", path, body, **more)
-
-    def ok(self, method, path, body=None, expect=(200, 201, 202, 204), **more):
-        answer = self.request(method, path, body, **more)
-        assert answer.status in expect, f"{method} {path}: {answer}"
-        return answer
-
     def owner(self, model):
         """Returns the node that owns the model, by the database. None: nobody owns it."""
         url = self.postgres.sql(
@@ -277,30 +266,15 @@ class NodeHttpPainter(HttpPainter):
     """Sends each edit to a random node, with the same key until it is saved. Follows one
     redirection in two, so nodes that do not have the model get many edits."""
 
-    def paint(self):
-        layer, edit = self.stroke(3)
-        path, key = f"/models/{self.model}/layers/{layer}/edits", secrets.token_hex(16)
-        node = None
-        while True:
-            try:
-                answer = (node or self.server.any()).post(
-                    path, edit, headers={"Idempotency-Key": key}
-                )
-            except AWAY:
-                node = None
-                time.sleep(0.02)
-                continue
-            if answer.status == 200:
-                break
-            node = None
-            if answer.status == 307:
-                if self.random.random() < 0.5:
-                    node = self.server.node_at(answer.headers["Location"])
-                continue
-            if answer.status not in (429, 503):
-                raise AssertionError(f"{edit} got {answer}")
-            time.sleep(0.02)
-        result = answer.json()
-        with self.book.lock:
-            self.book.repeats.append((path, edit, key, result))
-        self.book.saved(result["sequence"], layer, edit, result)
+    TRY_AGAIN = (307, 429, 503)
+    node = None  # to which the last answer redirected
+
+    def send(self, path, edit, headers):
+        node, self.node = self.node, None
+        try:
+            answer = (node or self.server.any()).post(path, edit, headers=headers)
+        except AWAY:
+            return None
+        if answer.status == 307 and self.random.random() < 0.5:
+            self.node = self.server.node_at(answer.headers["Location"])
+        return answer

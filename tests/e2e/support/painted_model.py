@@ -56,6 +56,14 @@ class PaintedModel:
             for seed, kind in enumerate(kinds, 100 * self.seed)
         ]
 
+    def end_painting(self, painters):
+        """Every painter gets its last answer, and none has found a fault."""
+        self.book.stopping.set()
+        for painter in painters:
+            painter.join(180)
+            assert not painter.is_alive(), f"{painter.name} still waits for an answer"
+        assert not self.book.faults, self.book.faults[:5]
+
     def history(self):
         found = {}
         for name, *_ in LAYERS:

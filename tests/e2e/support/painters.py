@@ -87,24 +87,26 @@ class Painter(threading.Thread):
 
 class HttpPainter(Painter):
     connection = None
+    TRY_AGAIN = (429, 503)
+
+    def send(self, path, edit, headers):
+        """Returns the answer to one attempt. None: the server is away."""
+        try:
+            if self.connection is None:
+                self.connection = self.server.connect()
+            return self.server.post(path, edit, headers=headers, connection=self.connection)
+        except AWAY:
+            self.connection = None
+            return None
 
     def paint(self):
         layer, edit = self.stroke(3)
         path, key = f"/models/{self.model}/layers/{layer}/edits", str(uuid.uuid4())
         while True:
-            try:
-                if self.connection is None:
-                    self.connection = self.server.connect()
-                answer = self.server.post(
-                    path, edit, headers={"Idempotency-Key": key}, connection=self.connection
-                )
-            except AWAY:
-                self.connection = None
-                time.sleep(0.02)
-                continue
-            if answer.status == 200:
+            answer = self.send(path, edit, {"Idempotency-Key": key})
+            if answer is not None and answer.status == 200:
                 break
-            if answer.status not in (429, 503):
+            if answer is not None and answer.status not in self.TRY_AGAIN:
                 raise AssertionError(f"{edit} got {answer}")
             time.sleep(0.02)
         result = answer.json()

@@ -69,7 +69,22 @@ class Answer:
         return f"<{self.status} {self.body[:400]!r}>"
 
 
-class StrataServer:
+class Requests:
+    """Shorter calls of `request`."""
+
+    def get(self, path, **more):
+        return self.request("GET", path, **more)
+
+    def post(self, path, body=None, **more):
+        return self.request("POST", path, body, **more)
+
+    def ok(self, method, path, body=None, expect=(200, 201, 202, 204), **more):
+        answer = self.request(method, path, body, **more)
+        assert answer.status in expect, f"{method} {path}: {answer}"
+        return answer
+
+
+class StrataServer(Requests):
     running = []  # the servers in `with` blocks, whose logs a failure shows
 
     def __init__(self, demo=False, options=()):
@@ -300,17 +315,6 @@ class StrataServer:
         finally:
             if connection is None:
                 link.close()
-
-    def get(self, path, **more):
-        return self.request("GET", path, **more)
-
-    def post(self, path, body=None, **more):
-        return self.request("POST", path, body, **more)
-
-    def ok(self, method, path, body=None, expect=(200, 201, 202, 204), **more):
-        answer = self.request(method, path, body, **more)
-        assert answer.status in expect, f"{method} {path}: {answer}"
-        return answer
 
     def wait_for_job(self, job):
         return wait_for(

@@ -114,14 +114,7 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
                   "state");
     query.resolved = state->second == "resolved";
   }
-  if (const auto since = request.query.find("since"); since != request.query.end()) {
-    query.since = utc_timestamp(since->second);
-    if (!query.since)
-      return fail(ErrorCode::invalid, "Invalid time",
-                  "`since` must be a time such as 2026-05-04T12:00:00Z. Write the + of a time "
-                  "zone as %2B.",
-                  "since");
-  }
+  query.since = STRATA_TRY(time_of(request, "since"));
   const auto model = STRATA_TRY(stored_model(context, request));
   const auto found = STRATA_TRY(context.store.comments().of_model(model.id, request.role(), query));
   return page_response(context, request, "comments", found, page);

@@ -41,19 +41,6 @@ Result<std::optional<std::int64_t>> number_in(const Request& request, const std:
   return number;
 }
 
-Result<std::optional<std::string>> time_in(const Request& request, const std::string& name) {
-  const auto found = request.query.find(name);
-  if (found == request.query.end()) return std::nullopt;
-  auto utc = utc_timestamp(found->second);
-  if (!utc)
-    return fail(ErrorCode::invalid, "Invalid time",
-                "`" + name +
-                    "` must be a time such as 2026-05-04T12:00:00Z. "
-                    "Write the + of a time zone as %2B.",
-                name);
-  return *utc;
-}
-
 Result<std::vector<LayerId>> seen_layers(const RouteContext& context, const Request& request,
                                          const Model& model) {
   std::vector<LayerId> ids;
@@ -83,8 +70,8 @@ nlohmann::json to_json(const store::TimelineStep& step) {
 
 Result<Response> timeline(const RouteContext& context, const Request& request) {
   store::TimelineQuery query;
-  query.from = STRATA_TRY(time_in(request, "from"));
-  query.to = STRATA_TRY(time_in(request, "to"));
+  query.from = STRATA_TRY(time_of(request, "from"));
+  query.to = STRATA_TRY(time_of(request, "to"));
   const auto intervals = STRATA_TRY(number_in(request, "intervals", 1, kMaxIntervals));
   query.intervals = static_cast<int>(intervals.value_or(kUsualIntervals));
   if (query.from && query.to && *query.from > *query.to)

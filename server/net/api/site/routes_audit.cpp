@@ -1,7 +1,6 @@
 // The audit log.
 #include <algorithm>
 
-#include "core/text/timestamp.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/page.h"
@@ -36,19 +35,6 @@ Result<std::string> text_of(const Request& request, const std::string& name) {
     return fail(ErrorCode::invalid, "Text too long",
                 "`" + name + "` can have at most " + std::to_string(kMaxText) + " bytes.", name);
   return text;
-}
-
-Result<std::optional<std::string>> time_of(const Request& request, const std::string& name) {
-  const auto given = request.query.find(name);
-  if (given == request.query.end()) return std::nullopt;
-  auto utc = utc_timestamp(given->second);
-  if (!utc)
-    return fail(ErrorCode::invalid, "Invalid time",
-                "`" + name +
-                    "` must be a time such as 2026-05-04T12:00:00Z or a day such as 2026-05-04. "
-                    "Write the + of a time zone as %2B.",
-                name);
-  return utc;
 }
 
 Result<AuditQuery> query_of(const RouteContext& context, const Request& request) {
