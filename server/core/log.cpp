@@ -61,6 +61,20 @@ std::string time_now() {
   return std::string(text, size) + fmt::format(".{:03}Z", std::clamp<long long>(ms, 0, 999));
 }
 
+// Escapes control characters. Messages contain text of clients, such as paths, which must not be
+// able to add lines to the log.
+std::string on_one_line(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f)
+      line += fmt::format("\\x{:02x}", code);
+    else
+      line += c;
+  }
+  return line;
+}
+
 std::string text_line(Module module, std::string_view message, std::span<const Field> fields) {
   std::string line = fmt::format("[{}] {}", name(module), message);
   for (const Field& field : fields)
@@ -69,7 +83,7 @@ std::string text_line(Module module, std::string_view message, std::span<const F
                    [&](const auto& value) { line += fmt::format(" {}={}", field.name, value); }},
         field.value);
   if (const TraceId& trace = current_trace()) line += " trace_id=" + to_string(trace);
-  return line;
+  return on_one_line(line);
 }
 
 std::string json_line(Level level, Module module, std::string_view message,

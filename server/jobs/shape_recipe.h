@@ -57,7 +57,7 @@ std::string description_of(const ShapeRecipe& recipe, const Model& model,
 
 // Returns a palette for the kind over the range of the values. `low` and `high` are the 2nd and the
 // 98th percentile of the values, `least` and `most` are the ends of their range. Palettes of signed
-// values diverge around 0, and that of azimuths is circular.
+// values diverge around 0. The palette of azimuths is circular.
 struct ValueRange {
   double least = 0, low = 0, high = 1, most = 1;
 };

@@ -134,7 +134,7 @@ struct FrameRequest {
   bool moving = false;
   // A band of a large image. Smaller frames are drawn before it, and also between its steps.
   bool large = false;
-  // The user edits or moves the camera: onlookers do not delay the frame.
+  // The user paints or moves the camera. Frames of other users do not delay this frame.
   bool acting = false;
   int width = 0, height = 0;  // pixels of the frame, to which the camera's window is scaled
   // Samples of each pixel, 1 to kMaxSamples. With more than one, the frame is the mean of that many
@@ -161,8 +161,8 @@ struct FrameRequest {
     bool operator==(const Box&) const = default;
   };
   std::optional<std::vector<Box>> changed;
-  // The part of the background's height that the frame covers, from the top: 0 … 1, except for a
-  // band of a larger image.
+  // The first and the last row of the background that the frame covers, as shares of the height
+  // from the top. Only a band of a larger image has other values than 0 and 1.
   glm::vec2 background_rows{0, 1};
   bool align_to_16 = true;  // enlarge the rectangles to multiples of 16 pixels for JPEG
 };

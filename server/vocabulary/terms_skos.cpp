@@ -167,7 +167,7 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
     term.definition = plainest(about.definitions.empty() ? about.notes : about.definitions);
     if (!iri.starts_with("_:") && !iri.starts_with(kRelativeBase)) term.uri = iri;
     if (!about.broader.empty()) {
-      // Prefers a parent with a description in the text to a parent that only has a name there.
+      // A parent that the file describes comes before parents to which the file only refers.
       auto parent =
           std::find_if(about.broader.begin(), about.broader.end(),
                        [&](const std::string& broader) { return codes.contains(broader); });

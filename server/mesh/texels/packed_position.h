@@ -14,8 +14,8 @@ namespace strata::mesh {
 constexpr std::uint32_t kMaxPackedX = (1u << 21) - 2, kMaxPackedY = (1u << 21) - 2,
                         kMaxPackedZ = (1u << 22) - 2;
 
-// Returns the smallest power of two for which `largest` steps cover `low`…`high`. It is not finer
-// than floats in this range.
+// Returns the smallest step with which `largest` steps cover `low`…`high`. The step is a power of
+// two, and is not finer than floats in this range.
 inline float packed_step(float low, float high, std::uint32_t largest) {
   const double farthest = std::max(std::abs(double{low}), std::abs(double{high}));
   int exponent = farthest > 0 ? std::ilogb(farthest) - 23 : -126;

@@ -39,7 +39,7 @@ void SurfaceBake::credit_areas(int band) {
 }
 
 // Returns the surface texel that is credited with area on a texel without an island or of another
-// island. This is the nearest texel of the triangle's own island within the ring. If there is no
+// island. This is the nearest texel of the triangle's island in the gutter's width. If there is no
 // such texel, because a tip is too thin to cover centers, it is the nearest texel covered by the
 // triangle. For a triangle that covers no texel, it is the texel that contains its centroid. That
 // texel is always a surface texel.

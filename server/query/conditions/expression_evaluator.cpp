@@ -83,8 +83,8 @@ class Block {
         by_(static_cast<int>(inputs.map.block_of_slot[slot]) / inputs.map.blocks_per_side) {
     decoded_.clear();
   }
-  // Makes a block that is not part of the map. Its only source has the 64 bit patterns that begin
-  // with `first`, or no value if `first` is empty.
+  // Makes a block that is not part of the map. The values of its only source are the
+  // 64 successive bit patterns from `first` on. If `first` is empty, the source has no values.
   Block(const Inputs& inputs, std::optional<std::uint32_t> first, Decoded& decoded)
       : inputs_(inputs),
         decoded_(decoded),

@@ -44,7 +44,7 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
   };
   // Returns the newest palette that is ready. Starts to make a missing or outdated palette.
   Found find(const Request& request);
-  // Makes the present palette on the calling thread. Blocks.
+  // Makes the current palette on the calling thread. Blocks.
   Result<std::shared_ptr<const Palette>> make(const Request& request) const {
     return make(store_, request);
   }

@@ -199,7 +199,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::optional<Error> closed_;  // the error for later edits
   // No work starts before the room was compared with the journal, which may contain more edits.
   bool verify_ = false;
-  // The reason why commits failed. All pending edits are rolled back when each one has a result.
+  // The reason why commits failed. All pending edits are rolled back once each has its answer.
   std::optional<Error> failure_;
   std::deque<Pending> pending_;  // in the order of sequences
   // By layer: the tiles where the GPU may differ from the mirror.

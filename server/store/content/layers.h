@@ -53,7 +53,7 @@ class Layers {
   // Returns the layers whose tiles must be counted again, because an edit was stored without the
   // sums of its tiles.
   Result<std::vector<Layer>> to_sum();
-  // Stores the sums of all tiles of the layer that have a value. The layer must not be edited
+  // Stores the sums of each tile of the layer that contains values. The layer must not be edited
   // during this call.
   Result<void> keep_sums(LayerId layer_id, std::vector<TileKeys> tiles);
 

@@ -201,7 +201,7 @@ def test_malformed(site):
         status=422,
         field="state",
     )
-    # The limit is ten thousand characters, regardless of their bytes.
+    # The limit is ten thousand characters, however many bytes they have.
     assert site.begin("bob", "😀" * 10000)["text"] == "😀" * 10000
     assert site.ok("bob", "GET", ALL).json()["total"] == before + 4
 

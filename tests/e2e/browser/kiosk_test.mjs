@@ -23,7 +23,7 @@ const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
 const kStep_s = Number(process.env.STRATA_KIOSK_STEP_S ?? 5);
 const kTours = Number(process.env.STRATA_KIOSK_TOURS ?? 1);
 const kUpright = { width: 1080, height: 1920 };
-// the test itself uses the last screen
+// The layout is checked on each screen. The rest of the test uses the last one.
 const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright];
 const kTarget_px = 57; // 15 mm on the screen of a kiosk
 // In MB, for the page and (next line) for the server. The allocators of both grow a little although

@@ -337,8 +337,8 @@ TEST_F(FeaturesOnRelief, lines_have_their_full_width_wherever_their_path_is_visi
 }
 
 TEST_F(FeaturesOnRelief, symbols_of_a_figure_are_whole_at_every_scale_and_resolution) {
-  // A line of chords, as the page stores it for a view that is only as wide as a hand. The chords
-  // are up to half a pixel away from the surface.
+  // A line of 40 straight segments, as the page stores it for a view of a small part of the
+  // surface. The segments are up to half a pixel away from the surface.
   std::vector<glm::dvec3> places;
   for (int i = 0; i <= 40; ++i) places.push_back(on_relief(-0.2 + 0.4 * i / 40, 0.13));
   const glm::dvec3 middle = on_relief(0.021, 0.13);

@@ -240,7 +240,7 @@ TEST_F(SurfaceImages,
       const glm::dvec3 up = glm::dmat3(request_.camera.view) * glm::dvec3(0, 0, 1);
       request_.style.light.mode = LightMode::unlit;
       const Color plain = pixel(kSize / 2, kSize / 2);
-      // The brightness from behind must be the same.
+      // From behind, the square must be as bright as from the front.
       const Color expected = lit(plain, museum_light(eye.z > 0 ? up : -up));
       request_.style.light.mode = LightMode::museum;
       SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " +

@@ -97,5 +97,16 @@ TEST_F(Log, text_lines_end_with_the_fields) {
             std::string::npos);
 }
 
+TEST_F(Log, a_text_line_has_no_control_characters_of_its_message_or_fields) {
+  testing::internal::CaptureStderr();
+  const Field fields[] = {{"path", std::string_view("/a\n2026-01-01 E forged")}};
+  write(Level::error, "one\r\ttwo\x7f", fields);
+  const std::string written = testing::internal::GetCapturedStderr();
+  ASSERT_EQ(written.find('\n'), written.size() - 1) << written;
+  EXPECT_NE(written.find("one\\x0d\\x09two\\x7f path=/a\\x0a2026-01-01 E forged\n"),
+            std::string::npos)
+      << written;
+}
+
 }  // namespace
 }  // namespace strata::log

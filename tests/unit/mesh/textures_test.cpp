@@ -61,6 +61,16 @@ TEST(ObjMaterials, each_triangle_knows_its_texture_wherever_that_lay_on_another_
   EXPECT_EQ(mesh.materials[1].wrap_u, mesh::Wrap::clamp);
 }
 
+TEST(ObjMaterials, lines_of_the_report_are_at_most_as_long_as_the_contract_allows) {
+  const std::string name(5000, 'n');
+  const auto loaded =
+      load_texts({{"pot.obj", "mtllib " + name + ".mtl\n" + kVertices + kTwoFaces},
+                  {"pot.mtl", "newmtl left\nmap_Kd " + name + ".jpg\nnewmtl right side\n"}});
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  ASSERT_FALSE(loaded->repairs.empty());
+  for (const Repair& repair : loaded->repairs) EXPECT_LE(repair.what.size(), 1000u) << repair.what;
+}
+
 TEST(ObjMaterials, pictures_that_are_missing_or_no_pictures_are_named) {
   const auto loaded =
       load_texts({{"pot.obj", kVertices + kTwoFaces},

@@ -223,7 +223,7 @@ TEST(QueryStatistics, quantiles_are_those_of_all_texels_in_order) {
       const auto got = statistics(view, map, kOrigin, 0.01, {.quantiles = true});
       ASSERT_TRUE(got.quantiles);
       const Quantiles expected = quantiles_of(samples(view, map));
-      // Another order of the sum may change its rounding, so the next value is also correct.
+      // The terms are added in another order, so the next larger or smaller value is correct, too.
       const double step = is_float(type) ? 0.125 : 1.0;
       for (std::size_t i = 0; i < expected.size(); ++i)
         EXPECT_NEAR((*got.quantiles)[i], expected[i], distinct > 1000 ? step : 0) << kQuantiles[i];

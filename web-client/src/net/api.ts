@@ -91,7 +91,7 @@ export class Api {
     options: Options<C>,
     at: string | null = null,
   ): Promise<{ value: Answer<C>; next: string | null }> {
-    const response = await this.request(call, {}, at ?? targetOf(call, options as AnyOptions));
+    const response = await this.request(call, {}, at ?? targetOf(call, options));
     const value = await parsed<Answer<C>>(response);
     return { value, next: nextPage(response.headers.get("Link")) };
   }

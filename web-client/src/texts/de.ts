@@ -600,7 +600,8 @@ export const texts = {
     through: "Auch verdeckte Flächen bemalen",
     reach: "Ausdehnung",
     connected: "Gleicher Wert",
-    connected_hint: "Die zusammenhängende Fläche mit demselben Wert oder ohne Wert",
+    connected_hint:
+      "Die zusammenhängende Fläche um diesen Punkt mit demselben Wert, oder ohne Wert, wenn der Punkt keinen hat",
     island: "Ganzes Stück",
     island_hint: "Das ganze zusammenhängende Stück des Objekts",
     changed: (area) => `${area} geändert.`,

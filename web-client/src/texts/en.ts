@@ -572,7 +572,8 @@ export const texts = {
     through: "Paint through to the back",
     reach: "Extent",
     connected: "Same value",
-    connected_hint: "The connected area with the same value or with no value",
+    connected_hint:
+      "The connected area around this point with the same value, or without a value if the point has none",
     island: "Whole piece",
     island_hint: "The whole connected piece of the object",
     changed: (area: string) => `${area} changed.`,
@@ -1735,7 +1736,7 @@ export const texts = {
     link_done: "Done",
     states: {
       running: "running",
-      silent: "silent",
+      silent: "not responding",
       unopened: "not opened yet",
       revoked: "revoked",
       expired: "expired",

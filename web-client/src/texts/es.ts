@@ -594,7 +594,8 @@ export const texts = {
     through: "Pintar a través del objeto",
     reach: "Alcance",
     connected: "Mismo valor",
-    connected_hint: "El área conectada que tiene el mismo valor o que no tiene ninguno",
+    connected_hint:
+      "El área conectada alrededor de este punto con el mismo valor, o sin valor si el punto no tiene ninguno",
     island: "Pieza entera",
     island_hint: "Toda la pieza conectada del objeto",
     changed: (area) => `Área cambiada: ${area}.`,

@@ -100,7 +100,7 @@ export const laterTexts = {
     all_actions: "Alle Aktionen",
     from: "Von",
     to: "Bis",
-    download: "Herunterladen (JSON Lines)",
+    download: "JSON Lines laden",
     time: "Zeit",
     who: "Wer",
     what: "Was",

@@ -99,7 +99,7 @@ export const laterTexts = {
     all_actions: "Todas las acciones",
     from: "Desde",
     to: "Hasta",
-    download: "Descargar (JSON Lines)",
+    download: "Descargar JSON Lines",
     time: "Hora",
     who: "Quién",
     what: "Qué",

@@ -112,6 +112,7 @@ export const sharedStyles = css`
   }
   input[type="text"],
   input[type="password"],
+  input[type="date"],
   select,
   textarea {
     width: 100%;
@@ -124,6 +125,7 @@ export const sharedStyles = css`
   }
   input[type="text"]:hover:enabled,
   input[type="password"]:hover:enabled,
+  input[type="date"]:hover:enabled,
   select:hover:enabled,
   textarea:hover:enabled {
     border-color: var(--ink-soft);
@@ -147,7 +149,12 @@ export const sharedStyles = css`
     resize: vertical;
     min-height: 4rem;
   }
+  /* The focus can be on the button for the calendar, inside the field. */
+  input[type="date"]:focus-within {
+    outline: var(--focus);
+  }
   input:focus-visible,
+  input[type="date"]:focus-within,
   select:focus-visible,
   textarea:focus-visible {
     outline-offset: 0;

@@ -63,7 +63,7 @@ Result<Response> position(const RouteContext& context, const Request& request) {
     response = json_response(protocol::to_json(to_protocol(*point)));
   else if (!point->hit)
     return fail(ErrorCode::not_found, "No surface",
-                "The model has no surface, so the server cannot measure.", "coords");
+                "The model has no surface, so there is no nearest point to `coords`.", "coords");
   else {
     response = json_response(point_coverage(*point, layers, room->model()));
     response.headers = {{"Content-Type", "application/prs.coverage+json"}};

@@ -235,8 +235,8 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
   if (body.role) role = static_cast<Role>(static_cast<int>(*body.role));
   if (role > own)
     return fail(ErrorCode::forbidden, "Not allowed",
-                "Your role " + std::string(only ? "there " : "") + "is " + std::string(name(own)) +
-                    ". A token cannot have a higher role than you.",
+                "Your role " + std::string(only ? "in this project " : "") + "is " +
+                    std::string(name(own)) + ". A token cannot have a higher role than you.",
                 "role");
   const auto made =
       context.store.tokens().create(TokenKind::script, request.user(), role,

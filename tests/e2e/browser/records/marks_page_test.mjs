@@ -1,6 +1,7 @@
 // Lines and points on the surface. The page creates columns for them. A crack is drawn by dragging
 // and by clicks, and a sample by a click. The table shows their lengths, the 3D view shows the
-// lines and points, and undo removes them. The form of a record can remove a line and draw more.
+// lines and points, and undo removes them. In the form of a record, users can remove a line and
+// draw more lines.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";

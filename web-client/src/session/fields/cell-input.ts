@@ -77,14 +77,6 @@ export class StrataCellInput extends LitElement {
         resize: none;
         field-sizing: content;
       }
-      input[type="date"] {
-        width: 100%;
-        min-height: var(--control);
-        padding: var(--space-1) var(--space-2);
-        border: var(--edge) solid var(--line-strong);
-        border-radius: var(--radius-small);
-        background: var(--field);
-      }
       :host([fixed]) :is(input, textarea, select, .number) {
         background: var(--surface);
         color: var(--ink-soft);
