@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/text/bytes.h"
 #include "core/text/hex.h"
 
 namespace strata {
@@ -34,9 +35,7 @@ Sha256 sha256(std::span<const std::uint8_t> bytes) {
   return stream.finish();
 }
 
-Sha256 sha256(std::string_view text) {
-  return sha256(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-}
+Sha256 sha256(std::string_view text) { return sha256(bytes_of(text)); }
 
 std::string sha256_hex(std::string_view text) { return to_hex(sha256(text)); }
 

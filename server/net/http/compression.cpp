@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "core/text/ascii.h"
+#include "core/text/bytes.h"
 #include "net/http/accept.h"
 
 namespace strata::net {
@@ -120,10 +121,6 @@ void name_known_tag(Response& response, std::string_view known_tags) {
     if (const std::string coded = with_coding(etag, coding);
         known_tags.find(coded) != std::string_view::npos)
       return set(response, "ETag", coded);
-}
-
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "core/digest.h"
 #include "core/text/base64.h"
+#include "core/text/bytes.h"
 #include "core/text/percent.h"
 #include "store/content/projects.h"
 #include "store/store.h"
@@ -12,10 +13,6 @@ namespace strata::net {
 namespace {
 
 constexpr std::size_t kMaxCursorLength = 6000;  // the whole head of a request has at most 8 KiB
-
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
 
 // Decodes a cursor. Each text has only one valid cursor, so other encodings are refused.
 std::optional<std::string> text_of_cursor(const std::string& cursor) {

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "core/text/bytes.h"
 #include "domain/people/question.h"
 
 namespace strata::net {
@@ -108,11 +109,11 @@ bool write(const app::FeatureSet& set, const Response::Sink& sink) {
       is_first = false;
       append_feature(text, table, feature);
       if (text.size() < kPieceBytes) continue;
-      if (!sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) return false;
+      if (!sink(bytes_of(text))) return false;
       text.clear();
     }
   text += "\n]}\n";
-  return sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return sink(bytes_of(text));
 }
 
 }  // namespace

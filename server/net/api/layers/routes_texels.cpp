@@ -4,6 +4,7 @@
 #include "core/byte_budget.h"
 #include "core/digest.h"
 #include "core/mapped_file.h"
+#include "core/text/bytes.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "domain/people/role.h"
@@ -198,28 +199,28 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   name_download(response, target.layer.slug + ".csv");
   add_sequences(response, target.at.value_or(texels->view.snapshot.sequence),
                 target.room->edits().durable_sequence());
-  response.stream = Response::Stream{
-      {}, [texels, csv, cells](const Response::Sink& sink) {
-        std::string text = csv->head();
-        const auto send = [&] {
-          const bool sent = sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-          text.clear();
-          return sent;
-        };
-        bool goes_on = true;
-        const auto put = [&](const query::TexelSample& sample) {
-          csv->append(text, sample, cells != nullptr);
-          if (text.size() >= kPieceBytes) goes_on = send();
-          return goes_on;
-        };
-        if (cells) {
-          for (const query::TexelSample& sample : *cells)
-            if (!put(sample)) break;
-        } else {
-          query::for_each_sample(*texels, put);
-        }
-        return goes_on && send();
-      }};
+  const auto write = [texels, csv, cells](const Response::Sink& sink) {
+    std::string text = csv->head();
+    const auto send = [&] {
+      const bool sent = sink(bytes_of(text));
+      text.clear();
+      return sent;
+    };
+    bool goes_on = true;
+    const auto put = [&](const query::TexelSample& sample) {
+      csv->append(text, sample, cells != nullptr);
+      if (text.size() >= kPieceBytes) goes_on = send();
+      return goes_on;
+    };
+    if (cells) {
+      for (const query::TexelSample& sample : *cells)
+        if (!put(sample)) break;
+    } else {
+      query::for_each_sample(*texels, put);
+    }
+    return goes_on && send();
+  };
+  response.stream = Response::Stream{{}, write};
   return response;
 }
 

@@ -1,6 +1,7 @@
 // The audit log.
 #include <algorithm>
 
+#include "core/text/bytes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/page.h"
@@ -71,8 +72,7 @@ bool write_lines(store::Store& store, AuditQuery query, const Response::Sink& si
     if (!rows) return false;
     std::string text;
     for (const AuditRow& row : *rows) text += json_line(row);
-    if (!text.empty() && !sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}))
-      return false;
+    if (!text.empty() && !sink(bytes_of(text))) return false;
     if (rows->size() < kRowsAtOnce) return true;
     query.before = rows->back().id;
   }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMaxModelsListed = 100;  // of each node
 
-nlohmann::json to_json(const store::Node& node, const store::Ownership& ownership) {
+nlohmann::json node_json(const store::Node& node, const store::Ownership& ownership) {
   const double left_s = std::chrono::duration<double>(node.lease_until - ownership.now).count();
   nlohmann::json models = nlohmann::json::array();
   std::int64_t total = 0;
@@ -59,7 +59,8 @@ Result<Response> list_nodes(const RouteContext& context, const Request& request)
     return key;
   }));
   nlohmann::json list = nlohmann::json::array();
-  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(nodes[i], ownership));
+  for (std::size_t i = part.begin; i < part.end; ++i)
+    list.push_back(node_json(nodes[i], ownership));
   nlohmann::json body = {{"nodes", std::move(list)}, {"total", nodes.size()}};
   if (const app::NodeLease* lease = context.options.lease)
     body["this_node"] = to_string(lease->node().id);

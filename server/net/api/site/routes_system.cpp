@@ -74,7 +74,7 @@ Gauges gauges_of(const RouteContext& context) {
 
 log::Level level_of(protocol::LogLevel level) { return *log::level_named(name(level)); }
 
-nlohmann::json to_json(const log::Levels& levels) {
+nlohmann::json levels_json(const log::Levels& levels) {
   nlohmann::json modules = nlohmann::json::array();
   for (std::size_t i = 0; i < log::kModules; ++i)
     if (const auto level = levels.of_modules[i])
@@ -96,7 +96,7 @@ Result<Response> set_log_levels(const Request& request) {
   }
   log::set_levels(levels);
   log::info(request.user() + " set the log levels to " + log::to_string(levels));
-  return json_response(to_json(levels));
+  return json_response(levels_json(levels));
 }
 
 Response readiness(const RouteContext& context) {
@@ -154,7 +154,7 @@ void add_system_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/log-levels",
               .handler = answering([](const Request&) -> Result<Response> {
-                return json_response(to_json(log::levels()));
+                return json_response(levels_json(log::levels()));
               }),
               .role = Role::administrator});
   router.add({.method = Method::put,
