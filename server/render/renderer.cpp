@@ -68,7 +68,7 @@ struct Renderer::Impl {
     return {};
   }
 
-  // Starts a frame whose turn precedes all frames in progress, usually a rectangle.
+  // Starts a frame, usually a rectangle, whose turn precedes those of all frames in progress.
   std::optional<Job> next_part() {
     std::erase_if(under_way, [](const auto& frame) { return frame.expired(); });
     std::vector<FrameTask::Turn> turns;

@@ -87,7 +87,7 @@ struct LayerStyle {  // the style of one layer in a view
   std::shared_ptr<const Palette> palette;  // identified by its address, so it must not change
   float opacity = 1;
   LayerBlend blend = LayerBlend::normal;
-  // Draws hatch and dots without tint and border: a mark over another layer, not a class.
+  // Draws hatch and dots without tint and border, for a mark over another layer.
   bool bare = false;
   bool operator==(const LayerStyle&) const = default;
 };
@@ -149,8 +149,8 @@ struct FrameRequest {
   // `superseded`. If `samples_time` is too short for a few samples, it fails with `too_large`.
   bool refinement = false;
   // A whole frame may have smooth edges. It is then the mean of the view's frame and of a few
-  // samples around it (RendererOptions::smooth_samples). The view keeps its frame with one sample,
-  // and later rectangles have one sample.
+  // frames from slightly moved cameras (RendererOptions::smooth_samples). The view keeps its frame
+  // with one sample, and later rectangles have one sample.
   bool smooth = false;
   ViewStyle style;
   // The model-space boxes that changed since this view's last frame. Only the rectangles that they

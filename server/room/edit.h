@@ -42,8 +42,8 @@ struct FillEdit {
     Place at;
   };
   struct Connected {
-    // The connected piece of the surface at this position where all texels have the same value, or
-    // where all have no value.
+    // The largest connected piece of the surface around this position where all texels have the
+    // same value, or where all have no value.
     Place at;
   };
   std::variant<Everywhere, Where, Island, Connected> region = Everywhere{};
@@ -104,7 +104,7 @@ bool waits_for_review(const Layer& layer, const EditRequest& edit);
 // Returns whether the edit writes the computed values of a layer, and is not a change by hand.
 bool computes(const EditRequest& edit);
 // Returns an error (forbidden, at `layer`) for a locked layer if the role is below curator. Returns
-// the same error for a layer with its computed content, except while `computing`. The pipeline
+// the same error for a layer whose content was computed, unless `computing` is true. The pipeline
 // checks this before an edit begins. Other callers need this check only if they change something
 // before the edit.
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);

@@ -34,8 +34,8 @@ class Edits {
   virtual std::int64_t sequence() const = 0;
   virtual std::int64_t durable_sequence() const = 0;
   virtual DurableState durable_state() const = 0;
-  // Counts all tiles of a layer for the sums in the journal (store::Layers::keep_sums). Edits wait
-  // during the count. Blocks.
+  // Computes the sums of all tiles of a layer for the journal (store::Layers::keep_sums). Edits
+  // wait during the computation. Blocks.
   virtual Result<void> keep_sums(LayerId layer_id) = 0;
 };
 

@@ -38,7 +38,7 @@ class Layers {
                                const store::IdempotentResponse<Layer>& answer = {}) = 0;
   // Converts the layer to a wider type, so it can hold larger keys or values. Includes the history.
   // `layer` is the layer as the caller read it. Returns an error (invalid, at `type`) for a type
-  // that the layer does not widen to, and for a computed layer.
+  // to which the layer cannot be widened, and for a computed layer.
   virtual Result<Layer> widen(const Layer& layer, ValueType type,
                               const store::IdempotentResponse<Layer>& answer = {}) = 0;
   // Erases the layer permanently.

@@ -51,7 +51,7 @@ class Listener {
   // refused (moved), so the client must send them again.
   virtual void moved(const std::string& url) = 0;
   virtual void presence_changed() = 0;
-  // An event for one view of this participant only, on the GPU thread. The view cannot be drawn as
+  // Called on the GPU thread, for one view of this participant only. The view cannot be drawn as
   // requested until something changes.
   virtual void view_refused(std::uint32_t view_id, const Error& why) = 0;
 };

@@ -15,7 +15,7 @@ class SurfaceImages;
 class Participants;
 
 // One open model as a user sees it, without the layers that are hidden from the user. This is the
-// only component that connects the store, renderer, streams and queries. It keeps the order of
+// only component that connects the store, renderer, streams and queries. It manages the order of
 // edits, the tile mirrors, undo, the journal and the participants. Code that uses a part includes
 // the header of the part.
 class Room {

@@ -116,7 +116,7 @@ struct Rooms::Impl {
 
   Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
 
-  // Closes a room that another server has replaced.
+  // Closes a room whose model another server has claimed.
   void drop(const std::shared_ptr<OpenRoom>& room, const Error& why) {
     {
       std::lock_guard lock(mutex);
@@ -142,7 +142,7 @@ struct Rooms::Impl {
   }
 
   // Closes rooms that were empty for a while. Returns the memory of participants who left to the
-  // system: each view has about 15 MB, in small pieces if the CPU draws.
+  // system: each view takes about 15 MB, in small pieces if the CPU draws.
   void sweep() {
     std::size_t departed = 0;  // since memory was last returned
     bool due = false;  // return memory in the next round, when the renderer has released the views
@@ -188,8 +188,8 @@ struct Rooms::Impl {
                        "because another model needs its memory");
   }
 
-  // Closes rooms that are not used by a request and have no edit in progress. Then `rooms` has the
-  // only reference.
+  // Closes rooms that are not used by a request and have no edit in progress. Of such a room,
+  // `rooms` holds the only reference.
   bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {
@@ -421,7 +421,7 @@ void Rooms::drain() {
       rooms.erase(ready.begin(), ready.end());
       if (!rooms.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    // The client sends the edits that are left to the next owner.
+    // The clients send the remaining edits to the next owner.
     for (const auto& room : rooms) impl_->pass_on(room, why);
     impl_->writer.drain();
     return;

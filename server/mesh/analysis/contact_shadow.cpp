@@ -18,7 +18,7 @@ constexpr int kFade = 4;  // texels at the border of the map over which the shad
 // The sum of three shadows: of the foot, of the parts just above the floor, and of the whole model.
 // Heights are shares of the model's extent on the floor.
 struct Part {
-  double height;  // parts of the model above it have no effect
+  double height;  // parts of the model above this height have no effect
   double spread;  // standard deviation of the blur, in texels
   float share;
 };
@@ -64,7 +64,7 @@ void draw(Heights& heights, const std::array<glm::dvec3, 3>& corners) {
   }
 }
 
-// Blurs the rows of a map and swaps its axes, so that two calls blur both.
+// Blurs the rows of a map and swaps its axes, so that two calls blur both axes.
 Map blurred_rows(const Map& map, const std::vector<float>& kernel) {
   const int reach = static_cast<int>(kernel.size()) - 1;
   Map result(map.size());

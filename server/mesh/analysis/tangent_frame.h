@@ -5,7 +5,7 @@
 
 namespace strata::mesh {
 
-// A right-handed frame with the given unit vector as its z axis.
+// A right-handed coordinate system with the given unit vector as its z axis.
 struct TangentFrame {
   explicit TangentFrame(const glm::dvec3& up) : z(up) {
     const glm::dvec3 other = std::abs(z.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);

@@ -19,9 +19,9 @@ struct Atlas {
 
 // Keeps the file's own UVs if they are suitable for layers. All UVs must be inside one tile. Every
 // triangle with area must have an area in UV space, except for up to 0.1 % of the surface. At least
-// 99.5 % of the covered texels at `lowest_resolution` must have one owner. The rest is reported as
-// `overlap`. Triangles that violate these rules are moved to free texels if they are at most 10 %
-// of the surface. Otherwise returns an error with the reason, and the caller makes an atlas.
+// 99.5 % of the covered texels at `lowest_resolution` must have one owner. The others are reported
+// as `overlap`. Triangles that violate these rules are moved to free texels if they make up at most
+// 10 % of the surface. Otherwise returns an error with the reason, and the caller makes an atlas.
 Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
 
 // Unwraps the surface into charts bounded by a cone of normals. Charts are grown on a smoothed copy

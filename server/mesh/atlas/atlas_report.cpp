@@ -47,8 +47,8 @@ void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasM
   }
 }
 
-// Returns the factor that scales the mean triangle to an area of 1. With this factor, nanometer and
-// megameter models stay within the range of float.
+// Returns the factor that scales the areas of the triangles so that their mean is 1. With this
+// factor, nanometer and megameter models stay within the range of float.
 double scale_of(const TriangleMesh& mesh, double area) {
   return area > 0 ? static_cast<double>(mesh.triangle_count()) / area : 1;
 }

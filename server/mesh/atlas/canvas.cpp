@@ -24,8 +24,8 @@ int longest_run(const ChartMask& mask, int row) {
   return length;
 }
 
-// Orders the row with the longest run first, then rows far apart, then the rows between them. With
-// this order, an occupied position is rejected early.
+// Sorts the rows of a mask: first the row with the longest run, then rows far apart, then the
+// others. With this order, an occupied position is rejected early.
 void order_rows(const ChartMask& mask, std::vector<std::uint16_t>& order) {
   order.clear();
   int longest = 0, length = 0;

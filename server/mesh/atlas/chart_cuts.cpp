@@ -40,7 +40,7 @@ std::vector<Chart> halves_of(const Chart& chart, const Outline& outline,
   return halves;
 }
 
-// Joins single faces, one by one, into the parts that fill their boxes best. Suits charts with few
+// Joins single faces, one by one, into the parts that fill their boxes best. For charts with few
 // faces, such as the eight faces of a frame. No straight line can cut such a frame into its bars.
 class Joiner {
  public:

@@ -96,7 +96,7 @@ class Floors {
   }
   const bool by_size_, by_any_;
   std::unordered_map<std::uint64_t, int> of_shape_;
-  // three values, so one chart that is hard to place does not decide alone
+  // three values, so that one chart that is hard to place does not determine the row
   std::unordered_map<std::uint64_t, std::array<int, 3>> of_size_;
   std::array<int, 32> of_any_;
 };

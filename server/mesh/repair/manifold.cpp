@@ -347,7 +347,7 @@ class Manifold {
 
   TriangleMesh& mesh_;
   std::vector<Repair>& repairs_;
-  // for each side of a triangle, by its first corner: the side joined to it
+  // the neighboring side of each triangle side; sides are numbered by their first corner
   std::vector<std::uint32_t> mate_;
   std::vector<bool> is_turned_;
   std::uint64_t slivers_ = 0, crowded_edges_ = 0, turned_ = 0, turned_pieces_ = 0,

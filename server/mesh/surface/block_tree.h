@@ -39,9 +39,9 @@ struct BoundedPart {
 };
 BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int threads);
 
-// Adds the parts of a block, or `whole` if the block is one. Texels separated by an empty gap of
-// `least_gap` belong to different parts. `positions` has the 64 positions of the block, and only
-// those in `owned` count. Every bound is enlarged by `slack`.
+// Adds the parts of a block, or only `whole` if the block is one part. Texels separated by an empty
+// gap of `least_gap` belong to different parts. `positions` has the 64 positions of the block, and
+// only those in `owned` count. Every bound is enlarged by `slack`.
 void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned,
                         float least_gap, float slack, std::vector<BoundedPart>& parts);
 

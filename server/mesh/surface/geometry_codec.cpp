@@ -13,9 +13,9 @@
 //   u64 positions, vertices, indices · f64 origin[3] · planes(positions x, y, z as u64) ·
 //   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32)
 // "planes" is a column of integers. Each integer is replaced by its zigzag difference from the
-// previous one. The differences are stored byte plane by byte plane. Neighbors on the curve differ
-// little, so the high planes are almost entirely zero. Vertex positions and the box are computed
-// from the other data and not stored.
+// previous one. The differences are stored byte plane by byte plane. Neighbors on the Hilbert curve
+// differ little, so the high planes are almost entirely zero. Vertex positions and the box are
+// computed from the other data and not stored.
 
 namespace strata::mesh {
 namespace {

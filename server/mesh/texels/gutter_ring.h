@@ -10,9 +10,9 @@ struct TexelOffset {
   int x, y;
 };
 
-// The 24 neighbors within the ring, nearest first. Of equally near neighbors, the lower comes
-// first, then the left. A gutter texel follows the first neighbor in this order that is a surface
-// texel.
+// The 24 neighbors within kGutterRing texels, nearest first. Of equally near neighbors, the lower
+// comes first, then the left. A gutter texel follows the first neighbor in this order that is a
+// surface texel.
 constexpr std::array<TexelOffset, 24> gutter_ring_offsets() {
   std::array<TexelOffset, 24> offsets{};
   int count = 0;

@@ -50,7 +50,7 @@ constexpr std::size_t kSubtreesForThreads = 32;
 constexpr std::size_t kWholeLevel = 1;
 
 // Returns the sides of the tool's box in the window, as planes through the eye. A test of a sphere
-// against one of them takes a tenth of the time that is needed for its exact box.
+// against one plane takes a tenth of the time of computing the sphere's exact box.
 std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip, int width,
                                    int height) {
   const glm::dmat4 rows = glm::transpose(clip);
@@ -281,8 +281,8 @@ bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) con
   return distance_to_axis(s, center) <= reach;
 }
 
-// If one segment covers the whole box, the others have no effect: removes them from the list and
-// returns true.
+// If one segment covers the whole box, the others have no effect. Then removes them from the list
+// and returns true.
 bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
   const PixelBox& box = window.box;
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};

@@ -231,8 +231,8 @@ STRATA_LANES void test_depth(const BlockTest& test, Lanes& lanes) {
   }
 }
 
-// Tests the limit of FacingLimit. Uses the existing neighbor at the window's border. Rejects pixels
-// without surface.
+// Tests the limit of FacingLimit. At the window's border, uses the neighbor that exists. Rejects
+// pixels without surface.
 STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
   const FacingLimit& facing = *test.facing;
   const float* const depth = test.depth->depth.data();

@@ -32,7 +32,7 @@ using TestBlock = std::uint64_t (*)(const BlockTest& test, const std::uint64_t* 
                                     const mesh::SurfaceMap::PackedBox& box,
                                     std::span<const std::uint32_t> segments, bool in_tool);
 
-// The instruction set that a test is compiled for. The results of the tests differ by rounding.
+// The instruction set that a test is compiled for. Results of different sets differ by rounding.
 enum class VectorUnit { plain, avx2, avx512 };
 VectorUnit best_vector_unit();        // returns the best one of this machine
 TestBlock test_block_on(VectorUnit);  // the machine must support it

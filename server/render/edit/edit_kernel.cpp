@@ -8,7 +8,7 @@
 namespace strata::render {
 namespace {
 
-// The time before other threads start: a small stroke is complete by then.
+// The time before other threads start. A small stroke is complete before this time has passed.
 constexpr std::chrono::microseconds kAlone(200);
 
 using Clock = std::chrono::steady_clock;

@@ -7,8 +7,8 @@
 namespace strata::render {
 namespace {
 
-// The number of light values in the table back to sRGB. They are finer than sRGB steps, except for
-// the darkest few.
+// The number of light values in the table for the conversion back to sRGB. Their steps are finer
+// than those of sRGB, except for the darkest few values.
 constexpr int kCodes = 4096;
 
 double light_of(double srgb) {

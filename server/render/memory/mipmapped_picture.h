@@ -7,8 +7,8 @@
 namespace strata::render {
 
 // A surface image in the layout for the GPU: RGBA8, lowest row first (v = 0), with all mipmap
-// levels down to one texel. Coarser levels are means of light instead of sRGB codes, so fine detail
-// keeps its brightness. They are weighted by alpha, so transparent pixels do not darken edges.
+// levels down to one texel. Coarser texels are means of light, not of sRGB codes, so fine detail
+// keeps its brightness. The means are weighted by alpha, so transparent pixels do not darken edges.
 struct MipmappedPicture {
   struct Level {
     int width = 0, height = 0;

@@ -14,7 +14,7 @@ constexpr double kShareOfNew = 0.2;
 // The time limit for the samples of a frame after the first one.
 constexpr double kSmoothBudgetMs = 4;
 constexpr double kNsPerPixel = 0.5;  // estimate before the first such frame, on a GPU
-// After a slow frame, this factor brings back more samples within some hundred frames.
+// Lowers the estimate after each frame with one sample, so later frames try more samples again.
 constexpr double kForgotten = 0.998;
 
 }  // namespace

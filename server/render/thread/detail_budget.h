@@ -6,8 +6,8 @@
 namespace strata::render {
 
 // Chooses a model's level of detail while the camera moves, and the number of samples of a frame.
-// It takes the finest level, and the most samples, that can be drawn within a few milliseconds. The
-// estimates are based on the times of earlier drawings on this GPU.
+// It chooses the finest level, and the most samples, that can be drawn within a few milliseconds.
+// The estimates are based on the times of earlier drawings on this GPU.
 class DetailBudget {
  public:
   DetailBudget() = default;
@@ -22,7 +22,7 @@ class DetailBudget {
   // renderer never has the time for more than one.
   static constexpr int kSmoothSamples = 5;
   int samples(std::size_t pixels);
-  // `pixels`: of all samples together, without the first.
+  // `pixels` is the number of pixels in all samples except the first.
   void smoothed(std::size_t pixels, double ms);
 
  private:

@@ -10,7 +10,7 @@
 namespace strata::render {
 namespace {
 
-// A refinement with fewer samples is not worth its time.
+// With fewer samples, a refinement improves the frame too little for the time that it takes.
 constexpr int kMinSamples = 4;
 // Bytes for texture coordinates, light, depth, frame and mean.
 constexpr std::uint64_t kSampledBytesPerPixel = 4 + 4 + 4 + 4 + 8;
@@ -227,7 +227,7 @@ Result<void> FrameJob::start_samples(GpuScene& scene, ModelHandle model) {
   return start_sample(scene, model);
 }
 
-// Without memory or time, the frame has one sample.
+// If there is not enough memory or time, the frame has one sample.
 void FrameJob::make_smooth(GpuScene& scene, const View& view) {
   const FrameRequest& request = task_.request;
   if (!request.smooth || request.large || sample_view_) return;
@@ -295,7 +295,7 @@ Result<bool> FrameJob::add_sample(GpuScene& scene, const View& view) {
   return true;
 }
 
-// Measures the drawing of the view's frame, after which the other samples begin.
+// Measures the drawing time of the view's frame, after which the other samples begin.
 void FrameJob::measure(GpuScene& scene) {
   if (is_separate() || sample_ == 0 || samples_begin_) return;
   if (own_triangles_ > 0 && !scene.info().software)

@@ -63,7 +63,7 @@ class GpuScene {
   int pixels_per_band() const {
     return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware;
   }
-  // Of each pixel of a frame with smooth edges.
+  // Returns the number of samples of each pixel of a frame with smooth edges.
   int smooth_samples(std::size_t pixels) {
     return options_.smooth_samples > 0 ? options_.smooth_samples : detail_budget_.samples(pixels);
   }

@@ -103,8 +103,8 @@ class GpuThread {
   // Only the GPU thread uses these members.
   std::array<std::optional<Job>, 3> current_;  // the current job of each lane
   std::list<Job> frames_;
-  // The time of ordered jobs minus the time of frames, since the last time that one of them had no
-  // work.
+  // The time of ordered jobs minus the time of frames, since the last time that either of the two
+  // had no work.
   Clock::duration ahead_{};
   // True while a lost context could not be replaced. Other threads may read it.
   std::atomic<bool> broken_ = false;

@@ -78,8 +78,8 @@ Result<PaintTarget> PaintJob::target(GpuScene& scene) {
   const auto map = model->maps.find(textures.resolution());
   if (map == model->maps.end()) {
     return fail(ErrorCode::conflict, "Surface map missing",
-                "The surface map of " + std::to_string(textures.resolution()) +
-                    " texels is not on the GPU yet. Try again in a moment.");
+                "The surface map with a resolution of " + std::to_string(textures.resolution()) +
+                    " is not on the GPU yet. Try again in a moment.");
   }
   return PaintTarget{model->mesh(), *map->second, textures};
 }

@@ -22,8 +22,8 @@ PixelRect screen_rect(const FrameRequest::Box& box, const glm::dmat4& clip_from_
 // pixel.
 constexpr std::int64_t kRectCost_px = 96 * 96;
 
-// Returns at most `kMaxScreenRects` rectangles that cover all boxes. Two rectangles are merged if
-// one is cheaper. All are merged if one rectangle around all of them is cheaper.
+// Returns at most `kMaxScreenRects` rectangles that cover all boxes. Merges two rectangles if one
+// rectangle around both is cheaper. Merges all if one around all of them is cheaper.
 constexpr std::size_t kMaxScreenRects = 16;
 std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes,
                                     const glm::dmat4& clip_from_model, int width, int height,

@@ -15,7 +15,7 @@ namespace strata::render {
 // Returns the offset of sample `index` of `count`, in pixels from the center of a pixel. The
 // samples cover a square of one pixel evenly, and their mean is the center. They follow the
 // additive recurrence R2 (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"),
-// moved by its mean.
+// moved so that its mean is 0.
 glm::dvec2 sample_offset(int index, int count);
 
 // The same for a frame with smooth edges. The first sample is the center of the pixel, and the

@@ -27,8 +27,8 @@ constexpr double kRakingOnPlane = 0.5, kMaxRaking = 3;
 // renderer saves a thirteenth of the time.
 constexpr float kPixelsLitAtVertices = 10;
 
-// A part of the remaining clusters is drawn before the others are culled. A few clusters are not
-// culled, because drawing them is faster.
+// 1 / kCullAfter of the remaining clusters is drawn before the others are culled. Fewer than
+// kFewClusters clusters are not culled, because drawing them is faster.
 constexpr std::size_t kCullAfter = 4, kFewClusters = 256;
 
 std::size_t next_culling(const MeshProgress& progress) {

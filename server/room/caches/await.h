@@ -19,8 +19,8 @@ Result<T> await(Start start) {
   return future.get();
 }
 
-// The same, but the wait ends if the current question ends (QuestionEnded). The result is then
-// dropped, so it must not be a resource that the caller has to release.
+// Like `await`, but throws QuestionEnded if the current `Question` ends during the wait. The result
+// is then dropped, so it must not be a resource that the caller has to release.
 template <class T, class Start>
 Result<T> await_for_question(Start start) {
   constexpr std::chrono::milliseconds kBetweenChecks{20};

@@ -47,15 +47,15 @@ struct PastMoment {
 
 // The past states of an open model, for views that show the model as it was. A worker reads them
 // from the journal. It reads only the tiles that differ from a known state, and shares all others
-// with that state. So a step through the history costs only the tiles that changed in it. Unused
-// states need at most kKeptBytes, which the ledger counts. Thread-safe.
+// with that state. So a move to another edit reads only the tiles that changed in between. Unused
+// states take at most kKeptBytes of memory, which the ledger counts. Thread-safe.
 class PastLayers : public std::enable_shared_from_this<PastLayers> {
  public:
   static constexpr std::size_t kKeptLayers = 24;
   static constexpr std::uint64_t kKeptBytes = 128u << 20;
 
-  // Returns the newest state of a layer if the journal contains all of it and it has the type of
-  // the layer.
+  // Returns the newest state of a layer if the journal contains all edits of this state and the
+  // state has the value type of the layer.
   using Newest = std::function<std::optional<TileMirror::Snapshot>(const Layer&)>;
   // `ready` is called, on any thread, when a requested moment is ready or has failed.
   PastLayers(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,

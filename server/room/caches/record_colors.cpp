@@ -84,8 +84,8 @@ Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store,
 
 RecordColors::Found RecordColors::find(const Request& request) {
   std::lock_guard lock(mutex_);
-  // Drops the entries whose palette or highlight is only referenced by this cache, because no view
-  // requests them.
+  // Drops the entries whose palette or highlight only this cache refers to. No view requests these
+  // entries.
   std::erase_if(entries_, [](const auto& entry) {
     const Request& cached = entry->request;
     return !entry->making && (cached.palette.use_count() == 1 ||

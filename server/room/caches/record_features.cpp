@@ -58,7 +58,7 @@ Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(TableId table_id,
     entry.outdated = true;
     return entry.known ? Result<SurfaceFeatures>(entry.features) : features;
   }
-  // If a worker has read the features in the meantime, its result is at least as new.
+  // If a worker has read the features in the meantime, its result is at least as new as this one.
   if (!entry.known) {
     entry.features = *features;
     entry.known = true;

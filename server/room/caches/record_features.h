@@ -40,7 +40,7 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
   Result<SurfaceFeatures> when(TableId table_id, Visibility sight, std::int64_t sequence) const;
   void records_changed(TableId table_id);
   // Returns the result of `show_features`. Views that show the same features get the same object,
-  // so they can use it to compare frames.
+  // so a changed address means changed features.
   render::FeaturesShown shown(const std::vector<LayerFeatures>& layers);
   void stop();  // stops reading, and no longer calls `ready`
 

@@ -49,7 +49,7 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   // ready yet, and starts to make them.
   std::vector<render::SurfaceImageStyle> styles(
       const std::optional<std::vector<SurfaceImageView>>& requested);
-  // The same, but waits until all textures are ready. Blocks.
+  // Like `styles`, but waits until all textures are ready. Blocks.
   Result<std::vector<render::SurfaceImageStyle>> wait(
       const std::optional<std::vector<SurfaceImageView>>& requested);
 
@@ -73,7 +73,7 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   void request(SurfaceImageId id, const Loaded& loaded);
   void load(SurfaceImageId id, int largest_side);
   Result<Bytes> encoded_bytes(SurfaceImageId id);
-  // Returns the number by which the sides must be divided.
+  // Reserves memory for the pixels. Returns the number by which the sides must be divided.
   Result<int> reserve_pixels(SurfaceImageId id, const PictureInfo& info);
   Result<std::shared_ptr<const render::MipmappedPicture>> read(SurfaceImageId id, int largest_side);
   void add(SurfaceImageId id, int largest_side,

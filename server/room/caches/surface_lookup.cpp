@@ -12,7 +12,7 @@ std::shared_ptr<const mesh::SearchTree> SurfaceLookup::tree() {
 
 Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh::SurfaceMap& map) {
   auto graph = STRATA_TRY(find_or_build(map));
-  // Reserves without the lock, because the reservation may drop graphs.
+  // Reserves memory before locking `graphs_mutex_`, because `reserve` may call `drop_graphs`.
   auto share = memory_.reserve(graph->bytes(), "the neighbors of a surface map's texels");
   std::lock_guard lock(graphs_mutex_);
   const auto found = graphs_.find(map.resolution);

@@ -23,8 +23,8 @@ class SurfaceLookup {
   std::shared_ptr<const mesh::SearchTree> tree();
   // Returns the error `out_of_memory` if the budget of main memory is too small.
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(const mesh::SurfaceMap& map);
-  // Dropped graphs are built again on use. Returns false if there is no graph or one is being
-  // built.
+  // Drops all graphs, which are then built again on use. Returns false if there is no graph, or if
+  // one is being built.
   bool drop_graphs();
   void stop() { progress_.cancel(); }
 

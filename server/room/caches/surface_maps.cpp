@@ -95,7 +95,7 @@ void SurfaceMaps::start(int resolution) {
       auto baked = mesh::bake_surface_map(*self->geometry_, resolution, self->progress_);
       if (!baked) return self->finish(resolution, tl::unexpected(baked.error()), model);
       auto share = self->memory_.reserve(
-          baked->bytes(), "a surface map of " + std::to_string(resolution) + " texels");
+          baked->bytes(), "a surface map with resolution " + std::to_string(resolution));
       if (!share) return self->finish(resolution, tl::unexpected(share.error()), model);
       map = std::make_shared<const mesh::SurfaceMap>(std::move(*baked));
       std::lock_guard lock(self->mutex_);

@@ -14,7 +14,7 @@
 namespace strata::room {
 namespace {
 
-// Larger images are drawn in bands of about this many pixels. A band needs a tenth of a second on a
+// Larger images are drawn in bands of about this many pixels. A band takes a tenth of a second on a
 // CPU, and 32 MB for the buffers of a view.
 constexpr int kPixelsOfBand = 1 << 21;
 // Rows of the window above and below a band. They are drawn with the band and then left out. They
@@ -157,7 +157,7 @@ Result<void> OpenRoom::PicturesPart::draw_in_bands(render::FrameRequest request,
         ErrorCode::invalid, "Size out of range",
         "Each side of a picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels long.",
         "width");
-  // Bands consist of whole rows of the camera's window, so the window of each band has whole rows.
+  // Bands consist of whole rows of the camera's window, so each band can be drawn by a camera.
   const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
   const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));
   const int step = is_large ? std::clamp(most, 1, camera.height) : camera.height;

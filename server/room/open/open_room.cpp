@@ -54,7 +54,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
                                                  const std::string& model_ref) {
   auto model = STRATA_TRY(services.store.models().find(model_ref));
   const ModelId id = model.id;
-  // Before the journal is read, so that no other server can add to it afterwards.
+  // Claims the model before reading its journal, so that no other server can add edits afterwards.
   const auto epoch = STRATA_TRY(services.store.nodes().claim(id, services.options.node));
   auto room = load(services, std::move(model), epoch);
   if (!room && services.options.node) (void)services.store.nodes().release(id, epoch);

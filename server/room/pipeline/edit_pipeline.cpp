@@ -141,9 +141,9 @@ void EditPipeline::when_idle(Work work) {
 
 // --- look-up in the journal
 
-// Sends one question at a time to the journal, for all edits that have arrived. If `verify_` is
-// set, the room also compares the end of the journal with the sequence that it expects. If the last
-// question failed, a comparison starts only when an edit waits for it.
+// Runs one look-up at a time in the journal, for all edits that have arrived. If `verify_` is set,
+// the room also compares the end of the journal with the sequence that it expects. If the last
+// look-up failed, a comparison starts only when an edit waits for it.
 void EditPipeline::ask_journal() {
   if (asking_) return;
   const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
@@ -179,8 +179,8 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   if (closed_) return;
   journal_away_ = !state;
   if (!state) {
-    // Refuses all edits that wait for the journal, not only those in the question, because the
-    // edits of one stroke must stay in order.
+    // Refuses all edits that wait for the journal, not only those in the look-up, because the edits
+    // of one stroke must stay in order.
     std::deque<Waiting> all = std::exchange(waiting_, {});
     for (Waiting& item : all) {
       if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new))
@@ -193,8 +193,8 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   if (state->epoch != parts_.epoch) return host_->deposed(moved_to({}));
   // A commit may have succeeded although its confirmation was lost. Then the journal is correct,
   // and the room is behind it. Until the room contains everything in the journal, a repeated
-  // request must not get the result that its edit is saved. All ids are therefore sent to the
-  // journal again then. (If a question was sent before `verify_` was set, its result is not used.)
+  // request must not get the result that its edit is saved. Then all ids are looked up in the
+  // journal again. (If a look-up began before `verify_` was set, its result is not used.)
   if (verifying && state->last_sequence == durable_) verify_ = false;
   const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
   if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;

@@ -188,8 +188,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::int64_t sequence_;  // of the last edit in the mirrors
   std::int64_t durable_;   // of the last edit in the journal
   std::deque<Waiting> waiting_;
-  bool asking_ = false;  // a question to the journal is in progress
-  // The last question failed, so the next one does not wait for the database.
+  bool asking_ = false;  // a look-up in the journal is in progress
+  // The last look-up failed, so the next one does not wait for the database.
   bool journal_away_ = false;
   int in_flight_ = 0;  // strokes on the GPU
   bool busy_ = false;  // a computed edit, `when_idle` work or a repair is in progress
@@ -199,7 +199,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::optional<Error> closed_;  // the error for later edits
   // No work starts before the room was compared with the journal, which may contain more edits.
   bool verify_ = false;
-  // The reason why commits failed. All pending edits are rolled back once each has its answer.
+  // The reason why commits failed. All pending edits are rolled back when every commit has ended.
   std::optional<Error> failure_;
   std::deque<Pending> pending_;  // in the order of sequences
   // By layer: the tiles where the GPU may differ from the mirror.

@@ -10,8 +10,8 @@
 
 namespace strata::room {
 
-// Keys that can no longer be painted, because their records were deleted or are being deleted. A
-// stroke may have begun before the deletion. Thread-safe.
+// Keys that can no longer be painted, because their records were deleted or are being deleted. The
+// set is needed because a stroke may have begun before the deletion. Thread-safe.
 class RetiredKeys {
  public:
   void retire(TableId table_id, std::int64_t key) {

@@ -10,8 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-// Zeros take no bytes in a file. An accessor may have this many zeros independent of the file
-// sizes.
+// An accessor without a buffer view contains only zeros, which take no bytes in the file. It may
+// have this many values independent of the file sizes.
 constexpr std::uint64_t kZerosAlways = 1u << 20;
 
 int components_of(const std::string& type) {
@@ -77,7 +77,7 @@ Result<GltfDocument::Layout> GltfDocument::layout(std::uint64_t accessor, const 
       (count > 0 && (room - offset < size || (room - offset - size) / layout.stride < count - 1)))
     return refuse_file(
         name + " declares " + std::to_string(count) +
-        " values, but its buffer view ends before them: the file is incomplete or damaged.");
+        " values, but its buffer view is too short: the file is incomplete or damaged.");
   layout.bytes = bytes.bytes.subspan(offset);
   return layout;
 }
