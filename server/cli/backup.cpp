@@ -110,7 +110,7 @@ int restore(const BackupOptions& options) {
     return report({ErrorCode::conflict,
                    "Newer backup",
                    "The backup has schema " + std::to_string(facts->schema_version) +
-                       ", but this program only knows schemas up to " + std::to_string(*known) +
+                       ", but this program only supports schemas up to " + std::to_string(*known) +
                        ". Restore it with the version that wrote it, or with a later one.",
                    {}});
   const auto done = [&]() -> Result<void> {

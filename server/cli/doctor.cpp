@@ -50,7 +50,7 @@ std::string gib(double bytes) {
   return text;
 }
 
-// Returns what OpenGL says about itself.
+// Returns the vendor, the versions and the limits that OpenGL reports.
 nlohmann::json check_gpu(Report& report) {
   render::RendererOptions options;
   options.shader_dir = install_dirs().shaders.string();

@@ -61,7 +61,7 @@ size_t collect(char* data, size_t size, size_t count, void* body) {
 }
 
 // Returns whether the server runs on this machine. The certificate of a local server names a
-// different host. The check can be omitted because there is no network in between.
+// different host. It need not be checked, because there is no network in between.
 bool is_this_machine(const std::string& base) {
   for (const char* host : {"https://127.0.0.1", "https://localhost", "https://[::1]"})
     if (base.starts_with(host)) {

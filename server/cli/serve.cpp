@@ -300,9 +300,9 @@ int run(ServeOptions options) {
 
   if ((*database)->cluster) (*database)->cluster->watch();
   wait_for_end(ending);
-  log::info("stopping: no new edits, saving what is under way");
+  log::info("stopping: no new edits, saving accepted edits");
   if (lease) {
-    // The connections stay open until their users know where each model is.
+    // The connections stay open until the clients have received the new address of each model.
     lease->begin_drain();
     rooms.drain();
   }

@@ -177,7 +177,7 @@ Result<void> write_support_bundle(const DataOptions& data, const SupportOptions&
   Bundle bundle;
   bundle.add("version.json", "the version of this program", nlohmann::json{{"version", version()}});
   bundle.add("checks.txt", "the report of `strata doctor`", people.replaced_in(redacted(checks)));
-  bundle.add("graphics.json", "what OpenGL says about itself", graphics);
+  bundle.add("graphics.json", "the vendor, versions and limits of OpenGL", graphics);
   bundle.add("machine.json", "processor, memory, disks and limits", machine_facts(data.data));
   bundle.add("settings.json", "the settings, without secrets",
              people.replaced_in(settings_facts(data.data, data.database).dump(2) + "\n"));

@@ -8,7 +8,7 @@
 namespace strata::cli {
 
 // Returns the processor, the memory, the disks, the operating system and the limits of a container.
-// No host name, no addresses.
+// The result contains no host name and no addresses.
 nlohmann::json machine_facts(const std::filesystem::path& data);
 
 // Returns the settings of this command and of the service, without secrets: the variables STRATA_…

@@ -105,7 +105,7 @@ std::string redacted(std::string_view text) {
       {std::regex(R"re(\b(DETAIL|STATEMENT|CONTEXT|QUERY):  .*)re"), "$1:  [left out]"},
       {std::regex(R"re(^\t.*)re"), "\t[left out]"},
   };
-  // One line at a time: std::regex is recursive, and a file of logs has a million characters.
+  // Processes one line at a time: std::regex is recursive, and logs have a million characters.
   std::string result;
   for (std::size_t at = 0; at < without_tokens.size();) {
     const auto end = std::min(without_tokens.find('\n', at), without_tokens.size());

@@ -20,15 +20,15 @@ struct KnownSecrets {
 
   // Ignores an empty text.
   void add(std::string what, std::string text);
-  // Returns what the first secret in the text is. A short secret counts only as a whole word.
+  // Returns the description of the first secret in the text. A short secret counts only as a word.
   std::optional<std::string> find_in(std::string_view text) const;
 };
 
-// Replaces what has the form of a secret: tokens, links to sign in, links of kiosks, passwords in
+// Replaces texts with the form of a secret: tokens, links to sign in, links of kiosks, passwords in
 // addresses and in connection strings.
 std::string redacted(std::string_view text);
 
-// Replaces names of people by pseudonyms, the same name always by the same one.
+// Replaces names of people by pseudonyms, the same name always by the same pseudonym.
 class Pseudonyms {
  public:
   // Names of the server's own accounts, such as owner, are kept.

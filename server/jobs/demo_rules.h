@@ -10,8 +10,8 @@ namespace strata::jobs {
 // Computes the values of the demo's two layers at a point of the pot. The pot is broken along the
 // borders of cells around seeds. A sherd is a cell whose border is made rough by noise. The cells
 // are measured on a sphere around the pot's center, so a sherd extends through the wall. Cracks are
-// bands along some of these borders. Hairlines are parts of the borders of smaller cells, so they
-// branch and end. Deterministic.
+// bands along some of these borders. Hairlines are bands along some borders of smaller cells, so
+// they branch, and some end inside a sherd. Deterministic.
 class DemoRules {
  public:
   static constexpr int kSherds = 14;

@@ -189,7 +189,7 @@ struct JobQueue::Impl {
       log::warning("the server could not save the result of a job: " + saved.error().detail);
   }
 
-  // Stores a new job. Another node may have used its id, then takes the next one.
+  // Stores a new job. If another node has used its id, takes the next id.
   Result<void> begin(JobStatus& status) {
     if (!store) return {};
     for (int tries_left = kIdTries;; --tries_left) {

@@ -24,10 +24,10 @@ struct ShapeLayer {
 
 // Computes the layer of the recipe on the whole surface of the model, as values of `type` at
 // `resolution`. `recipe` must be the result of `completed`. Reads the other model and source files
-// from `store`. Returns the Error `invalid` or `not_found`, with the name of the member, if the
-// other model or the property cannot be used. The same applies to the boundary distance of a closed
-// model, and to values that do not fit the type. Takes long, reports progress and can be canceled.
-// May run on any thread that may block.
+// from `store`. Returns the Error `invalid` or `not_found`, with the name of the field, if the
+// other model or the property cannot be used. Also returns an Error for the boundary distance of a
+// closed model, and for values that do not fit the type. Takes long, reports progress and can be
+// canceled. May run on any thread that may block.
 Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
                                        const std::shared_ptr<const mesh::Geometry>& geometry,
                                        const ShapeRecipe& recipe, ValueType type, int resolution,

@@ -133,7 +133,7 @@ Palette compass() {
 
 std::string sentence(const ShapeRecipe& r, const Model& model, const std::string& other) {
   const std::string within = r.radius_mm ? short_number(*r.radius_mm) + " mm" : "";
-  const std::string fit = " From the quadric that fits the surface within " + within + " best.";
+  const std::string fit = " From the quadric that best fits the surface within " + within + ".";
   switch (r.kind) {
     case ShapeKind::height:
       return r.absolute ? "World coordinate along the model's up (" + model.up + ")."
@@ -153,7 +153,7 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
     case ShapeKind::min_curvature:
       return "Smallest principal curvature: low in grooves and cracks." + fit;
     case ShapeKind::roughness:
-      return "Distance of the surface to the plane that fits it best within " + within + ".";
+      return "Distance of the surface to the plane that best fits it within " + within + ".";
     case ShapeKind::ambient_occlusion:
       return "Share of the light from all around that reaches the surface: 1 in the open, 0 in deep cavities. " +
              std::to_string(r.rays.value_or(kDefaultRays)) + " rays of " +
@@ -162,7 +162,7 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
       return "Straight distance to the nearest open edge of the mesh.";
     case ShapeKind::model_distance:
       return "Distance to the surface of " + other +
-             ": positive where this one lies in front of it (material was added), negative behind it. Looked for up to " +
+             ": positive where this one lies in front of it (material was added), negative behind it. Searched up to " +
              short_number(r.distance_mm.value_or(0)) + " mm.";
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";

@@ -29,7 +29,7 @@ std::string_view name(ShapeKind kind);
 std::optional<ShapeKind> parse_shape_kind(std::string_view name);
 
 // The parameters of a layer that is computed from a model's shape. `completed` replaces empty
-// members by defaults for the model.
+// fields by defaults for the model.
 struct ShapeRecipe {
   ShapeKind kind = ShapeKind::height;
   std::optional<double> radius_mm;    // curvatures, roughness: radius of the neighborhood
@@ -42,9 +42,9 @@ struct ShapeRecipe {
   std::string property, source;
 };
 
-// Returns the recipe with defaults for empty members. Returns the Error `invalid` if a member is
+// Returns the recipe with defaults for empty fields. Returns the Error `invalid` if a field is
 // missing, does not belong to the kind, or is out of range for the model. The Error names the
-// member (`compute.radius_mm`).
+// field (`compute.radius_mm`).
 Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model);
 // Returns the recipe in the format of the body of POST …/layers and of the journal.
 nlohmann::json to_json(const ShapeRecipe& recipe);

@@ -105,7 +105,7 @@ class Group {
       source_uv_[texel] = hit->uv;
       matched.add(texel, map_->area[texel]);
     };
-    auto done = mesh::for_each_texel(owners_, find, "Looking for the same places", progress_);
+    auto done = mesh::for_each_texel(owners_, find, "Finding the corresponding places", progress_);
     matched_m2_ = matched.total() * here_.metres * here_.metres;
     return done;
   }
@@ -131,7 +131,7 @@ class Group {
         if (*is_lost) lost[i].add(texel, map.area[texel]);
       }
     };
-    if (auto done = mesh::for_each_texel(owners, weigh, "Looking for what is lost", progress_);
+    if (auto done = mesh::for_each_texel(owners, weigh, "Measuring the lost areas", progress_);
         !done)
       return tl::unexpected(done.error());
     std::vector<Balance> balances;

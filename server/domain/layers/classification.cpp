@@ -13,12 +13,12 @@ std::vector<NumberClass> classify(std::span<const double> numbers, ClassMethod m
   const auto n = static_cast<std::size_t>(count);
   for (std::size_t i = 1; i < n; ++i) {
     const double share = static_cast<double>(i) / count;
-    // Avoids the difference of two distant numbers, which may overflow.
+    // Does not compute the difference of the two ends, because it may overflow.
     const double limit = method == ClassMethod::equal
                              ? sorted.front() * (1 - share) + sorted.back() * share
                              : sorted[i * sorted.size() / n];
     if (limit > limits.back() && limit < sorted.back()) limits.push_back(limit);
-    // If the largest number is frequent, it forms the last class alone.
+    // If a quantile equals the largest number, the last class contains only this number.
     if (method == ClassMethod::quantile && limit == sorted.back() && limit > limits.back())
       limits.push_back(limit);
   }

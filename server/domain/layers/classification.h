@@ -10,7 +10,7 @@ namespace strata {
 // Methods to divide numbers into classes, as for maps.
 enum class ClassMethod {
   equal,     // intervals of equal width
-  quantile,  // classes with equal counts, except that equal numbers are in the same class
+  quantile,  // classes with equal counts of numbers, but equal numbers are in one class
 };
 
 struct NumberClass {

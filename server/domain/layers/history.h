@@ -40,7 +40,7 @@ class TileResolver {
  private:
   TileData result_;
   TileData past_;  // the tile before the revisions that were added so far
-  TileMask open_;  // texels whose edit was not found yet
+  TileMask open_;  // texels for which no edit was found yet
   TileMask provisional_;
 };
 

@@ -22,8 +22,8 @@ struct KeyText {
 Palette colors_of_numbers(const Palette& palette, std::span<const KeyNumber> numbers);
 Palette colors_of_texts(const Palette& palette, std::span<const KeyText> texts);
 
-// Returns a palette by key that highlights some keys (ascending). The highlighted keys keep their
-// colors. The others are gray or, with `isolate`, are not drawn.
+// Returns a palette by key that highlights `keys`, which must be ascending. The highlighted keys
+// keep their colors. The others are gray or, with `isolate`, are not drawn.
 Palette highlighted_colors(const Palette& by_key, std::span<const std::uint32_t> keys,
                            bool isolate);
 

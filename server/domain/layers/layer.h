@@ -16,7 +16,7 @@ namespace strata {
 
 enum class LayerKind { numeric, database };
 
-// The formula of a computed layer. Computations write the texels of such a layer.
+// The formula of a computed layer. The server computes the texels of such a layer.
 struct LayerFormula {
   // A number or a condition over layers of the model (expression/expression_parser).
   std::string expression;
@@ -32,7 +32,7 @@ struct LayerFormula {
     bool operator==(const Input&) const = default;
   };
   std::vector<Input> inputs;  // by slug
-  bool stale = true;          // the values are out of date, as far as this copy shows
+  bool stale = true;          // the values are out of date, according to this copy of the metadata
 };
 
 // The origin of values that were computed and not painted.
@@ -53,7 +53,7 @@ struct Layer {
   // The heading in the list of layers, the same for all users. Without leading and trailing blanks.
   std::optional<std::string> group;
   Palette palette;
-  // The palette follows the colors of the terms of the table, and is not stored.
+  // True if the palette is not stored, but follows the colors of the terms of the table.
   bool palette_of_terms = false;
   double opacity = 1;
   LayerBlend blend = LayerBlend::normal;

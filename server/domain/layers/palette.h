@@ -22,9 +22,9 @@ enum class Pattern { solid, hatch, dots, outline };
 // Control points that map values to colors. `linear` interpolates between points. `step` uses the
 // color of the last point at or below the value. `categorical` gives listed values their own color
 // and others a generated color. A value outside [min,max] gets the color of the nearer end. With a
-// `column`, the values come from the record with the key. They are numbers, or texts in a
-// categorical palette. For texts, the points list them in `value`, and `at` only defines their
-// order.
+// and others a generated color. A value outside [min,max] gets the color of the nearer end. With a
+// `column`, the values are those in this column of the key's record: numbers or, in a categorical
+// palette, texts. A point has its text in `value`, and `at` only defines the order of the points.
 struct Palette {
   struct Point {
     double at = 0;

@@ -39,7 +39,7 @@ Result<std::vector<std::uint8_t>> decompress(std::uint8_t version, int width, st
   std::vector<std::uint8_t> raw(raw_bytes);
   const std::size_t n = ZSTD_decompress(raw.data(), raw.size(), bytes.data() + kHeaderBytes,
                                         bytes.size() - kHeaderBytes);
-  if (ZSTD_isError(n) || n != raw_bytes) return damaged("does not decompress to its size.");
+  if (ZSTD_isError(n) || n != raw_bytes) return damaged("has a wrong decompressed size.");
   return raw;
 }
 

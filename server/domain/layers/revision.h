@@ -23,7 +23,7 @@ TileRevision make_revision(TileAddress address, const TileData& before, const Ti
 void apply(const TileRevision& revision, TileData& tile);
 
 // Convert to and from the stored format (zstd, with a version). The decoders check every bound, so
-// damaged bytes give an Error and never a crash.
+// damaged bytes cause an Error and never a crash.
 std::vector<std::uint8_t> encode_revision(const TileRevision& revision);
 Result<TileRevision> decode_revision(TileAddress address, ValueType type,
                                      std::span<const std::uint8_t> bytes);

@@ -33,14 +33,14 @@ class TileMirror {
   std::size_t bytes() const;
   bool empty() const;  // returns whether no texel is valid
 
-  // Replaces tiles in one step. Drops null and empty tiles. Call in the order of the sequences.
+  // Replaces tiles in one step; null or empty tiles are removed. Call in the order of sequences.
   void put(const TileMap& tiles, std::int64_t sequence);
   // Replaces all tiles.
   void assign(TileMap tiles, std::int64_t sequence);
 
-  // Acquire before an edit is passed to the GPU. Release after `put` has stored the result, or
-  // after the edit was refused. Between these times, the tiles on the GPU may be newer than those
-  // of the mirror. The result may outlive the mirror.
+  // Returns a handle. Acquire it before an edit is passed to the GPU. Release it after `put` has
+  // stored the edit, or after the edit was refused. In between, the tiles on the GPU may be newer
+  // than those of the mirror. The handle may outlive the mirror.
   std::shared_ptr<const void> hold() const;
   bool held() const { return *holds_ > 0; }
 

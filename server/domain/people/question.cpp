@@ -55,9 +55,9 @@ void Question::throw_ended() {
 void Question::check() {
   if (has_deadline_ && Clock::now() - begin_ > limits_.time)
     end({ErrorCode::timed_out,
-         "Question takes too long",
-         "The server stops a question after " + std::to_string(limits_.time.count() / 1000) +
-             " seconds. This includes the time for the questions of other users. Choose a "
+         "Request takes too long",
+         "The server stops a request after " + std::to_string(limits_.time.count() / 1000) +
+             " seconds, including the time in which it serves other users. Choose a "
              "smaller area, a coarser layer or a shorter condition, or try again later.",
          {}});
   if (turns_) turns_->check(place_);
@@ -68,7 +68,7 @@ void Question::spend(std::uint64_t steps) {
   const std::uint64_t all = steps_ += steps;
   if (limits_.steps == 0 || all <= limits_.steps) return;
   end({ErrorCode::invalid,
-       "Question too large",
+       "Request needs too many steps",
        "The answer takes " + in_millions(all) +
            " million steps (one step is one part of the condition at one texel). The limit is " +
            in_millions(limits_.steps) +
@@ -82,7 +82,7 @@ void Question::hold(std::int64_t bytes) {
   if (bytes <= 0 || limits_.bytes == 0 || held <= static_cast<std::int64_t>(limits_.bytes)) return;
   bytes_ -= bytes;
   end({ErrorCode::invalid,
-       "Question too large",
+       "Request needs too much memory",
        "The answer needs " + in_millions(static_cast<std::uint64_t>(held)) +
            " MB of main memory. The limit is " + in_millions(limits_.bytes) +
            " MB. Choose a coarser layer, or request less at once.",

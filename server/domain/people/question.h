@@ -25,8 +25,8 @@ struct QuestionLimits {
 
 QuestionLimits limits_of(Role role);
 
-// Stops the work on a question that has ended. Computations throw it. The code that began the
-// question catches it.
+// Computations throw this exception to stop the work on a question that has ended. The code that
+// began the question catches it.
 class QuestionEnded : public std::exception {
  public:
   explicit QuestionEnded(Error problem) : problem_(std::move(problem)) {}
@@ -37,15 +37,15 @@ class QuestionEnded : public std::exception {
   const Error problem_;
 };
 
-// A question that the server is answering, with its user, its remaining limits, and whether its
-// answer is still needed. Long loops over texels check the question at every tile (`QuestionTurn`,
-// `mesh::parallel_for`). They stop when the question has ended, and wait while questions of another
-// user have the processors. Thread-safe, except Scope and QuestionTurn, which belong to one thread.
+// A request whose answer the server is computing, with its user, its remaining limits, and whether
+// the answer is still needed. Long loops over texels check the question at every tile with
+// `QuestionTurn` or `mesh::parallel_for`. They stop when it has ended, and wait while questions of
+// other users are using the processors. Thread-safe, except Scope and QuestionTurn (one thread).
 class Question : public std::enable_shared_from_this<Question> {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Users share `turns` fairly. If `turns` is null, the question never waits.
+  // `turns` shares the processors fairly between users. If it is null, the question never waits.
   Question(std::string asker, QuestionLimits limits, std::shared_ptr<QuestionTurns> turns);
 
   const std::string& asker() const { return asker_; }
@@ -54,8 +54,8 @@ class Question : public std::enable_shared_from_this<Question> {
   void end(Error why);
   bool ended() const { return ended_; }
   std::optional<Error> why() const;  // nullopt if the question has not ended
-  // Removes the time limit. Call when the answer is being sent, because the speed depends on the
-  // client.
+  // Removes the time limit. Call when the answer is being sent, because the speed of sending
+  // depends on the client.
   void let_take_time() { has_deadline_ = false; }
 
   // Stops waiting for turns. Call when other users wait for the end of this question.
@@ -63,18 +63,18 @@ class Question : public std::enable_shared_from_this<Question> {
 
   // Throws QuestionEnded if the question has ended. Waits during a turn of another user.
   void check();
-  // Call before taking this number of steps. If they exceed the limit, takes none of them and
-  // throws QuestionEnded (`invalid`).
+  // Call before the computation takes this number of steps. Throws QuestionEnded (`invalid`) if the
+  // total number of steps exceeds the limit. The computation must then take none of them.
   void spend(std::uint64_t steps);
   // Counts steps after they were taken, for the metrics of the server.
   void took(std::uint64_t steps) {
     if (turns_) turns_->took(steps);
   }
-  // Counts memory. Negative `bytes` release memory. If the total exceeds the limit, throws
+  // Counts `bytes` as used, or as released if negative. If the total exceeds the limit, throws
   // QuestionEnded (`invalid`).
   void hold(std::int64_t bytes);
 
-  // Returns the question of this thread, or null if the work has no limits.
+  // Returns the question that this thread works on, or null if its work belongs to no question.
   static Question* current();
   class Scope {
    public:

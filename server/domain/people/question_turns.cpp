@@ -23,7 +23,7 @@ void QuestionTurns::leave(Place& place) {
   place.paused = false;
   --askers_.at(place.asker).places;
   // Keeps the entry of a user who had more time than the others, until the others have had as much.
-  // So a user cannot reset the time by sending a new question immediately.
+  // Otherwise, a new question of this user would begin with less time than the user already had.
   std::erase_if(askers_, [&](const auto& each) {
     return each.second.places == 0 && each.second.served <= now_;
   });

@@ -14,8 +14,8 @@ namespace strata {
 // Shares the processors between questions. A few questions run at the same time. The others wait,
 // and running questions pause after a while. The processor time is shared fairly between users,
 // regardless of the number of their questions (start-time fair queueing, as in
-// render/thread/frame_queue). The user with the least processor time is next, and a user gains no
-// credit during a pause. Thread-safe.
+// render/thread/frame_queue). The user with the least processor time is next. A user gains no
+// credit while the user has no questions. Thread-safe.
 class QuestionTurns {
  public:
   using Clock = std::chrono::steady_clock;

@@ -20,7 +20,7 @@ std::string_view name(Visibility visibility);
 // The only rule for visibility. `role` is the role in the project.
 bool sees(Role role, Visibility visibility);
 // Returns the lowest role that sees entities of this visibility. Content that is computed for all
-// users with that role may only read data that the role sees.
+// users with that role may only be computed from data that the role sees.
 Role least_role(Visibility visibility);
 // Returns the most restricted visibility that the role sees. It determines everything that the role
 // sees.

@@ -21,7 +21,7 @@ Result<void> validate(const Light& light, const std::string& field) {
                 field + ".fill");
   if (!in_range(light.layer_opacity, 0, 1))
     return fail(ErrorCode::invalid, "Opacity out of range",
-                "The opacity of the layers in a light must be from 0 to 1.",
+                "`layer_opacity`, a factor for the opacity of all layers, must be from 0 to 1.",
                 field + ".layer_opacity");
   return {};
 }

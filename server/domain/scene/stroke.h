@@ -16,7 +16,7 @@ enum class ToolShape { disc, square, texture };
 
 // One dispatched batch of a stroke's points. A swept tool connects consecutive points, and a single
 // point is a dab. A square is aligned with the axes of the window. The swept area is the union of
-// the squares along the segment. The same applies to a texture. The texture moves and scales
+// the squares along the segment. A brush shape in a texture is also swept: it moves and scales
 // continuously along the segment, and paints each point of the window that it covers at any time.
 // (Relative to the moving shape, the point moves along a straight line, even if the radius changes.
 // The point is painted if this line crosses a cell of the shape.)
@@ -34,13 +34,13 @@ struct StrokeBatch {
   // A factor for the radius at each path point (a pen's pressure), above 0 and at most 1. Empty: 1.
   std::vector<double> widths;
   bool through = false;  // also paint hidden surface, without a depth test
-  // How much nearer than the depth buffer a texel is assumed to be, in window depth (0…1), as in
-  // the TEA paper. If absent, the bias depends on the size of the model and the slope of the
-  // visible surface. It does not depend on the planes of the camera.
+  // The bias of the depth test, in window depth (0…1), as in the TEA paper: each texel is tested as
+  // if it were nearer by this amount. If absent, the bias depends on the size of the model and the
+  // slope of the visible surface. It does not depend on the near and far planes of the camera.
   std::optional<double> fixed_depth_bias;
   // Above 0, at most 90. Surface at a more oblique angle is not painted. The angle is between the
   // direction to the eye and the surface normal in the pixel of the texel. If absent, there is no
-  // limit. Not with `through`, because hidden surface has no pixel.
+  // limit. Must be absent with `through`, because hidden surface has no pixel.
   std::optional<double> max_angle_deg;
   bool erase = false;
   std::uint32_t value_bits = 0;  // in the type of the layer; ignored when erasing

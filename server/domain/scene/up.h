@@ -13,8 +13,8 @@ bool is_up(std::string_view name);
 
 // The axes of the front view, as unit vectors in the world with right × into = up. `into` points
 // away from the viewer; in the view from above, it points to the north of the map. The web client
-// uses the same axes (web-client/src/math/camera.ts). The frame of an opposite axis is rotated
-// about `right` by 180°.
+// uses the same axes (web-client/src/math/camera.ts). The axes for -x, -y and -z are those for x, y
+// and z, rotated about `right` by 180°.
 struct UpFrame {
   glm::dvec3 right{1, 0, 0}, into{0, 1, 0}, up{0, 0, 1};
 };

@@ -12,8 +12,8 @@ namespace strata {
 // null.
 using Cells = std::map<std::string, nlohmann::json>;
 
-// The effect of one edit on one row: the content before and after of the cells that the edit wrote,
-// even with an unchanged value. `writer` and `in_force` are as in domain/layers/history.h: undo and
+// The effect of one edit on one row: the old and the new content of the cells that the edit wrote,
+// even if a value is unchanged. `writer` and `in_force` are as in domain/layers/history.h: undo and
 // redo change the content, but write nothing new.
 struct PastCells {
   std::int64_t sequence = 0;

@@ -95,7 +95,7 @@ std::optional<std::int64_t> key_of(const json& value) {
 Result<json> check_relation(const Column& column, const json& value, const std::string& field) {
   if (!value.is_array()) return refuse(column, "a list of keys", field);
   if (value.size() > kMaxRelated)
-    return refuse(column, "at most " + std::to_string(kMaxRelated) + " keys in a record", field);
+    return refuse(column, "lists of at most " + std::to_string(kMaxRelated) + " keys", field);
   std::vector<std::int64_t> keys;
   for (const json& item : value) {
     const auto key = key_of(item);

@@ -11,7 +11,7 @@ namespace strata {
 inline constexpr std::size_t kMaxTextLength = 100'000;  // bytes of a text
 inline constexpr std::size_t kMaxRelated = 10'000;      // keys of a relation
 inline constexpr std::size_t kMaxAttached = 1000;       // files in one cell
-// The range that every JSON parser represents exactly.
+// Every JSON parser represents the whole numbers up to this limit exactly.
 inline constexpr std::int64_t kGreatestInteger = 1ll << 53;
 
 // Returns `value` in the stored form of the column. Returns an error (invalid, at `field`) for
@@ -31,8 +31,8 @@ Result<nlohmann::json> parse_value(const Column& column, std::string_view text, 
 // Returns the CSV cell for a value from check_value. parse_value restores the value.
 std::string print_value(const Column& column, const nlohmann::json& value);
 
-// Converts a value to another kind of column. Converts it through its text, except if the new kind
-// stores less (timestamp to date, whole numbers). Returns an error if the value cannot be kept.
+// Converts a value to another kind of column through its text. The time of day of a timestamp is
+// dropped for a date or a period. Returns an error if the text is not valid for the new kind.
 Result<nlohmann::json> convert_value(const Column& from, const Column& to,
                                      const nlohmann::json& value, const std::string& field);
 

@@ -85,7 +85,7 @@ class Knots {
   std::vector<std::vector<std::int64_t>> knots_;
 };
 
-// A breadth-first search from the lowest key of the component until a key refers to it.
+// Searches breadth-first from the component's lowest key for a key that refers back to this key.
 std::vector<std::int64_t> shortest_cycle(const Relation& relation,
                                          const std::vector<std::int64_t>& knot) {
   const std::int64_t first = knot.front();

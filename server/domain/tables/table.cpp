@@ -237,7 +237,7 @@ const Column* name_column(const Table& table) {
       first([&](const Column& c) { return is_text(c) && c.required && c.unique; });
   if (!found)
     found = first([&](const Column& c) { return is_text(c) && (c.required || c.unique); });
-  // A first column with terms names the object of an observation, and not the observer.
+  // A first column of terms names the observed object. A text may name the observer instead.
   if (!found && !columns.empty() && columns.front().kind == ColumnKind::term)
     found = &columns.front();
   if (!found) found = first(is_text);

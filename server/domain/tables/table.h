@@ -26,9 +26,9 @@ enum class ColumnKind {
   url,
   term,      // the key of a record of `target`
   relation,  // keys of records of `target`: "above", "cuts", "same as"
-  // Ids of attachments of the table, in the order of display: raster images.
+  // Ids of attachments of the table that are raster images, in the order of display.
   picture,
-  document,  // the same, for any files
+  document,  // ids of attachments of any type, in the order of display
   line,      // lines on models (domain/tables/surface_feature): "cracks"
   point,     // points on models: "samples"
 };

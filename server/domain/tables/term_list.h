@@ -15,7 +15,7 @@ namespace strata {
 
 // A table is a term list if it has the columns `code` (a required and unique text), `label` (a
 // text) and `parent` (a term of the same table). The other columns of a term list are found by
-// their slugs, if they have a suitable kind. A member is null if the table does not have the
+// their slugs, if they have a suitable kind. A pointer is null if the table does not have the
 // column.
 struct TermColumns {
   const Column* code = nullptr;

@@ -21,7 +21,7 @@ class Context {
  public:
   Context() : handle_(GEOS_init_r()) {
     static std::once_flag once;
-    // GEOS calls this function within long operations, and an exception ends them.
+    // GEOS calls this function during long operations. An exception from it ends the operation.
     std::call_once(once, [] { GEOS_interruptRegisterCallback(&check_question); });
     GEOSContext_setErrorMessageHandler_r(
         handle_,

@@ -18,9 +18,9 @@ bool is_tiff(std::span<const std::uint8_t> bytes);  // checks the first bytes; t
 struct MapTiff {
   int width = 0, height = 0, bands = 0;
   ValueType type = ValueType::u8;  // type of the samples; f64 is read as f32
-  // decode_tiff_band can read it: samples of 8, 16 or 32 bits (or f64), with lossless compression
+  // true if decode_tiff_band can read the file: lossless samples of 8, 16 or 32 bits (or f64)
   bool has_numbers = false;
-  // decode_tiff_picture can read it: gray, a color table or RGB of up to 16 bits
+  // true if decode_tiff_picture can read the file: gray, a color table or RGB of up to 16 bits
   bool has_colors = false;
   bool is_rgb = false;             // its bands are colors
   std::optional<WorldFile> world;  // position from the GeoTIFF tags

@@ -13,7 +13,7 @@ struct SurfaceMap;
 
 namespace strata::query {
 
-// A plane for outlines. The members are indices of world coordinates: `right` and `up` span the
+// A plane for outlines. The fields are indices of world coordinates: `right` and `up` span the
 // plane, and `depth` is the third coordinate, which is kept.
 struct OutlinePlane {
   int right = 0, up = 1, depth = 2;
@@ -28,8 +28,8 @@ inline constexpr std::size_t kMaxOutlineCorners = 4'000'000;
 //
 // Areas end at the edges of texels and at the edges of the surface. Texels are clipped to the
 // charts of the atlas. Both sides of a seam are the same line in space, so areas continue across
-// seams without a gap. Simplification moves lines by at most half a mean texel. Parts of one class
-// that are behind each other are merged.
+// seams without a gap. Simplification moves lines by at most half the mean width of a texel. Parts
+// of one class that overlap in the plane are merged.
 //
 // `map` has the resolution of the layer. More than kMaxOutlineCorners corners are an `invalid`
 // error.

@@ -21,8 +21,8 @@ struct PointMeasurement {
 // and any case; other columns are skipped. Columns are separated by commas, semicolons or tabs.
 // Numbers have a decimal point. Quotes around a field are removed, and empty lines are skipped.
 // Returns an `invalid` error with the line for a missing column, for a field that is not a finite
-// number, and for a line with another number of fields. A text without measurements, or with more
-// than kMaxPointMeasurements, is `invalid`, too.
+// number, and for a line with more or fewer fields than the first line. A text without
+// measurements, or with more than kMaxPointMeasurements, is `invalid`, too.
 Result<std::vector<PointMeasurement>> parse_point_measurements(std::string_view csv);
 
 }  // namespace strata::query

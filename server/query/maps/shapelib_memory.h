@@ -20,7 +20,7 @@ class ShapelibMemory {
   ShapelibMemory& operator=(const ShapelibMemory&) = delete;
 
   SAHooks* hooks() { return &hooks_; }
-  // Returns "WHAT: the message of the library." for an error message.
+  // Returns "<what>: <message of the library>." as the text of an error.
   std::string complaint(const std::string& what) const;
 
   struct OpenFile {

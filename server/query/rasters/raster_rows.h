@@ -11,8 +11,8 @@
 
 namespace strata::query {
 
-// Reads the texels of a layer by the rows of a file. Row 0 is v = 1 (top), while tiles are numbered
-// from the bottom.
+// Reads the texels of a layer row by row, in the row order of a raster file. Row 0 is at the top
+// (v = 1), while tiles are numbered from the bottom.
 class TileRows {
  public:
   TileRows(const Layer& layer, const TileMap& tiles);  // keeps a reference to `tiles`

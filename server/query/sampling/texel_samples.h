@@ -51,12 +51,12 @@ void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
 
 inline constexpr std::size_t kMaxCells = 2'000'000;
 
-// Groups the same texels by the cubic cells of a grid through the origin of the world. Each cell
-// has edges of `edge` model units. A sample has the centroid and the mean of the values, both
-// weighted by area, and the sum of the areas. For keys (`classes_of` makes each value a class), the
-// value is the key with the largest area, or the lowest of several such keys. Samples are ascending
-// by z, y and x. Returns an `invalid` error at `cell` for more than kMaxCells cells, or for an edge
-// too small for the cell indices.
+// Groups the selected valid surface texels by cells of a grid through the origin of the world. The
+// cells are cubes with edges of `edge` model units. A sample has the centroid and the mean of the
+// values, both weighted by area, and the sum of the areas. For keys (`classes_of` makes each value
+// a class), the value is the key with the largest area, or the lowest of several such keys. Samples
+// are ascending by z, y and x. Returns an `invalid` error at `cell` for more than kMaxCells cells,
+// or for an edge too small for the cell indices.
 Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, double edge);
 
 }  // namespace strata::query

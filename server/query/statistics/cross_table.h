@@ -25,9 +25,9 @@ struct CrossTable {
   std::vector<std::vector<std::uint64_t>> texels;
 };
 
-// Counts the surface texels of `map` where at least one of the layers has a value. `within`
-// restricts the texels; null means all texels. For a layer with another resolution, the layer texel
-// that contains the center of the map texel is used. Returns an `invalid` error for a
+// Sums the areas of the surface texels of `map` where at least one of the layers has a value.
+// `within` restricts the texels; null means all texels. For a layer with another resolution, the
+// layer texel that contains the center of the map texel is used. Returns an `invalid` error for a
 // floating-point layer, or for one with more than kMaxCrossTableSide values.
 Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns,
                                   const mesh::SurfaceMap& map, const TexelSelection* within,

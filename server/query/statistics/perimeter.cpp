@@ -113,8 +113,8 @@ class Measuring {
     return empty || full;
   }
 
-  // Adds half of the length of each pair of texels; the other texel of the pair adds the other
-  // half.
+  // Adds half of the border length of each pair of texels; the other texel of the pair adds the
+  // other half.
   void measure_texel(std::uint32_t texel, Sums& sums) const {
     Surroundings around(*this, texel);
     const bool valid = classes_.is_valid(texel);

@@ -30,8 +30,8 @@ struct Quantities {
   double surface_m2 = 0;          // area of the whole model
 };
 
-// Returns the amount of each class, over valid surface texels without the gutter. The map and its
-// graph must have the resolution of the layer. Every call returns the same result. Returns an
+// Returns the quantities of each class, over valid surface texels without the gutter. The map and
+// its graph must have the resolution of the layer. Equal inputs give equal results. Returns an
 // `invalid` error for more than kMaxClasses classes.
 Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map,
                               const mesh::TexelGraph& graph, const ValueClasses& classes,

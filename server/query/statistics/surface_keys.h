@@ -14,9 +14,9 @@ namespace strata::query {
 // of 8 bits. The values of other layers are measurements, and each texel may have a different one.
 bool tells_keys_apart(const Layer& layer);
 
-// Returns all keys of the valid surface texels of a tile, ascending. A layer whose values are not
-// counted separately has one element, and its bits have no meaning. The result is empty if no texel
-// is valid.
+// Returns all keys of the valid surface texels of a tile, ascending. For a layer whose values are
+// not counted separately, the result has one element, whose bits have no meaning. The result is
+// empty if no texel is valid.
 std::vector<TileSums::Key> surface_keys(const TileData& tile, TileAddress address,
                                         const Layer& layer, const mesh::SurfaceMap& map);
 

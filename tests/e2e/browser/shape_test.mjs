@@ -106,7 +106,7 @@ test("a layer is computed from the shape", async () => {
   assert.equal(layer.unit, "1/mm");
   // the description shows that the layer is selected
   await page
-    .getByText(/Quadric|quadric that fits the surface within 4 mm/)
+    .getByText(/Quadric|quadric that best fits the surface within 4 mm/)
     .first()
     .waitFor();
   assert.equal(
