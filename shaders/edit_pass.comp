@@ -141,8 +141,8 @@ float depth_bias(ivec2 pixel, float here, float w) {
   return base + min(edit.bias.z * slope, edit.bias.w * base);
 }
 
-// Tests the limit that render/edit/facing_limit.h describes. Uses the existing neighbor at the
-// window's border. Rejects pixels without surface.
+// Tests the limit that render/edit/facing_limit.h describes. At the window's border, uses the
+// neighbor that exists. Rejects pixels without surface.
 bool is_facing(ivec2 pixel, float here) {
   ivec2 last = textureSize(depth, 0) - 1;
   float left = here - texelFetch(depth, ivec2(max(pixel.x - 1, 0), pixel.y), 0).r;

@@ -20,7 +20,7 @@ constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%e %L %v";
 constexpr const char* kJsonPattern = "%v";
 
 struct State {
-  // Read on each call, so without a lock.
+  // Read on each call, so atomic numbers replace a lock.
   std::array<std::atomic<Level>, kModules> least;
   std::atomic<bool> as_json{false};
   std::mutex mutex;

@@ -66,7 +66,7 @@ constexpr Module module_of_file(std::string_view path) {
   return Module::other;
 }
 
-// The least level that each module writes.
+// The lowest level of the lines that each module writes.
 struct Levels {
   Level by_default = Level::info;
   std::array<std::optional<Level>, kModules> of_modules{};

@@ -134,7 +134,7 @@ inline constexpr std::string_view kComputedLayersOnly = "computed_layers_only";
 inline constexpr std::string_view kTooLarge = "too_large";
 }  // namespace mistake
 
-// Returns an Error (invalid) for a mistake at a character (counted from 0) of an expression.
+// Returns an `invalid` Error for a mistake at a character (counted from 0) of an expression.
 // `suggestions` are texts that correct the mistake if they replace the characters at `position`.
 Error expression_problem(const std::string& what, Expression::Position position,
                          const std::string& field, std::string_view reason = mistake::kSyntax,

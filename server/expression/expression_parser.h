@@ -37,8 +37,8 @@ enum class Names { layers, columns };
 // column of the record whose key the layer holds. `column.column` is a column of the record that a
 // column refers to. A hyphen between two characters of a name is part of the name, so a subtraction
 // needs spaces. A name that begins with a digit or is a keyword needs double quotes. As in
-// PostgreSQL, the sign has a higher precedence than the power: -2 ^ 2 is 4. Without `else`, a case
-// is unknown if no condition is true. Returns an error (invalid, at `field`, with the position) for
+// PostgreSQL, a minus sign has a higher precedence than `^`: -2 ^ 2 is 4. Without `else`, a case
+// is unknown if no condition is true. Returns an `invalid` error at `field`, with the position, for
 // a syntax error, a condition instead of a number or the reverse, and a text that is too long or
 // too deeply nested. The caller must check that the layers and columns exist, and check their
 // types.

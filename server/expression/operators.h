@@ -43,7 +43,7 @@ struct Operator {
   std::uint64_t (*compare)(std::span<const double> a, std::span<const double> b) = nullptr;
   std::uint64_t (*compare_with)(std::span<const double> a, double b) = nullptr;
 
-  // The PostgreSQL expression over {a} and {b}. NULL if it has no value.
+  // The PostgreSQL expression over {a} and {b}. It gives NULL if the operation has no result.
   const char* sql = nullptr;
   // For times, which have a first and a last moment. The expression over {a}, {a_end}, {b} and
   // {b_end}.

@@ -22,7 +22,7 @@ struct SplitExpression {
   Expression expression;          // has Op::record_number and record_truth in place of the parts
   std::vector<RecordPart> parts;  // by the `index` in the expression
 };
-// Returns an error (invalid, at `field`) if the text or time of a column is combined with anything
+// Returns an `invalid` error at `field` if the text or time of a column is combined with anything
 // except its own record.
 Result<SplitExpression> split_records(const Expression& expression, const std::string& field);
 

@@ -64,8 +64,8 @@ struct Drawing {
 constexpr int kCameraDpi = 100;
 
 // A part of the drawing, with its camera. Pixels outside the drawing are discarded. The camera also
-// renders a margin on each side, which is discarded too. Because of it, a symbol that extends into
-// the part is tested against the surface at its position.
+// renders a margin on each side, which is discarded too. With this margin, a symbol that extends
+// into the part is tested against the surface at its position.
 struct Part {
   Camera camera;
   // In pixels, without the margin. Origin at the drawing's top left.

@@ -17,7 +17,7 @@ struct VertexAttribute {
   GLuint offset;  // in bytes, from the start of the vertex
 };
 
-// The layout of one interleaved vertex buffer and one index buffer. Both must outlive it.
+// The layout of one interleaved vertex buffer and one index buffer. Both buffers must outlive it.
 class VertexArray {
  public:
   VertexArray() = default;

@@ -103,7 +103,7 @@ bool waits_for_review(const Layer& layer, const EditRequest& edit);
 
 // Returns whether the edit writes the computed values of a layer, and is not a change by hand.
 bool computes(const EditRequest& edit);
-// Returns an error (forbidden, at `layer`) for a locked layer if the role is below curator. Returns
+// Returns a `forbidden` error at `layer` for a locked layer if the role is below curator. Returns
 // the same error for a layer whose content was computed, unless `computing` is true. The pipeline
 // checks this before an edit begins. Other callers need this check only if they change something
 // before the edit.

@@ -37,8 +37,8 @@ class Layers {
   virtual Result<Layer> update(Layer layer,
                                const store::IdempotentResponse<Layer>& answer = {}) = 0;
   // Converts the layer to a wider type, so it can hold larger keys or values. Includes the history.
-  // `layer` is the layer as the caller read it. Returns an error (invalid, at `type`) for a type
-  // to which the layer cannot be widened, and for a computed layer.
+  // `layer` is the layer as the caller read it. Returns an `invalid` error at `type` for a type to
+  // which the layer cannot be widened, and for a computed layer.
   virtual Result<Layer> widen(const Layer& layer, ValueType type,
                               const store::IdempotentResponse<Layer>& answer = {}) = 0;
   // Erases the layer permanently.
@@ -57,8 +57,8 @@ class Layers {
   // Call after records of a table have changed. Layers that are computed from them become stale,
   // and layers that take their colors from the terms of the table change.
   virtual void records_changed(TableId table_id) = 0;
-  // Checks whether a formula for a computed layer can be evaluated in this room. Returns an error
-  // (invalid, at `field`) in the same cases as bind_for_layer.
+  // Checks whether a formula for a computed layer can be evaluated in this room. Returns an
+  // `invalid` error at `field` in the same cases as bind_for_layer.
   virtual Result<void> check_expression(const Expression& expression, const std::string& field,
                                         Visibility layer) const = 0;
 };

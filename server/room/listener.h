@@ -48,7 +48,7 @@ class Listener {
   virtual void model_deleted() = 0;  // the last event
   // Another node of the site has the model now, or this node must no longer change it. `url` is the
   // address of that node, or empty if it is not known. The last event. Edits without an answer were
-  // refused (moved), so the client must send them again.
+  // refused with the code `moved`, so the client must send them again.
   virtual void moved(const std::string& url) = 0;
   virtual void presence_changed() = 0;
   // Called on the GPU thread, for one view of this participant only. The view cannot be drawn as

@@ -57,8 +57,8 @@ class Participant {
   // one.
   virtual void edits() = 0;
   virtual void pointer(std::optional<Pointing> at) = 0;
-  // Replaces the former settings. Returns an error at `follow`, and changes nothing, if the session
-  // is not in the room (not_found) or follows this one (conflict).
+  // Replaces the former settings. Changes nothing, and returns an error at `follow`: `not_found` if
+  // the session is not in the room, `conflict` if it follows this one.
   virtual Result<void> look_together(bool leading, const std::optional<Uuid>& follow) = 0;
 };
 

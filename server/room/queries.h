@@ -71,8 +71,8 @@ struct SeenLine {
 using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
 
 // Questions to an open model. The first questions may take more time (search tree, surface map), so
-// call from a worker thread. Answers contain only values of the given layers. Returns an error
-// (invalid, at `at`) for a sequence that is not durable yet. Thread-safe.
+// call from a worker thread. Answers contain only values of the given layers. Returns an `invalid`
+// error at `at` for a sequence that is not durable yet. Thread-safe.
 class Queries {
  public:
   virtual ~Queries() = default;

@@ -61,9 +61,9 @@ class Rooms {
   Result<std::shared_ptr<Room>> open(const std::string& model_ref, Role seen_by);
   // Calls Layers::records_changed in the open models.
   void records_changed(TableId table_id);
-  // Refuses (conflict) later edits that would paint this key of the table. Edits that were accepted
-  // earlier are durable when the call returns. After an Error, this is uncertain, but the key is
-  // retired. Blocks.
+  // Refuses later edits with `conflict` if they would paint this key of the table. Edits that were
+  // accepted earlier are durable when the call returns. After an Error, this is uncertain, but the
+  // key is retired. Blocks.
   Result<void> retire_key(TableId table_id, std::int64_t key);
   // Returns when every accepted edit is durable. After an Error, this is uncertain, and the call
   // can be repeated. Blocks.
@@ -77,7 +77,7 @@ class Rooms {
   // this node drains, another node is proposed for a model that no node has.
   Result<std::optional<std::string>> elsewhere(const std::string& model_ref);
   // The lease of this node is lost. Closes all rooms at once, without the database: their edits are
-  // refused (moved), their listeners notified, and their pictures stop. `open` returns an
+  // refused with `moved`, their listeners are notified, and their pictures stop. `open` returns an
   // `unavailable` error until `resume` is called.
   void surrender();
   void resume();  // the node has a lease again

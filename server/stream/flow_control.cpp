@@ -72,7 +72,7 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   if (last_frame_ - acked_ >= static_cast<std::uint64_t>(window_)) return std::nullopt;
   const bool refine = refine_waits_ && !moving_;
   const bool changes = everything_waits_ || refine || !boxes_.empty();
-  // A refinement waits until the client has all frames. Otherwise it would delay the next camera.
+  // A refinement waits until the client has all frames. Otherwise it would delay the next frame.
   if (!changes && (!rests_ || refined_ || moving_ || acked_ < last_frame_)) return std::nullopt;
 
   Draw draw{++tickets_, camera_seq_,  past_.value_or(sequence_),

@@ -36,10 +36,10 @@ struct EditTiles {
   uint number_of_tile[kEditMostTiles];
 };
 
-// The texels of a tile that the edit wrote, and the box around the spheres of the written parts.
-// `texels` contains 128 rows with one bit per texel, lowest bit first. The numbers in `high`
-// increase with the coordinate, and those in `low` decrease. All of them are 0 if no texel was
-// written.
+// The texels of a tile that the edit wrote, and the bounding box of the bounding spheres of the
+// written parts. `texels` contains 128 rows with one bit per texel, lowest bit first. The numbers
+// in `high` increase with the coordinate, and those in `low` decrease. All of them are 0 if no
+// texel was written.
 struct EditedTile {
   uint texels[512];
   uint low[3];

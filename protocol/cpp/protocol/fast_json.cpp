@@ -14,8 +14,8 @@ using simdjson::dom::element_type;
 
 bool has_nul(std::string_view text) { return text.find('\0') != std::string_view::npos; }
 
-// Returns false if the strict parser must find the reason. `depth` is the number of objects and
-// lists that may still be nested.
+// Returns false for a value that the strict parser must check and report. `depth` is the number of
+// objects and lists that may still be nested.
 bool convert(const element& from, int depth, json& to) {
   switch (from.type()) {
     case element_type::ARRAY: {

@@ -32,7 +32,7 @@ Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
 }
 
 // Parses a text message of the WebSocket. Sets `ref`, if it is not null, to the `id` of the message
-// if the `id` is readable. This also applies to a refused message, so the `problem` can name it.
+// if the `id` is readable. This also applies to a refused message, so the `problem` can contain it.
 Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref = nullptr,
                                            const JsonLimits& limits = {});
 Result<ServerMessage> parse_server_message(std::string_view text,

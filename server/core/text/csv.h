@@ -27,8 +27,8 @@ struct CsvText {
 // Reads RFC 4180 and common variants: UTF-8 with or without a byte order mark, and rows that end
 // with LF, CRLF or CR. A first row `sep=;`, as Excel writes it, names the separator. Otherwise the
 // separator is the most frequent of comma, semicolon and tab in the first row, outside of quotes.
-// Returns an error (invalid), with the line, for invalid UTF-8, an unclosed quote, and text after a
-// closing quote.
+// Returns an `invalid` error with the line number for invalid UTF-8, an unclosed quote, and text
+// after a closing quote.
 Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits = {});
 
 inline constexpr std::string_view kUtf8Mark =

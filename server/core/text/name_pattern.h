@@ -17,15 +17,15 @@ class NamePattern {
  public:
   static constexpr std::size_t kMaxWords = 8;
 
-  // Returns the error `invalid` (at `field`) for a pattern without a word, a repeated word, two
-  // words without text between them, or unbalanced braces.
+  // Returns an `invalid` error at `field` for a pattern without a word, a repeated word, two words
+  // without text between them, or unbalanced braces.
   static Result<NamePattern> parse(std::string_view text, const std::string& field);
 
   bool has(std::string_view word) const;
 
   // Returns the words of a name, or nullopt if the name does not match. If a name can match in
-  // several ways, `word` is the longest known word. The other words are as short as possible from
-  // the left.
+  // several ways, the part for `word` is the longest known word. The other words are as short as
+  // possible from the left.
   struct Reading {
     std::map<std::string, std::string> words;
     bool is_known = false;

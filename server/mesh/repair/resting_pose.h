@@ -12,8 +12,8 @@ namespace strata::mesh {
 // likely if the object often comes to rest with this direction up. This probability is the solid
 // angle of the ways to drop it (Goldberg et al., "Part pose statistics", 1999). A direction is also
 // more likely if the object then rests on a large part of its outline and if hollows open upward. A
-// sheet lies with its front up. Most scans have z or y up. This decides if the shape does not. Each
-// vertex is read once, which dominates the time for large meshes. Can be called on any thread.
+// sheet lies with its front up. Most scans have z or y up, so these directions have larger shares.
+// Each vertex is read once, which dominates the time for large meshes. Can be called on any thread.
 std::array<double, 6> up_shares(const TriangleMesh& mesh);
 
 }  // namespace strata::mesh

@@ -16,7 +16,7 @@
 
 namespace strata::room {
 
-// Returns the highlighted keys, ascending. Returns an error (invalid, at `field`) for a condition
+// Returns the highlighted keys, ascending. Returns an `invalid` error at `field` for a condition
 // that does not match the columns.
 Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, TableId table_id,
                                                     Role seen_by, const Highlight& highlight,

@@ -122,8 +122,8 @@ class OpenRoom final : public Room,
   // Refuses waiting and later edits, and releases the GPU objects. Blocks.
   void close(const Error& why);
   void close_deleted();  // call after the model was deleted; notifies listeners first
-  // Refuses edits (moved) and notifies listeners that the model has moved, which is their last
-  // event. Does not wait for the database. Call `close` later.
+  // Refuses edits with `moved`, and notifies listeners that the model has moved, which is their
+  // last event. Does not wait for the database. Call `close` later.
   void move_away(const Error& why);
   // Gives up the claim, so that another node can open the model. Blocks. Does nothing if this
   // server is alone, because its claims have no owner.
@@ -157,7 +157,7 @@ class OpenRoom final : public Room,
   std::shared_ptr<const mesh::ContactShadow> make_contact_shadow(const std::string& up) const;
   std::vector<Layer> layer_list() const;
   Result<LayerState> state(const std::string& ref) const;
-  // Returns an error (invalid, at `at`) for a sequence that is not durable yet.
+  // Returns an `invalid` error at `at` for a sequence that is not durable yet.
   Result<void> check_durable(At at) const;
   std::optional<TileMirror::Snapshot> durable_tiles(const Layer& layer) const;
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;

@@ -41,7 +41,7 @@ Result<query::BoundExpression> bind_expression(
 // The same for a formula whose result is written into a layer with visibility `layer`. The formula
 // may read only data that every user of the layer can see, so the result reveals no hidden data.
 // `layers` are all layers of the model. The result contains the layers that the formula may read.
-// Also returns an error (invalid, at `field`) for data that `author` can see but not every user of
+// Also returns an `invalid` error at `field` for data that `author` can see but not every user of
 // the layer.
 struct BoundForLayer {
   query::BoundExpression expression;

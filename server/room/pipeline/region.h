@@ -30,7 +30,7 @@ struct RegionContext {
 };
 
 // A position on the surface: its texel (numbered as in mesh::TexelGraph) and its point in model
-// space. `find_place` returns an error (invalid, at `field`) if there is no texel.
+// space. `find_place` returns an `invalid` error at `field` if there is no texel.
 struct PlaceOnSurface {
   std::uint32_t texel = 0;
   glm::vec3 position{0};
