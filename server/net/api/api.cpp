@@ -283,7 +283,7 @@ std::optional<Response> Api::admit(Request& request, const Route& route) {
   if (changes(request.method))
     if (auto own = check_same_origin(request, options_.allowed_origins); !own)
       return problem_response(own.error());
-  // Before the body is read, so a redirected upload is sent only once.
+  // Redirects before the body is read, so an upload is sent only once.
   if (auto elsewhere = redirect_to_owner(rooms_, request)) return elsewhere;
   if (auto known = check_query(route, request); !known) return problem_response(known.error());
   if (auto named = check_precondition(context_, request, route); !named)
@@ -318,7 +318,7 @@ void Api::handle(const Request& request, const Route& route, const Respond& send
        accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
         if (response.status == 307)
           response = redirected_by_handler(response.header("Location"), target, again);
-        // Only for reads, because a client can repeat them with another `Accept`.
+        // Checked only for reads, because a client can repeat them with another `Accept`.
         if (response.status == 200 && !response.events &&
             !accepts_type(accept, response.header("Content-Type")))
           response = problem_response({ErrorCode::not_acceptable, "Not acceptable",
@@ -388,7 +388,7 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
   const Respond with_tag([respond, known_tags = std::string(known), before,
                           state_now](Response response) {
     if (response.status != 200) return respond(std::move(response));
-    // The state is the same before and after the handler, so the response shows exactly this state.
+    // If the state is the same before and after the handler, the response shows exactly this state.
     if (before && response.header("ETag").empty() && state_now() == before) {
       if (response.header("Vary").empty()) response.with("Vary", "Accept");
       response.with("ETag", *before);

@@ -63,7 +63,7 @@ std::string metric_label(std::string_view name, std::string_view value) {
 }
 
 void write_requests(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges) {
-  out.head("strata_http_requests_total", "counter", "HTTP answers by class of status.");
+  out.head("strata_http_requests_total", "counter", "HTTP responses by class of status.");
   for (std::size_t i = 1; i < metrics.requests.size(); ++i)
     out.value("strata_http_requests_total",
               "{" + metric_label("status", std::to_string(i) + "xx") + "}",
@@ -154,7 +154,7 @@ void write_machine(MetricsWriter& out, const Metrics& metrics, const Gauges& gau
     out.value("strata_jobs", "{" + metric_label("state", kJobStates[i]) + "}", gauges.jobs[i]);
   if (const auto end = metrics.certificate_end.load())
     out.gauge("strata_certificate_end_seconds",
-              "End of the TLS certificate, in seconds since 1970.", end);
+              "Expiry of the TLS certificate, in seconds since 1970.", end);
 }
 
 void write_node(MetricsWriter& out, const Gauges& gauges) {

@@ -132,8 +132,8 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
   // page into a kiosk, or a kiosk into a user's page.
   const bool is_kiosk = principal->kiosk.has_value();
   if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
-  // A token for scripts is not accepted as a session cookie. It does not end with the browser
-  // session, and no page lists it as a session.
+  // A token for scripts is not accepted as a session cookie, because it does not end with the
+  // browser session, and no page lists it as a session.
   const bool is_session = principal->secret != 0 && !principal->is_script;
   if (by_cookie && !is_kiosk && !is_session) return unknown_secret();
   principal->by_cookie = by_cookie;

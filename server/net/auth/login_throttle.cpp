@@ -48,8 +48,8 @@ void LoginThrottle::was_right(const std::string& address, const std::string& nam
   if (name.empty()) return;
   std::lock_guard lock(mutex_);
   const std::string key = both(address, name);
-  // The address does not get its attempt back because repeated sign-ins cost the server as much as
-  // guesses.
+  // The limit of the address still counts the attempt, because repeated sign-ins cost the server as
+  // much as guesses.
   if (const auto found = by_both_.find(key); found != by_both_.end()) found->second.give_back();
   if (const auto found = by_name_.find(to_lower(name)); found != by_name_.end())
     found->second.give_back();

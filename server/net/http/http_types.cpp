@@ -170,7 +170,7 @@ Result<void> parse_target(std::string_view target, Request& request) {
   auto wrong = [](std::string detail) {
     return fail(ErrorCode::malformed, "Malformed address", std::move(detail));
   };
-  // Without the mark, because a repeated request (Idempotency-Key) may arrive without it.
+  // Removes the mark, because a repeated request (Idempotency-Key) may arrive without it.
   if (target.ends_with(kMovedMark)) {
     const std::string_view rest = target.substr(0, target.size() - kMovedMark.size());
     request.was_moved = rest.ends_with('?') || rest.ends_with('&');

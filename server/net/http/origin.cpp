@@ -100,7 +100,7 @@ bool is_own(const Request& request, const std::vector<std::string>& allowed) {
 Result<void> check_same_origin(const Request& request, const std::vector<std::string>& allowed) {
   const auto origin = request.header("origin");
   if (request.principal && !request.principal->by_cookie) return {};
-  // When signing in: a foreign page must not sign in its visitor as another user.
+  // A sign-in has no principal. A script may omit Origin, but a foreign page must not sign in.
   if (!request.principal && origin.empty()) return {};
   if (!origin.empty()) {
     if (is_own(request, allowed)) return {};

@@ -492,8 +492,8 @@ void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch
   if (answer)
     return send(edit_message<protocol::Saved>(id, batch.has_value(), batch ? batch->stroke : Uuid{},
                                               batch ? batch->n : 0, *answer));
-  // An edit that had to be refused because another node has the model is not refused for good. The
-  // client sends it to that node.
+  // An edit is not counted as refused if another node has the model, because the client then sends
+  // the edit to that node.
   if (!applied && answer.error().code != ErrorCode::moved) {
     ++shared_->metrics->edits.refused;
     return refuse(answer.error(), id);

@@ -12,8 +12,8 @@
 namespace strata::net {
 namespace {
 
-// A transaction has the time of its start but becomes visible at its end. The events of longer
-// transactions may be missed.
+// A transaction has the time of its start but becomes visible at its end. If a transaction takes
+// longer than this, its events may be missed.
 constexpr std::chrono::microseconds kMaxLength = std::chrono::seconds(30);
 constexpr std::chrono::seconds kCheckEvery{10};
 constexpr int kFirstPage = 20;  // usually there are no new events

@@ -23,8 +23,8 @@ Result<std::vector<Migration>> read_migrations(const std::filesystem::path& fold
 // first. An advisory lock allows any number of servers to start at the same time. Returns an error
 // if the database has a version that is not in `known`, because it is then newer than this program,
 // or if an applied file differs from `known`. The file format and the table `schema_migrations` are
-// those of dbmate. It has no checksums, so they are in a separate table. Returns the present
-// version.
+// those of dbmate. dbmate has no checksums, so they are in a separate table. Returns the present
+// version of the schema.
 Result<std::int64_t> migrate(PgConnection& connection, const std::vector<Migration>& known);
 
 }  // namespace strata::store

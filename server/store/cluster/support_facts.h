@@ -13,7 +13,7 @@
 
 namespace strata::store {
 
-// What a support bundle says about a database, and what it must not contain.
+// The facts about a database for a support bundle, and the data that the bundle must not contain.
 struct SupportFacts {
   // The server, the schema, its settings and connections; the tables and the indexes with their
   // sizes and their use. No content of the tables.

@@ -30,7 +30,7 @@ struct Comment {
   CommentId id = 0;
   ModelId model_id = 0;
   std::optional<CommentId> thread;  // for a reply: id of the first comment of the thread
-  // The members up to `resolved` belong to the first comment, which always has a place.
+  // The fields up to `resolved` belong to the first comment, which always has a place.
   std::optional<Place> place;
   // the subject; `record` is a key in the table
   std::optional<LayerId> layer_id;

@@ -50,7 +50,7 @@ class Layers {
   // computed longest ago are first.
   Result<std::vector<Layer>> to_recompute();
   Result<std::vector<Layer>> of_table(TableId table_id, Role seen_by);
-  // Returns the layers whose tiles must be counted again, because an edit was stored without the
+  // Returns the layers whose sums must be computed again, because an edit was stored without the
   // sums of its tiles.
   Result<std::vector<Layer>> to_sum();
   // Stores the sums of each tile of the layer that contains values. The layer must not be edited

@@ -136,7 +136,7 @@ Result<void> Projects::remove(ProjectId id, const IdempotentResponse<>& answer) 
     if (row.text(0, 0) == "default")
       return fail(
           ErrorCode::conflict, "Cannot delete project",
-          "The project `default` cannot be deleted: models without a project belong to it.");
+          "The project `default` must exist, because models imported without a project go there.");
     if (row.integer(0, 1) > 0)
       return fail(ErrorCode::conflict, "Cannot delete project",
                   "The project still contains " + std::to_string(row.integer(0, 1)) +

@@ -82,7 +82,7 @@ class Trash {
   // Erases a layer or model permanently. `erase_some` erases its content later.
   Result<void> erase(const TrashEntry& entry, const IdempotentResponse<>& answer);
 
-  // Erases, in the same way, all layers and models that have been in the Trash for longer than
+  // Erases, like `erase`, all layers and models that have been in the Trash for longer than
   // `after`.
   Result<void> expire(std::chrono::days after);
   // Erases a part of the content of erased models and layers. The part is so small that no other

@@ -52,8 +52,8 @@ struct JournalEntry {
   };
   std::vector<Revision> revisions;
   // Returns the sums of the tiles in `revisions` after the edit. Called on the thread of the
-  // writer, at each attempt. If empty, the sums are not known, and the layer must be counted again
-  // (Layers::to_sum).
+  // writer, at each attempt. If empty, the sums are not known, and the sums of the layer must be
+  // computed again (Layers::to_sum).
   std::function<std::vector<TileKeys>()> sum_tiles;
   // for undo, redo and reviews: sequences of edits whose `in_force` becomes false or true
   std::vector<std::int64_t> disable, enable;

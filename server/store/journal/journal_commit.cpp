@@ -37,9 +37,9 @@ Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const>
     const auto [span, fresh] =
         spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence, entry->epoch});
     if (!fresh && (entry->sequence != ++span->second.last || entry->epoch != span->second.epoch))
-      return fail(
-          ErrorCode::conflict, "Journal out of order",
-          "Edit " + std::to_string(entry->sequence) + " does not follow the edit before it.");
+      return fail(ErrorCode::conflict, "Journal out of order",
+                  "Edit " + std::to_string(entry->sequence) +
+                      " must have the next sequence and the epoch of the previous edit.");
   }
   return spans;
 }
@@ -239,8 +239,8 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
   if (!spans) return tl::unexpected(CommitFailure{spans.error(), false});
   auto written = write_entries(connection, entries, *spans);
   if (written || written.error().transient) return written;
-  // The new owner may have written the same sequences, so any permanent failure can have this
-  // cause.
+  // Another node may have claimed the model and written the same sequences. Any permanent failure
+  // can have this cause.
   for (const auto& [model, span] : *spans) {
     auto deposed = deposed_problem(connection, model, span.epoch);
     if (!deposed) return tl::unexpected(CommitFailure{deposed.error(), true});

@@ -21,7 +21,7 @@ namespace strata::store {
 
 class Pool;
 
-// A tile that the given edits wrote, with the union of the masks that they wrote.
+// A tile that the given edits wrote, with the union of the masks of these edits.
 struct WrittenTiles {
   TileAddress tile;
   TileMask written;
@@ -32,8 +32,8 @@ struct HistoryPage {
   std::int64_t total = 0;
 };
 
-// The last sequence and the epoch of a model (store/nodes/nodes.h), and the rows of the given
-// messages that the journal contained after they were read.
+// The last sequence and the epoch of a model (store/nodes/nodes.h), and then the rows of the given
+// messages that the journal contained. The rows were read after the sequence and the epoch.
 struct JournalState {
   std::int64_t last_sequence = 0;
   std::int64_t epoch = 0;

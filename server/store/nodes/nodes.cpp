@@ -137,8 +137,8 @@ Result<void> Nodes::forget_ended() {
   return {};
 }
 
-// The condition is checked again after a wait for a concurrent claim, so only one of them succeeds
-// for the same reason.
+// After a wait for a concurrent claim, the condition is checked again, so only one of two claims
+// for the same reason succeeds.
 Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self) {
   return pool_.write([&](PgConnection& connection) -> Result<std::int64_t> {
     Params params;

@@ -81,7 +81,7 @@ class Nodes {
   // Returns `gone` if the lease is over or the node was removed. Then the node must close its rooms
   // and join again.
   Result<void> renew(const Uuid& node, const NodeLoad& load);
-  // Other nodes may claim its models at once, and it may claim none.
+  // Other nodes may then claim the models of the node at once, and the node may claim no model.
   Result<void> begin_drain(const Uuid& node);
   Result<void> leave(const Uuid& node);  // removes the node; its models have no owner then
   Result<void> forget_ended();           // removes nodes whose lease ended `kForgetAfter` ago

@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds kConnectFor{5000};
 Error unknown_outcome(Error lost) {
   lost.title = "Result unknown";
   lost.detail =
-      "The server lost the connection to the database, so it does not know whether "
+      "The server lost the connection to the database, so it is not known whether "
       "the change was saved. Check before you repeat it. A repeat with the same "
       "Idempotency-Key is safe.";
   return lost;

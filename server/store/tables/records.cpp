@@ -152,7 +152,7 @@ Result<TableChange> write_all(PgConnection& connection, TableId table_id,
   TableChange change;
   change.table = open.table;
   change.problems = std::move(intake.problems());
-  // Without a change there is no entry.
+  // Without a change, the journal gets no entry.
   if (!change.problems.empty() || edit.records.empty()) return change;
   auto done = STRATA_TRY(apply_edit(connection, open, std::move(edit)));
   for (RowError& problem : done.problems) problem.index = intake.index_of(problem.key);

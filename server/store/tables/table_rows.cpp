@@ -310,8 +310,8 @@ Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
                                 joins + only + order_by(keys) + " LIMIT $" +
                                 std::to_string(count - 1) + " OFFSET $" + std::to_string(count),
                             params);
-  // Only the values of the position can fail here, because they are external and are not texts of a
-  // condition.
+  // SQLSTATE class 22: a text in `after` is not a value of its column. PostgreSQL converts no other
+  // unchecked text of the client here.
   if (!rows && part.after && connection.sqlstate().starts_with("22")) return wrong_place();
   if (!rows) return tl::unexpected(rows.error());
   page.rows = read_rows(*rows, columns);

@@ -112,7 +112,7 @@ Result<room::EditRequest> review_edit(const Request& request, const Target& targ
   return edit;
 }
 
-// Undo and redo have no members. An absent body is equivalent to an empty object.
+// The bodies of undo and redo have no members. An absent body is equivalent to an empty object.
 Result<void> check_empty(const Request& request) {
   if (request.body.empty()) return {};
   STRATA_TRY(body_of<protocol::Empty>(request));

@@ -125,8 +125,8 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
         "into");
   if (!body.where || body.within || body.at || body.changed)
     return fail(ErrorCode::invalid, "Cannot paint this area",
-                "`into` paints where a condition is true now. Send `where` without `within`, "
-                "`changed` and `at`.",
+                "`into` can paint only where a condition is true in the current state. Send "
+                "`where`, but not `within`, `changed` or `at`.",
                 "into");
   const auto layer = room.layers().find(protocol::to_ref(body.into->layer));
   if (!layer) {

@@ -58,7 +58,7 @@ Result<SurfaceImage> bake(room::Room& room, const OrthophotoRequest& requested,
                           const app::MapPicture& map,
                           const store::IdempotentResponse<SurfaceImage>& answer,
                           Progress& progress) {
-  progress.report(0, "Finding what is seen");
+  progress.report(0, "Finding the visible surface");
   const jobs::OrthophotoSampler sampler(map.picture, map.world,
                                         texel_area(room.model(), requested.resolution));
   if (progress.cancelled()) return cancelled_problem();
@@ -105,7 +105,7 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
   const Model model = (*room)->model();
   if (requested->resolution != 0 && requested->resolution < model.atlas.lowest_resolution)
     return fail(ErrorCode::invalid, "Resolution too low",
-                "Pictures of this model must have at least " +
+                "Surface images of this model must have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                 "resolution");
   const auto files = STRATA_TRY(take_map(request, context.options.upload_dir));

@@ -140,7 +140,7 @@ Result<Response> change_password(const RouteContext& context, LoginThrottle& gat
         body.current ? store::password_fits(hash, *body.current) : Result<bool>(false);
     if (!fits) return tl::unexpected(fits.error());
     if (!*fits) {
-      // A guess of the password counts, also at the browser of its user.
+      // A wrong password counts as a failed sign-in, even in a browser where the user is signed in.
       STRATA_TRY(context.store.audit().failed_sign_in(request.user(), "password"));
       return fail(ErrorCode::invalid, "Wrong current password",
                   "The current password is wrong. Enter it again.", "current");

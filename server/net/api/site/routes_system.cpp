@@ -90,7 +90,7 @@ Result<Response> set_log_levels(const Request& request) {
     auto& own = levels.of_modules[static_cast<std::size_t>(*log::module_named(name(module)))];
     if (own)
       return fail(ErrorCode::invalid, "Module listed twice",
-                  "The module " + std::string(name(module)) + " has two levels. Send one of them.",
+                  "Send only one log level for the module " + std::string(name(module)) + ".",
                   "modules");
     own = level_of(level);
   }
