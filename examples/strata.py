@@ -1,4 +1,4 @@
-"""A small client for the HTTP interface of Strata, with nothing but Python's own library.
+"""A small client for the HTTP interface of Strata, which needs only Python's standard library.
 
     from strata import Strata
 

@@ -27,7 +27,7 @@ struct BenchMesh {
 struct BenchMeshOptions {
   std::filesystem::path cache = "build/bench";
   bool make_always = false;  // discards the file's own texture coordinates
-  std::string up = {};       // used if the file and the list of known scans have none; empty: z
+  std::string up = {};       // if neither the file nor the known scans have an axis; empty: z
 };
 
 // Returns whether this process generates the mesh instead of reading it from a file.

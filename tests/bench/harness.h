@@ -66,7 +66,7 @@ T await(Start start) {
 
 // Returns a camera that shows the model from a direction, as large as the window allows.
 Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height);
-// Does the same for a box in world coordinates.
+// Returns such a camera for a box in world coordinates.
 Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height);
 
 // Lets other users enter the parent folders of a future data folder. PostgreSQL does not run as

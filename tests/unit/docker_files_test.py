@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The files in docker/ agree with one another and with the program. This test only reads the files.
-docker/check runs them, which takes half an hour."""
+docker/check builds and runs the image, which takes half an hour."""
 import os
 import re
 import sys

@@ -10,8 +10,8 @@
 
 namespace strata::bench {
 
-// ParaView's web engine (peers/paraview_frames.py) on a separate, invisible screen, which
-// ParaView's server uses on a machine without a screen.
+// ParaView's web engine (peers/paraview_frames.py) on a separate, invisible screen, as ParaView's
+// own server needs on a machine without a screen.
 class ParaViewPeer {
  public:
   // Returns nothing if a program is missing. Then `why` names it and the command that installs it.

@@ -109,7 +109,7 @@ TEST(Cluster, the_database_stops_when_its_server_is_killed_and_a_new_server_take
   ASSERT_GT(postmaster, 0);
   kill(server, SIGKILL);
   waitpid(server, nullptr, 0);
-  auto cluster = Cluster::start(folder.path());  // at once: the old server may still be stopping
+  auto cluster = Cluster::start(folder.path());  // the old server may not have ended yet
   ASSERT_TRUE(cluster) << cluster.error().detail;
   EXPECT_EQ(ask((*cluster)->dsn(), "SELECT 1"), "1");
   EXPECT_NE((*cluster)->postmaster_pid(), postmaster);

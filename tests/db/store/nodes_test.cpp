@@ -40,7 +40,7 @@ class OwnershipOfModels : public ::testing::Test {
     if (renewed) keep_lease(node);
     return renewed;
   }
-  // The lease ends without waiting for it.
+  // Ends the lease now, so the test need not wait for its end.
   void end_lease(const Uuid& node) {
     script("UPDATE nodes SET lease_until = clock_timestamp() - interval '1 second' WHERE id = '" +
            to_string(node) + "'");

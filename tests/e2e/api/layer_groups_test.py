@@ -54,7 +54,7 @@ def test_a_bad_group_is_refused(server, group):
 
 def test_a_group_with_a_zero_character_is_refused(server):
     answer = server.request("PATCH", L + "/cracks", {"group": "a\0b"})
-    assert answer.status in (400, 422), answer  # 400 refuses the text of the whole request
+    assert answer.status in (400, 422), answer  # 400 if the server refuses the JSON text itself
     assert groups(server)["cracks"] == "Damage"
 
 

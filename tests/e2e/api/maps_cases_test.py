@@ -83,7 +83,7 @@ def test_shapefile(server, story):
         13,
         None,
     ], values(server, units, *places)
-    # a repeat with another boundary counts as the same map
+    # a repeat whose form has another boundary counts as the same request
     again = server.ok(
         "POST",
         query(units + "/polygons", attribute="UNIT"),
@@ -158,7 +158,7 @@ def test_shapefile(server, story):
 
 def check_crs_question(server, path, good):
     """The model has no coordinate system. A map with a coordinate system is painted only if the
-    request confirms that it is the model's."""
+    request confirms that the coordinates of the model are also in that system."""
     polygons, of_polygons = form(a_shp=good, a_prj=UTM.encode())
     raster = tiff(10, 10, lambda x, y: x, kind="B", scale=10.0, origin=(0, 100), epsg=25830), {
         "Content-Type": "image/tiff"

@@ -1,5 +1,5 @@
-"""What an administrator sees of the work of a server: traces of requests and edits, the levels and
-the format of the log, metrics, and the bundle for reports of problems."""
+"""The information for administrators about the work of a server: traces of requests and edits, the
+levels and the format of the log, metrics, and the bundle for reports of problems."""
 import json
 import os
 import re

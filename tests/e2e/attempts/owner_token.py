@@ -1,6 +1,5 @@
-"""The owner's token in the environment, in the hands of an attacker, after an administrator has a
-password.
-"""
+"""An attacker uses the owner's token from the environment, after an administrator has set a
+password."""
 from attempts.tools import FILL, L, M, person, statuses, upgraded
 from support.browsers import PASSWORD, Browser, secret_of
 from support.strata_server import StrataServer

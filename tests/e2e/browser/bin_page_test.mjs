@@ -1,5 +1,5 @@
-// The trash on the page: Undo after a deletion, the list of a project's deleted content with
-// keyboard, mouse and finger, and the rights of each role.
+// The trash on the page: Undo after a deletion, the list of a project's deleted content, and the
+// rights of each role. The tests use keyboard, mouse and touch.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";

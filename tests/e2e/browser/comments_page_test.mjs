@@ -1,6 +1,6 @@
 // Comments on the surface: written at a point, kept while unsent, immediately visible to others,
-// answered, resolved, edited, deleted, and found in the panel and by their address. The file tests
-// mouse, keyboard and finger. The model hides the pins behind it.
+// answered, resolved, edited, deleted, and found in the panel and by their address. The tests use
+// mouse, keyboard and touch. The model hides the pins behind it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";

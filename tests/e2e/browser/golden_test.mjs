@@ -21,7 +21,8 @@ const is_update = process.env.STRATA_UPDATE_GOLDEN === "1";
 // A pixel differs if a channel is off by more than `kStep`. Other versions of Mesa, libjpeg and
 // FreeType cause smaller differences. `share` is the allowed share of such pixels. Another
 // rasterizer moves the pot's edges by a pixel, and another FreeType moves the letters. `mean`
-// limits the difference over the whole image. Both limits detect a wrong color on a small patch.
+// limits the difference over the whole image. A wrong color on a small patch exceeds each of the
+// two limits.
 const kStep = 40;
 const kPageLimits = { share: 0.012, mean: 1.6 };
 const kPictureLimits = { share: 0.004, mean: 0.8 };

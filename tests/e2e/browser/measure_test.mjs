@@ -1,6 +1,6 @@
 // Measuring on a surface with a known shape, a ridge like a roof. Straight lengths, lengths along
-// the surface, heights, areas and the profile equal those of the roof. The file tests mouse, keys
-// and fingers, also for viewers.
+// the surface, heights, areas and the profile equal those of the roof. The tests use mouse,
+// keyboard and touch, and also the page of a viewer.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";

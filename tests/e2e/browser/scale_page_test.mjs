@@ -1,6 +1,6 @@
 // The question about size and up direction, as after dropping files. It first shows the server's
 // proposal and its reason. The model shows the choice, is not dimmed and can be used. "Decide
-// later" keeps the values of the card. On a desktop computer and on a phone.
+// later" keeps the values of the card. The tests use a desktop computer and a phone.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";

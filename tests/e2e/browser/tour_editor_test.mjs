@@ -1,7 +1,7 @@
 // Tours on the page: made from saved views, translated, reordered, and tested on the model. Another
 // user's simultaneous change and the server's refusals are shown at the right position and lose no
-// input. Links for kiosks are shown once, reloaded on request, and revoked. Also on a phone. Only
-// curators have these controls.
+// input. Links for kiosks are shown once, reloaded on request, and revoked. The tests also use a
+// phone. Only curators have these controls.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";

@@ -1,6 +1,6 @@
 // Saved views on the page: created, opened and left again, and opened by their link in another
-// user's browser. They are renamed, changed and deleted, which others see immediately. The file
-// tests mouse, keyboard and finger. Viewers have no controls to change views.
+// user's browser. They are renamed, changed and deleted, which others see immediately. The tests
+// use mouse, keyboard and touch. Viewers have no controls to change views.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";

@@ -33,7 +33,7 @@ class Annotator(threading.Thread):
         self.turning = number < site.turning
         self.angle = 2 * math.pi * number / site.people
         self.line, self.lines, self.hanging = None, [], []
-        self.waiting, self.done = {}, []  # messages by id, in order: not durable yet; durable
+        self.waiting, self.done = {}, []  # messages by id, in order; those in `done` are durable
         self.again = False  # whether the server refused a message temporarily
         self.cuts = dict.fromkeys(WAYS, 0)
         self.camera_seq, self.next_turn, self.cut_at, self.cut_way = 0, 0.0, 0.0, WAYS[0]

@@ -75,7 +75,7 @@ class SharedPostgres:
                 os.initgroups(account.pw_name, account.pw_gid)
                 os.setgid(account.pw_gid)
                 os.setuid(owner)
-            # after setuid, which clears it
+            # must follow setuid, which clears this setting
             ctypes.CDLL(None).prctl(1, signal.SIGQUIT)  # PR_SET_PDEATHSIG
 
         options = [
@@ -241,7 +241,8 @@ class Site(Requests):
             time.sleep(0.05)
 
     def owner(self, model):
-        """Returns the node that owns the model, by the database. None: nobody owns it."""
+        """Returns the node that owns the model according to the database, or None if no node owns
+        it."""
         url = self.postgres.sql(
             "SELECT n.url FROM models m JOIN nodes n ON n.id = m.owner_node "
             f"WHERE m.id = {int(model)} AND n.lease_until > clock_timestamp() AND NOT n.draining"
@@ -267,7 +268,7 @@ class NodeHttpPainter(HttpPainter):
     redirection in two, so nodes that do not have the model get many edits."""
 
     TRY_AGAIN = (307, 429, 503)
-    node = None  # to which the last answer redirected
+    node = None  # the node to which the last response redirected
 
     def send(self, path, edit, headers):
         node, self.node = self.node, None

@@ -57,7 +57,8 @@ class PaintedModel:
         ]
 
     def end_painting(self, painters):
-        """Every painter gets its last answer, and none has found a fault."""
+        """Waits until every painter has its last response, and checks that no painter found a
+        fault."""
         self.book.stopping.set()
         for painter in painters:
             painter.join(180)
@@ -97,8 +98,8 @@ class PaintedModel:
         return found
 
     def compare_with_replay(self, newest):
-        """Paints all edits again in order, on new layers and without faults. The texels are
-        equal."""
+        """Paints all edits again in order, on new layers and without faults. Checks that the texels
+        are equal."""
         self.make_layers(" replayed")
         edits = [self.book.edits[sequence][:2] for sequence in sorted(self.book.edits)]
 

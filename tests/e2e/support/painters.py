@@ -90,7 +90,7 @@ class HttpPainter(Painter):
     TRY_AGAIN = (429, 503)
 
     def send(self, path, edit, headers):
-        """Returns the answer to one attempt. None: the server is away."""
+        """Returns the response to one attempt, or None if the server is unreachable."""
         try:
             if self.connection is None:
                 self.connection = self.server.connect()

@@ -143,7 +143,7 @@ TEST_F(ContactShadow, is_in_rectangles_and_refinements_too) {
   for (int y = 1; y + 1 < kHeight; ++y)
     for (int x = 1; x + 1 < kWidth; ++x) {
       const auto pixel = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
-      // Pixels with only background around them: these have no edge of the model.
+      // Compare only pixels with background around them, because no edge of the model is there.
       bool inner = true;
       for (const auto other : {pixel, pixel - 1, pixel + 1, pixel - kWidth, pixel + kWidth})
         inner = inner && is_background[other];

@@ -145,15 +145,15 @@ TEST_F(SurfaceFeatures, a_part_of_a_picture_that_is_drawn_anew_has_them_too) {
       ASSERT_EQ((std::array<int, 3>{p[0], p[1], p[2]}),
                 pixel(whole, part.rects.at(0).x + x, part.rects.at(0).y + y));
     }
-  // With other marks the complete frame changes, although the surface does not.
+  // If the marks change, the complete frame is sent, even if no part of the surface changed.
   request.style.features = nullptr;
   request.changed = std::vector<render::FrameRequest::Box>{};
   EXPECT_EQ(renderer_.draw(request).rects.at(0).width, kSize);
   renderer_->remove_view(request.view);
 }
 
-// A relief of waves with known heights. Plain C++ computes its orthographic view by following rays
-// through the heights.
+// A relief of waves with known heights. The test computes its orthographic view on the CPU, by
+// casting rays against the height field.
 class FeaturesOnRelief : public SurfaceFeatures {
  protected:
   static constexpr double kHeight = 0.03, kWaves = 3;

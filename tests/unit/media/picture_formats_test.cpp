@@ -206,7 +206,7 @@ TEST(PictureFormats, every_format_that_is_cut_short_is_refused) {
 TEST(PictureFormats, a_jpeg_whose_rest_was_cut_out_of_it_is_refused) {
   Bytes jpeg = encode_jpeg(gradient(200, 120), 200, 120, {90, true});
   jpeg.resize(jpeg.size() / 2);
-  jpeg.insert(jpeg.end(), {0xff, 0xd9});  // a repair may have restored this end marker
+  jpeg.insert(jpeg.end(), {0xff, 0xd9});  // a program that repairs files may append this marker
   EXPECT_FALSE(decode_picture(jpeg));
 }
 

@@ -36,7 +36,7 @@ TEST(Picture, higher_quality_costs_more_bytes) {
             encode_jpeg(rgba, 256, 256, {95, true}).size());
 }
 
-// Returns an image of one color. With `line`, every 20th row has that color.
+// Returns an image with this color. If `line` is set, every 20th row has the color `line`.
 std::vector<std::uint8_t> flat(std::array<std::uint8_t, 3> color,
                                std::optional<std::array<std::uint8_t, 3>> line = {}) {
   constexpr int kSide = 80;

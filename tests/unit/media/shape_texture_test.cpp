@@ -47,7 +47,7 @@ TEST(ShapeTexture, larger_and_smaller_pictures_are_scaled_by_the_mean_of_what_a_
   const ShapeBits expected = test::shape_bits([](double x, double) { return x < 0; });
   for (const int size : {2, 16, 200, 256, 1000, 2048})
     EXPECT_EQ(shape_of(half(size), {}).value(), expected) << size;
-  // A fine pattern covers no cell with less than half light, and every cell with more than half.
+  // Stripes finer than a cell set no cell if less than half is light, and otherwise every cell.
   const auto stripes = [](int light) {
     return grey(1024, 1024, [light](int x, int) { return x % 4 < light ? 255 : 0; });
   };

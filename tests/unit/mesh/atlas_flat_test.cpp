@@ -78,7 +78,7 @@ FlatPieces flat_pieces_of(const TriangleMesh& mesh) {
 }
 
 TEST(mesh_atlas_flat, a_curved_surface_has_no_flat_piece) {
-  // Each cell is a plane, at less than a degree to the next cell.
+  // Each cell of the grid is flat, and is tilted by less than a degree to the next cell.
   EXPECT_EQ(flat_pieces_of(test::sphere(400)).count(), 0u);
 }
 

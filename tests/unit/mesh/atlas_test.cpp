@@ -216,7 +216,7 @@ TEST(mesh_atlas, reports_how_much_surface_texels_hold_at_each_resolution) {
 }
 
 TEST(mesh_atlas, the_largest_texel_of_an_even_sheet_is_any_texel) {
-  // A unit square covers [0.05, 0.95]², and then half of that area.
+  // The sheet has area 1. Its texture coordinates first fill [0.05, 0.95]², then half of that.
   const auto mesh = test::open_grid(10, 0);
   ASSERT_NEAR(surface_area(mesh), 1, 1e-6);
   const double side = 1 / (0.9 * 100);

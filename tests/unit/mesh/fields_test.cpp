@@ -246,7 +246,7 @@ TEST(Openness, can_be_cancelled_while_its_tree_is_made) {
 }
 
 TEST(Openness, at_the_foot_of_a_wall_is_a_half) {
-  TriangleMesh corner;  // a floor and a wall that meet along y, both much larger than the distance
+  TriangleMesh corner;  // a floor and a wall that meet along y, both larger than the rays (50)
   corner.positions = {{0, -100, 0}, {100, -100, 0}, {100, 100, 0},
                       {0, 100, 0},  {0, -100, 100}, {0, 100, 100}};
   corner.triangles = {0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4};
@@ -255,7 +255,7 @@ TEST(Openness, at_the_foot_of_a_wall_is_a_half) {
   ASSERT_TRUE(openness);
   const glm::vec3 origin = geometry_of(corner)->origin;
   EXPECT_NEAR((*openness)->at(glm::vec3(0.01f, 0, 0) - origin, {0, 0, 1}), 0.5, 0.02);
-  // The point is beyond the distance.
+  // The point is farther from the wall than the length of the rays, 50.
   EXPECT_NEAR((*openness)->at(glm::vec3(60, 0, 0) - origin, {0, 0, 1}), 1, 0.001);
 }
 

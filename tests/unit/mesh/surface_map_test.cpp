@@ -49,7 +49,7 @@ class Oracle {
     return x >= 0 && y >= 0 && x < kResolution && y < kResolution;
   }
 
-  // Returns the nearest surface texel within the ring, or (-1, -1).
+  // Returns the nearest surface texel at most 2 texels away in x and y, or (-1, -1).
   glm::ivec2 gutter_owner(int x, int y) const {
     glm::ivec2 best(-1);
     int least = 100;

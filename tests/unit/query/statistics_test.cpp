@@ -159,7 +159,7 @@ TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
   }
 }
 
-// Returns the expected quantiles of the same values, from all texels sorted by value.
+// Returns the expected quantiles of these samples, weighted by area, after sorting by value.
 Quantiles quantiles_of(std::vector<Sample> all) {
   std::ranges::sort(all, {}, &Sample::value);
   double area = 0, sum = 0;
@@ -239,7 +239,7 @@ TEST(QueryStatistics, within_a_selection_only_its_texels_count) {
   const LayerView view = make_layer(ValueType::u8, map, 20, 3);
   std::mt19937_64 random(1);
   TexelSelection within;
-  mesh::SurfaceMap smaller = map;  // the oracle: unselected texels are gutter
+  mesh::SurfaceMap smaller = map;  // for the oracle, unselected texels become gutter
   for (auto& surface : smaller.surface_mask) {
     within.push_back(random() & random());
     surface &= within.back();

@@ -133,7 +133,7 @@ TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {
     pool.encode(frame, {90, true}, into(more));
   }
   wait_for(40);
-  pool.encode(frame, {20, false}, into(few));  // long after its encoding
+  pool.encode(frame, {20, false}, into(few));  // long after the first encoding of the frame
   wait_for(41);
   EXPECT_EQ(pool.encoded(), 2u);
   for (const Jpegs& jpegs : few) EXPECT_EQ(jpegs, few[0]) << "one object for all";

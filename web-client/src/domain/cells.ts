@@ -35,7 +35,10 @@ export function labelOf(
   return thing.name;
 }
 
-/** Returns the description in the same way. */
+/**
+ * Returns the description in the first of the user's languages that has one, as labelOf() does for
+ * names.
+ */
 export const descriptionIn = (
   thing: { description: string; descriptions: Labels },
   languages?: readonly string[],
@@ -127,7 +130,8 @@ function bestLabelColumn(table: Pick<Table, "columns">): Column | null {
   return (
     texts.find((column) => column.required && column.unique) ??
     texts.find((column) => column.unique || column.required) ??
-    // the subject of an observation, not its author
+    // a term in the first column names the subject of an observation; later columns may name its
+    // author
     table.columns.slice(0, 1).find(({ kind }) => kind === "term") ??
     texts[0] ??
     table.columns.find((column) => column.unique && !namesRecords(column)) ??

@@ -1,5 +1,5 @@
 // Converts the choices in a column's filter to a condition in CQL2 text, the language that filters
-// records, and back. The text is the only state. The functions recognize the conditions that they
+// records, and back. Only the text is stored. The functions recognize the conditions that they
 // built, and keep all other conditions that a user typed.
 
 import { nameInText } from "./completion";

@@ -52,8 +52,8 @@ export const rolesToGive = (own: Role): Role[] =>
 export const rolesOfTokens = (own: Role): Role[] =>
   own === "guest" ? [...kProjectRoles] : kRoles.slice(1, kRoles.indexOf(own) + 1);
 /**
- * Returns the same for a token that is limited to one project. `own` is the user's role in that
- * project.
+ * Returns the roles, the lowest first, that a token for only one project can have. `own` is the
+ * user's role in that project.
  */
 export const rolesOfTokensIn = (own: Role): Role[] =>
   kProjectRoles.filter((role) => kRoles.indexOf(role) <= kRoles.indexOf(own));
@@ -112,8 +112,8 @@ export function browserOf(agent: string): { browser: string; system: string } {
 }
 
 /**
- * Whether `me` may change the account. Users cannot change their own account here, accounts with
- * the same or a higher role, or the owner's account.
+ * Whether `me` may change the account. Here, users can change neither their own account, nor the
+ * owner's account, nor accounts whose role is as high as their own or higher.
  */
 export const mayChange = (
   me: Pick<Me, "user" | "role">,

@@ -23,7 +23,10 @@ import { textsIn } from "./texts";
 const kMostDots = 12;
 const kMostInvitations = 3; // number of languages in the invitation
 
-/** Returns the capitalized name of a language. Many languages write these names in lower case. */
+/**
+ * Returns the capitalized name of a language. In many languages, these names begin with a
+ * lower-case letter.
+ */
 function nameOnButton(tag: string): string {
   const name = nameOfLanguage(tag) || tag;
   return name.charAt(0).toLocaleUpperCase(tag) + name.slice(1);

@@ -211,7 +211,7 @@ export class KioskSession {
       this.card = card;
       this.changed();
     } catch (error) {
-      // Without the server and a stored record, no card opens.
+      // If the server is unreachable and the record is not stored, no card opens.
       if (!(error instanceof ApiError)) throw error;
     }
   }

@@ -117,7 +117,8 @@ export class OrbitCamera {
 
   /**
    * Shows a part of the model, from the direction that its surface faces. Without `normal`, shows
-   * it from its side of the model. A part near the middle has no side.
+   * the part from the side of the model that it is on. For a part near the middle of the model,
+   * keeps the direction.
    */
   lookAt(box: Bounds, normal?: Vec3): void {
     const middle = centre(box);

@@ -478,7 +478,8 @@ export class Connection {
 
   /**
    * Connects to the node that has the model now. The welcome then sends unsaved changes again.
-   * Nodes that name each other are not asked without a pause.
+   * If that node also refers to another node, the next attempt is delayed, because two nodes may
+   * refer to each other.
    */
   private onMoved({ url }: Moved): void {
     const again = this._moved;

@@ -30,7 +30,7 @@ function open(): Promise<IDBDatabase> {
   const request = indexedDB.open(kDatabase, 1);
   request.onupgradeneeded = () => void request.result.createObjectStore(kStore);
   database = resultOf(request).then((opened) => {
-    // The browser closed the database: its data were deleted, or the disk failed.
+    // The browser closed the database, because its data were deleted or the disk failed.
     opened.onclose = () => (database = null);
     return opened;
   });

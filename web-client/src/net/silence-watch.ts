@@ -33,7 +33,7 @@ export class SilenceWatch {
     this.after(silenceMs, () => this._host.giveUp());
   }
 
-  /** Ends the wait: the server sent a message, or no response is expected. */
+  /** Ends the wait, because the server sent a message or no response is expected. */
   heard(): void {
     this._due = false;
     if (this._timer) clearTimeout(this._timer);

@@ -1,4 +1,4 @@
-// Renders elements that show a ModelSession again after a change to the parts that they show.
+// Renders an element again after a change to the parts of the ModelSession that the element shows.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 import type { ModelSession, SessionPart } from "./model-session";

@@ -1,6 +1,7 @@
-// The highlighted part of the surface. It is the part that a condition or outlines select, before
-// the user changes it, or the part that differs between two states. The server measures the area
-// and draws an image of its visible part. The page requests both again when the camera stops.
+// The highlighted part of the surface. It is the area that a condition or outlines select, before
+// the user paints or erases it, or the area that differs between two states. The server measures
+// the area and draws an image of its visible part. The page requests both again when the camera
+// stops.
 
 import type { SelectRequest, SelectResponse } from "../core/protocol.gen";
 import type { OrbitCamera } from "../math/camera";

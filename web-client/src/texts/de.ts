@@ -208,7 +208,7 @@ export const texts = {
     describe_lead: (path) => `Die Adresse bleibt ${path}, damit Links weiterhin funktionieren.`,
     require_version: "Skripte müssen die Version senden, die sie ändern",
     require_version_hint:
-      "Skripte können dann keine fremden Änderungen überschreiben: Der Server lehnt Änderungen ohne Version ab (HTTP If-Match, 428). Diese Seite sendet sie immer.",
+      "Skripte können dann keine fremden Änderungen überschreiben, denn der Server lehnt Änderungen ohne Version ab (HTTP If-Match, Status 428). Diese Seite sendet die Version immer.",
     changed: (name) =>
       `Jemand anderes hat dieses Projekt geändert; es heißt jetzt „${name}“. Speichern Sie erneut, um diese Änderung zu überschreiben.`,
     delete_title: (name) => `Projekt „${name}“ löschen?`,
@@ -390,7 +390,7 @@ export const texts = {
           ? `1 Rand, ${length}`
           : `${count(n, "Rand", "Ränder")}, zusammen ${length}; der längste ${longest}`,
       repairs: "Beim Import repariert",
-      smallest: "Kleinstes Detail, Standardebene",
+      smallest: "Kleinstes Detail in einer Ebene mit Standardauflösung",
     },
     check_size: "Größe prüfen",
     correct_size: "Größe und Richtung korrigieren …",
@@ -569,7 +569,7 @@ export const texts = {
     new_shape: "Neue Form aus einem Bild",
     new_hint: "Neue Form aus einem Bild: Datei auswählen oder hier ablegen",
     new_title: "Neue Pinselform",
-    lead: "Der Pinsel malt den schwarzen Teil. Das Quadrat wird so breit wie der Pinsel. Alle auf diesem Server können die Form verwenden.",
+    lead: "Der Pinsel malt den schwarzen Teil. Das Quadrat der Vorschau wird so breit wie der Pinsel. Alle auf diesem Server können die Form verwenden.",
     preview: "Die Form",
     part: "Grundlage der Form",
     parts: { opaque: "Deckende Teile", light: "Helle Teile", dark: "Dunkle Teile" },
@@ -601,7 +601,7 @@ export const texts = {
     reach: "Ausdehnung",
     connected: "Gleicher Wert",
     connected_hint:
-      "Die zusammenhängende Fläche um diesen Punkt mit demselben Wert, oder ohne Wert, wenn der Punkt keinen hat",
+      "Die zusammenhängende Fläche um diesen Punkt, die denselben Wert wie der Punkt hat, oder keinen, wenn der Punkt keinen hat",
     island: "Ganzes Stück",
     island_hint: "Das ganze zusammenhängende Stück des Objekts",
     changed: (area) => `${area} geändert.`,
@@ -666,7 +666,7 @@ export const texts = {
       "Eine Zahl je Zeile, in der Reihenfolge der Eckpunkte des Scans. Die Zahlen ersetzen den gesamten Inhalt der Ebene.",
     source: "Eckpunkte von",
     attribute: "Jede Fläche erhält",
-    one_value: "denselben Wert",
+    one_value: "einen Wert für alle Flächen",
     attribute_number: (name) => `${name} (Zahl)`,
     attribute_text: (name) => `${name} (Name einer Klasse)`,
     samples: (values) => `Zum Beispiel ${values}`,
@@ -727,8 +727,10 @@ export const texts = {
     name: "Name",
     add: "Hinzufügen",
     job: (name) => `Orthofoto „${name}“`,
-    no_colors: "Dieses Raster enthält Zahlen. Malen Sie es stattdessen in eine Ebene.",
-    no_picture: "Dies ist eine Karte mit Flächen. Malen Sie sie stattdessen in eine Ebene.",
+    no_colors:
+      "Diese Datei enthält Zahlen und kein Bild. Verwenden Sie „Aus Datei malen …“ im Menü einer Ebene.",
+    no_picture:
+      "Diese Datei enthält Flächen und kein Bild. Verwenden Sie „Aus Datei malen …“ im Menü einer Ebene.",
   },
 
   rasters: {
@@ -1014,7 +1016,7 @@ export const texts = {
     point_set: (record) => `Punkt für „${record}“ gesetzt.`,
     missed: "Dort ist keine Oberfläche.",
     changed_since:
-      "Die Tabelle wurde seitdem geändert. Entfernen Sie die Linie oder den Punkt im Formular des Datensatzes, oder machen Sie die Änderungen in der Tabelle schrittweise rückgängig.",
+      "Die Tabelle wurde nach dem Zeichnen geändert. Entfernen Sie die Linie oder den Punkt im Formular des Datensatzes, oder machen Sie die Änderungen in der Tabelle schrittweise rückgängig.",
   },
 
   comments: {
@@ -1091,7 +1093,7 @@ export const texts = {
     reject: "Ablehnen",
     accept_all: "Alle annehmen",
     reject_all: "Alle ablehnen",
-    accept_person: (name, n) => `Alle von ${name} annehmen (${formatCount(n)})`,
+    accept_person: (name, n) => `Alle Bearbeitungen von ${name} annehmen (${formatCount(n)})`,
     reason: "Begründung (sichtbar für die Person, die gemalt hat)",
     look: "Ansicht beim Malen anzeigen",
     stroke: (what, name) => `${what}, ${name}`,
@@ -1167,7 +1169,7 @@ export const texts = {
     no_layer: "Es gibt keine Ebene, die Sie ändern können.",
     part: "Nur einen Teil",
     draw_part: "Umfahren Sie den Teil im Bild. Esc: die ganze Ebene.",
-    same: "Die Ebene ist jetzt gleich.",
+    same: "Die Ebene hat sich seit diesem Stand nicht geändert.",
     changes: (area, share) => `Das Wiederherstellen ändert ${area} (${share} der Oberfläche).`,
     restore_now: "Wiederherstellen",
     restored: (layer, area) => `${layer} wiederhergestellt: ${area} geändert`,
@@ -1507,8 +1509,8 @@ export const texts = {
     cut_measuring: "Die Schnittfläche wird gemessen…",
     cut_position: "Lage des Schnitts",
     flip: "Andere Seite zeigen",
-    box_from: (axis) => `Quader von ${axis}`,
-    box_to: (axis) => `Quader bis ${axis}`,
+    box_from: (axis) => `Schnittquader: kleinstes ${axis}`,
+    box_to: (axis) => `Schnittquader: größtes ${axis}`,
   },
   kept_views: {
     title: "Ansichten",
@@ -1567,7 +1569,7 @@ export const texts = {
     pick_again: "Andere Fläche wählen …",
     pick_title: "Fläche wählen",
     pick_lead:
-      "Klicken Sie die Fläche an, um senkrecht auf sie zu blicken. Ziehen dreht das Modell, Esc führt zurück.",
+      "Klicken Sie eine Fläche an. Die Abbildung zeigt sie dann von vorn. Ziehen dreht das Modell, Esc führt zurück.",
     pick_middle: "Mitte der Ansicht verwenden",
     no_face: "Wählen Sie zuerst eine Fläche.",
     scale: "Maßstab",
@@ -1575,7 +1577,7 @@ export const texts = {
     own_scale: "Eigener …",
     own_scale_label: "Maßstab, zum Beispiel 1 : 40 oder 2 : 1",
     wrong_scale:
-      "Geben Sie einen Maßstab wie 1 : 40, 2 : 1 oder nur 40 ein, von 100\u00a0:\u00a01 bis 1\u00a0:\u00a01\u00a0000\u00a0000.",
+      "Geben Sie einen Maßstab wie 1 : 40 oder 2 : 1 ein, oder eine einzelne Zahl wie 40 für 1 : 40, von 100\u00a0:\u00a01 bis 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Papier",
     orientation: "Ausrichtung",
     orientations: { portrait: "Hochformat", landscape: "Querformat" },
@@ -1704,13 +1706,13 @@ export const texts = {
     column_label: (column, language) => `Bezeichnung von ${column} auf der Infokarte, ${language}`,
     column_label_hint: (language, name) => `${language}: ${name}`,
     design: "Gestaltung der Bildschirme",
-    mode: "Raum",
-    modes: { light: "Hell", dark: "Dunkler Raum" },
+    mode: "Licht im Raum",
+    modes: { light: "Hell", dark: "Dunkel" },
     background: "Hintergrund",
     accent: "Schaltflächen",
     color_default: "Standardfarbe",
     background_wrong: (now, needed) =>
-      `Text auf diesem Hintergrund hat einen Kontrast von ${now}:1 und braucht ${needed}:1. Wählen Sie einen anderen Hintergrund, oder ändern Sie „Raum“.`,
+      `Text auf diesem Hintergrund hat einen Kontrast von ${now}:1 und braucht ${needed}:1. Wählen Sie einen anderen Hintergrund, oder ändern Sie „Licht im Raum“.`,
     accent_wrong: (now, needed) =>
       `Schaltflächen auf diesem Hintergrund haben einen Kontrast von ${now}:1 und brauchen ${needed}:1. Wählen Sie eine andere Farbe.`,
     font: "Überschriften",

@@ -185,7 +185,7 @@ export const texts = {
       `The address remains ${path}, so that existing links keep working.`,
     require_version: "Scripts must send the version that they change",
     require_version_hint:
-      "Scripts can then no longer overwrite changes by others: the server refuses changes without a version (HTTP If-Match, 428). This page always sends a version.",
+      "Scripts can then no longer overwrite changes by others, because the server refuses changes without a version (HTTP If-Match, status 428). This page always sends a version.",
     changed: (name: string) =>
       `Somebody else has changed this project. Its name is now “${name}”. Save again to overwrite their changes.`,
     delete_title: (name: string) => `Delete the project “${name}”?`,
@@ -364,7 +364,7 @@ export const texts = {
           ? `1 loop, ${length}`
           : `${count(n, "loop", "loops")}, ${length} in total; the longest is ${longest}`,
       repairs: "Repaired on import",
-      smallest: "Smallest detail, standard layer",
+      smallest: "Smallest detail in a layer of standard resolution",
     },
     check_size: "Check the size",
     correct_size: "Correct size and direction…",
@@ -542,7 +542,7 @@ export const texts = {
     new_shape: "New shape from a picture",
     new_hint: "New shape from a picture: choose a file, or drop one here",
     new_title: "New brush shape",
-    lead: "The brush paints the black part. The square is scaled to the brush width. Everyone on this site can use the shape.",
+    lead: "The brush paints the black part. The square in the preview becomes as wide as the brush. Everyone on this site can use the shape.",
     preview: "The shape",
     part: "Take the shape from",
     parts: { opaque: "Opaque parts", light: "Light parts", dark: "Dark parts" },
@@ -573,7 +573,7 @@ export const texts = {
     reach: "Extent",
     connected: "Same value",
     connected_hint:
-      "The connected area around this point with the same value, or without a value if the point has none",
+      "The connected area around this point that has the same value as the point, or no value if the point has none",
     island: "Whole piece",
     island_hint: "The whole connected piece of the object",
     changed: (area: string) => `${area} changed.`,
@@ -639,7 +639,7 @@ export const texts = {
       "The file must contain one number per line, in the order of the scan's vertices. The numbers replace all values of the layer.",
     source: "Vertices of",
     attribute: "Each area gets",
-    one_value: "the same value",
+    one_value: "one value for all areas",
     attribute_number: (name: string) => `${name} (number)`,
     attribute_text: (name: string) => `${name} (name of a class)`,
     samples: (values: string) => `For example ${values}`,
@@ -697,8 +697,10 @@ export const texts = {
     name: "Name",
     add: "Add",
     job: (name: string) => `Orthophoto “${name}”`,
-    no_colors: "This raster contains numbers. Paint it into a layer instead.",
-    no_picture: "This is a map of areas. Paint it into a layer instead.",
+    no_colors:
+      "This file contains numbers, not a picture. Use “Paint from a file…” in the menu of a layer instead.",
+    no_picture:
+      "This file contains areas, not a picture. Use “Paint from a file…” in the menu of a layer instead.",
   },
 
   rasters: {
@@ -974,7 +976,7 @@ export const texts = {
     point_set: (record: string) => `Point set for “${record}”.`,
     missed: "There is no surface at this point.",
     changed_since:
-      "The table has changed since then. Remove the line or point in the record's form, or undo the changes step by step in the table.",
+      "The table has changed since you drew the line or point. Remove it in the record's form, or undo the changes step by step in the table.",
   },
 
   comments: {
@@ -1051,7 +1053,7 @@ export const texts = {
     reject: "Reject",
     accept_all: "Accept all",
     reject_all: "Reject all",
-    accept_person: (name: string, n: number) => `Accept all of ${name} (${formatCount(n)})`,
+    accept_person: (name: string, n: number) => `Accept all edits by ${name} (${formatCount(n)})`,
     reason: "Reason (shown to the author)",
     look: "Show the author's view",
     stroke: (what: string, name: string) => `${what}, ${name}`,
@@ -1127,7 +1129,7 @@ export const texts = {
     no_layer: "There is no layer that you can change.",
     part: "Only a part",
     draw_part: "Draw a line around the part in the picture. Press Escape to use the whole layer.",
-    same: "The layer has not changed since then.",
+    same: "The layer has not changed since this state.",
     changes: (area: string, share: string) =>
       `The restore changes ${area} (${share} of the surface).`,
     restore_now: "Restore",
@@ -1444,7 +1446,7 @@ export const texts = {
     raking_layers: "Layers",
     raking_layers_hint: "Opacity of all layers in raking light, so that relief stays visible",
     light_direction: "Light direction",
-    light_pad_hint: "Drag, or use the arrow keys. Near the rim, it becomes raking light.",
+    light_pad_hint: "Drag, or use the arrow keys. Near the rim, the light becomes raking light.",
     light_from: (from: number, above: number) =>
       `From ${Math.round(from / 30) % 12 || 12} o'clock, ${above}° high`,
     section: "Section",
@@ -1466,8 +1468,8 @@ export const texts = {
     cut_measuring: "Measuring the cut…",
     cut_position: "Cut position",
     flip: "Show the other side",
-    box_from: (axis: string) => `Box from ${axis}`,
-    box_to: (axis: string) => `Box to ${axis}`,
+    box_from: (axis: string) => `Section box: lowest ${axis}`,
+    box_to: (axis: string) => `Section box: highest ${axis}`,
   },
   kept_views: {
     title: "Views",
@@ -1524,7 +1526,8 @@ export const texts = {
     pick: "Pick a face…",
     pick_again: "Pick another face…",
     pick_title: "Pick a face",
-    pick_lead: "Click a face to view it straight on. Drag to orbit. Press Escape to go back.",
+    pick_lead:
+      "Click a face. The figure then shows it from the front. Drag to orbit. Press Escape to go back.",
     pick_middle: "Use the middle of the view",
     no_face: "Pick a face first.",
     scale: "Scale",
@@ -1532,7 +1535,7 @@ export const texts = {
     own_scale: "Custom…",
     own_scale_label: "Scale, for example 1 : 40 or 2 : 1",
     wrong_scale:
-      "Enter a scale such as 1 : 40, 2 : 1 or only 40, from 100\u00a0:\u00a01 to 1\u00a0:\u00a01\u00a0000\u00a0000.",
+      "Enter a scale such as 1 : 40 or 2 : 1, or a single number such as 40 for 1 : 40, from 100\u00a0:\u00a01 to 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Paper",
     orientation: "Orientation",
     orientations: { portrait: "Portrait", landscape: "Landscape" },
@@ -1655,13 +1658,13 @@ export const texts = {
       `Label of ${column} on the card, ${language}`,
     column_label_hint: (language: string, name: string) => `${language}: ${name}`,
     design: "Design of the screens",
-    mode: "Room",
-    modes: { light: "Light", dark: "Dark room" },
+    mode: "Lighting of the room",
+    modes: { light: "Bright", dark: "Dark" },
     background: "Background",
     accent: "Buttons",
     color_default: "Default color",
     background_wrong: (now: string, needed: string) =>
-      `Text on this background has a contrast of ${now}:1 and needs ${needed}:1. Choose another background, or change “Room”.`,
+      `Text on this background has a contrast of ${now}:1 and needs ${needed}:1. Choose another background, or change “Lighting of the room”.`,
     accent_wrong: (now: string, needed: string) =>
       `Buttons on this background have a contrast of ${now}:1 and need ${needed}:1. Choose another color.`,
     font: "Headings",

@@ -204,7 +204,7 @@ export const texts = {
       `La dirección sigue siendo ${path}, para que los enlaces sigan funcionando.`,
     require_version: "Los scripts deben enviar la versión que cambian",
     require_version_hint:
-      "Así los scripts no pueden sobrescribir los cambios de otras personas: el servidor rechaza un cambio sin versión (HTTP If-Match, 428). Esta página siempre la envía.",
+      "Así los scripts no pueden sobrescribir los cambios de otras personas, porque el servidor rechaza un cambio sin versión (HTTP If-Match, estado 428). Esta página siempre envía la versión.",
     changed: (name) =>
       `Otra persona ha cambiado este proyecto; ahora se llama «${name}». Guarde otra vez para sobrescribirlo.`,
     delete_title: (name) => `¿Eliminar el proyecto «${name}»?`,
@@ -383,7 +383,7 @@ export const texts = {
           ? `1 contorno, ${length}`
           : `${count(n, "contorno", "contornos")}, ${length} en total; el más largo, ${longest}`,
       repairs: "Reparado al importar",
-      smallest: "Detalle mínimo, capa estándar",
+      smallest: "Detalle mínimo en una capa de resolución estándar",
     },
     check_size: "Comprobar el tamaño",
     correct_size: "Corregir tamaño y eje vertical…",
@@ -564,7 +564,7 @@ export const texts = {
     new_shape: "Nueva forma a partir de una imagen",
     new_hint: "Nueva forma a partir de una imagen: elija un archivo o suéltelo aquí",
     new_title: "Nueva forma del pincel",
-    lead: "El pincel pinta la parte negra. El cuadrado será tan ancho como el pincel. Todas las personas de este servidor pueden usar la forma.",
+    lead: "El pincel pinta la parte negra. El cuadrado de la vista previa será tan ancho como el pincel. Todas las personas de este servidor pueden usar la forma.",
     preview: "La forma",
     part: "Tomar la forma de",
     parts: { opaque: "Partes opacas", light: "Partes claras", dark: "Partes oscuras" },
@@ -595,7 +595,7 @@ export const texts = {
     reach: "Alcance",
     connected: "Mismo valor",
     connected_hint:
-      "El área conectada alrededor de este punto con el mismo valor, o sin valor si el punto no tiene ninguno",
+      "El área conectada alrededor de este punto que tiene el mismo valor que el punto, o ninguno si el punto no tiene valor",
     island: "Pieza entera",
     island_hint: "Toda la pieza conectada del objeto",
     changed: (area) => `Área cambiada: ${area}.`,
@@ -658,7 +658,7 @@ export const texts = {
       "Un número por línea, en el orden de los vértices del escaneo. Sustituyen todo el contenido de la capa.",
     source: "Vértices de",
     attribute: "Cada área recibe",
-    one_value: "el mismo valor",
+    one_value: "un valor para todas las áreas",
     attribute_number: (name) => `${name} (número)`,
     attribute_text: (name) => `${name} (nombre de una clase)`,
     samples: (values) => `Por ejemplo ${values}`,
@@ -718,8 +718,10 @@ export const texts = {
     name: "Nombre",
     add: "Añadir",
     job: (name) => `Ortofoto «${name}»`,
-    no_colors: "Este ráster contiene números. Píntelo en una capa.",
-    no_picture: "Este archivo es un mapa de áreas. Píntelo en una capa.",
+    no_colors:
+      "Este archivo contiene números, no una imagen. Use «Pintar desde un archivo…» en el menú de una capa.",
+    no_picture:
+      "Este archivo contiene áreas, no una imagen. Use «Pintar desde un archivo…» en el menú de una capa.",
   },
 
   rasters: {
@@ -1005,7 +1007,7 @@ export const texts = {
     point_set: (record) => `Punto dibujado para «${record}».`,
     missed: "Ahí no hay superficie.",
     changed_since:
-      "La tabla ha cambiado desde entonces. Quite la línea o el punto en el formulario del registro, o deshaga paso a paso en la tabla.",
+      "La tabla ha cambiado después de dibujar. Quite la línea o el punto en el formulario del registro, o deshaga paso a paso en la tabla.",
   },
 
   comments: {
@@ -1081,7 +1083,7 @@ export const texts = {
     reject: "Rechazar",
     accept_all: "Aceptar todo",
     reject_all: "Rechazar todo",
-    accept_person: (name, n) => `Aceptar todo lo de ${name} (${formatCount(n)})`,
+    accept_person: (name, n) => `Aceptar todas las ediciones de ${name} (${formatCount(n)})`,
     reason: "Motivo (lo verá el autor)",
     look: "Mostrar la vista del autor",
     stroke: (what, name) => `${what}, ${name}`,
@@ -1156,7 +1158,7 @@ export const texts = {
     no_layer: "No hay ninguna capa que pueda cambiar.",
     part: "Solo una parte",
     draw_part: "Rodee la parte en la imagen. Esc: toda la capa.",
-    same: "La capa es igual ahora.",
+    same: "La capa no ha cambiado desde este estado.",
     changes: (area, share) => `La restauración cambia ${area} (${share} de la superficie).`,
     restore_now: "Restaurar",
     restored: (layer, area) => `${layer} restaurada: ${area} cambiados`,
@@ -1497,8 +1499,8 @@ export const texts = {
     cut_measuring: "Midiendo el corte…",
     cut_position: "Posición del corte",
     flip: "Mostrar el otro lado",
-    box_from: (axis) => `Caja desde ${axis}`,
-    box_to: (axis) => `Caja hasta ${axis}`,
+    box_from: (axis) => `Caja de sección: ${axis} mínimo`,
+    box_to: (axis) => `Caja de sección: ${axis} máximo`,
   },
   kept_views: {
     title: "Vistas",
@@ -1556,7 +1558,8 @@ export const texts = {
     pick: "Elegir una cara…",
     pick_again: "Elegir otra cara…",
     pick_title: "Elegir una cara",
-    pick_lead: "Haga clic en la cara para verla de frente. Arrastre para girar; Esc vuelve atrás.",
+    pick_lead:
+      "Haga clic en una cara. La figura la mostrará de frente. Arrastre para girar; Esc vuelve atrás.",
     pick_middle: "Usar el centro de la vista",
     no_face: "Elija primero una cara.",
     scale: "Escala",
@@ -1564,7 +1567,7 @@ export const texts = {
     own_scale: "Personalizada…",
     own_scale_label: "Escala, por ejemplo 1 : 40 o 2 : 1",
     wrong_scale:
-      "Introduzca una escala como 1 : 40, 2 : 1 o solo 40, de 100\u00a0:\u00a01 a 1\u00a0:\u00a01\u00a0000\u00a0000.",
+      "Introduzca una escala como 1 : 40 o 2 : 1, o un solo número, como 40 para 1 : 40, de 100\u00a0:\u00a01 a 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Papel",
     orientation: "Orientación",
     orientations: { portrait: "Vertical", landscape: "Horizontal" },
@@ -1691,13 +1694,13 @@ export const texts = {
     column_label: (column, language) => `Nombre de ${column} en la ficha, ${language}`,
     column_label_hint: (language, name) => `${language}: ${name}`,
     design: "Diseño de las pantallas",
-    mode: "Sala",
-    modes: { light: "Clara", dark: "Sala oscura" },
+    mode: "Iluminación de la sala",
+    modes: { light: "Clara", dark: "Oscura" },
     background: "Fondo",
     accent: "Botones",
     color_default: "Color predeterminado",
     background_wrong: (now, needed) =>
-      `El texto sobre este fondo tiene un contraste de ${now}:1 y necesita ${needed}:1. Elija otro fondo o cambie «Sala».`,
+      `El texto sobre este fondo tiene un contraste de ${now}:1 y necesita ${needed}:1. Elija otro fondo o cambie «Iluminación de la sala».`,
     accent_wrong: (now, needed) =>
       `Los botones sobre este fondo tienen un contraste de ${now}:1 y necesitan ${needed}:1. Elija otro color.`,
     font: "Títulos",

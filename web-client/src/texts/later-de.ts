@@ -210,7 +210,8 @@ export const laterTexts = {
       title: "Beispiele mit den Ebenen dieses Modells",
       take: "Dieses Beispiel verwenden",
       above: (layer, amount) => `wo ${layer} über ${amount} liegt`,
-      above_outside: (_layer, _amount, area) => `dasselbe, außerhalb von ${area}`,
+      above_outside: (layer, amount, area) =>
+        `wo ${layer} über ${amount} liegt, außerhalb von ${area}`,
       painted: (layer) => `wo ${layer} kartiert ist`,
       class: (name, value) => `wo ${name} ${value} ist`,
       filled: (column, _layer) => `wo ${column} einen Wert hat`,

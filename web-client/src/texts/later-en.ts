@@ -91,7 +91,7 @@ export const laterTexts = {
     title: "Audit",
     lead: (days: number) =>
       days === 0
-        ? "Sign-ins, exports, deletions, and changes of accounts, roles, visibility and kiosks. Entries are kept for ever."
+        ? "Sign-ins, exports, deletions, and changes of accounts, roles, visibility and kiosks. Entries are kept permanently."
         : `Sign-ins, exports, deletions, and changes of accounts, roles, visibility and kiosks. Entries are kept for ${count(days, "day", "days")}.`,
     actor: "User name",
     action: "Action",
@@ -212,7 +212,8 @@ export const laterTexts = {
       title: "Examples with this model’s layers",
       take: "Use this example",
       above: (layer: string, amount: string) => `where ${layer} is above ${amount}`,
-      above_outside: (_layer: string, _amount: string, area: string) => `the same, outside ${area}`,
+      above_outside: (layer: string, amount: string, area: string) =>
+        `where ${layer} is above ${amount}, outside ${area}`,
       painted: (layer: string) => `where ${layer} is painted`,
       class: (name: string, value: string) => `where ${name} is ${value}`,
       filled: (column: string, _layer: string) => `where ${column} has a value`,
@@ -470,7 +471,7 @@ export const laterTexts = {
     size: (unit: string) =>
       `The file does not specify a unit. Guessed from the size: probably ${unit}.`,
     size_unsure:
-      "The file does not specify a unit, and the size fits more than one. Please choose.",
+      "The file does not specify a unit, and the size fits more than one unit. Please choose.",
     shape: (up: string) =>
       `The file does not specify an up direction. Guessed from the shape: probably ${up}.`,
     shape_unsure: (up: string) =>

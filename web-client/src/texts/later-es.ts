@@ -210,7 +210,7 @@ export const laterTexts = {
       title: "Ejemplos con las capas de este modelo",
       take: "Usar este ejemplo",
       above: (layer, amount) => `donde ${layer} supera ${amount}`,
-      above_outside: (_layer, _amount, area) => `lo mismo, fuera de ${area}`,
+      above_outside: (layer, amount, area) => `donde ${layer} supera ${amount}, fuera de ${area}`,
       painted: (layer) => `donde ${layer} está pintada`,
       class: (name, value) => `donde ${name} es ${value}`,
       filled: (column, _layer) => `donde ${column} tiene un valor`,

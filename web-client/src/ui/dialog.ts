@@ -57,7 +57,7 @@ export class StrataDialog extends LitElement {
   @property({ attribute: false }) mayClose: (() => Promise<boolean>) | null = null;
   @state() private _acts = false; // whether the slot "actions" has buttons
   private _asking = false;
-  private _closes = false; // `mayClose` has agreed or is not called
+  private _closes = false; // the dialog may close without a (further) call of `mayClose`
   private _used = false; // the user has used keys or the pointer
 
   @query("dialog") private _dialog!: HTMLDialogElement;

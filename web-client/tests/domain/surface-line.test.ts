@@ -83,8 +83,8 @@ describe("a line that is drawn over a surface", () => {
     ["a wall", beforeAWall, true],
   ] as const) {
     it(`stays one line along the edge that it crosses again and again, before ${what}`, async () => {
-      // The line follows the silhouette. It crosses it several times, up to 7 pixels outside and 15
-      // pixels inside.
+      // The line follows the silhouette and crosses the silhouette several times. It is up to 7
+      // pixels outside and up to 15 pixels inside.
       const steps = drawn((t) => [98 + 11 * Math.sin(t * Math.PI * 10) - 2, 300 * t], seen);
       const pieces = await lineOnSurface(steps, measures, nearestAlong(wall));
       expect(pieces).toHaveLength(1);

@@ -425,7 +425,7 @@ describe("the kiosk", () => {
       await vi.advanceTimersByTimeAsync(300_000);
       expect(session.resting).toBe(true);
       sockets[0]!.sent.length = 0;
-      // The server sends no sign of life here, so the connection correctly ends.
+      // The fake server sends no messages here, so the page correctly closes the connection.
       if (sockets.length > 1) sockets.splice(0, sockets.length - 1);
       rounds.push(vi.getTimerCount());
     }

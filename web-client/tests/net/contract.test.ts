@@ -18,7 +18,7 @@ describe("The types of the HTTP interface", () => {
     const path = { table: 1 };
     // @ts-expect-error the header is missing
     await api.json("PATCH /tables/{table}", { path, body: {} });
-    // @ts-expect-error the same
+    // @ts-expect-error the header is missing here too
     await api.send("DELETE /tables/{table}", { path });
     await api.json("PATCH /tables/{table}", { path, body: {}, header: kAsItIs });
     expect(sent).toEqual([undefined, undefined, "*"]);

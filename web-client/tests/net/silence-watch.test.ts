@@ -18,7 +18,7 @@ describe("the silence of a server", () => {
     const silence = make();
     silence.expectAnswer();
     vi.advanceTimersByTime(6000);
-    silence.expectAnswer(); // another message does not postpone the question
+    silence.expectAnswer(); // another expected response does not postpone the liveness check
     vi.advanceTimersByTime(4000);
     expect(done).toEqual(["ask"]);
     vi.advanceTimersByTime(10_000);

@@ -83,7 +83,7 @@ describe("brush", () => {
       { x: 10, y: 0, pressure: 0.2 },
     ]);
     brush.up();
-    // a change of pressure counts without a movement
+    // a change of pressure adds a point without a movement
     expect(widths()).toEqual([[0.25], [0.5, 0.1]]);
     messages = [];
     brush.down({ x: 0, y: 0 });

@@ -214,7 +214,7 @@ export class StrataAuditLog extends LitElement {
     return html`${kind === "server" ? words.server : (actor ?? words.unknown)}${how ? html`<span class="hint">${how}</span>` : nothing}`;
   }
 
-  /** Returns what is worth reading of the details. The download contains all of them. */
+  /** Returns a summary of the details. The download contains all details. */
   private notes(entry: AuditEntry): string {
     const { group, records, user } = entry.details;
     const isRole = entry.action === "role_changed" || entry.action.startsWith("member_");

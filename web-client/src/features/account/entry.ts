@@ -17,7 +17,8 @@ export function loginPathOf(pasted: string): string | null {
 export const invitationOf = (hash: string): string => /^#([A-Za-z0-9._~-]+)$/.exec(hash)?.[1] ?? "";
 
 /**
- * `by` is the kind of sign-in. Other problems, such as too many attempts, have the server's text.
+ * Returns the text for a failed sign-in. `by` is the kind of sign-in. For problems other than a
+ * wrong password or token, such as too many attempts, returns the server's text.
  */
 export function signInProblem(error: ApiError, by: "password" | "token"): string {
   if (by === "password") return error.status === 401 ? texts.sign_in.wrong : error.message;

@@ -278,7 +278,7 @@ export class StrataKiosksDialog extends LitElement {
     });
   }
 
-  /** Runs a change. The kiosk's row shows a refusal. */
+  /** Runs a change. If the server refuses it, the kiosk's row shows the reason. */
   private async change({ id }: Kiosk, task: () => Promise<void>): Promise<void> {
     this._note = null;
     try {

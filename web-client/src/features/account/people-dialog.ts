@@ -378,7 +378,9 @@ export class StrataPeopleDialog extends LitElement {
     });
   }
 
-  /** Returns true after success. The user's row shows a refusal. */
+  /**
+   * Returns true after success. If the server refuses the change, the user's row shows the reason.
+   */
   private async changeRow({ id }: Person, task: () => Promise<void>): Promise<boolean> {
     this._rowNote = null;
     try {

@@ -1,5 +1,5 @@
 // <strata-project-roles-dialog>: a user's role in each project, next to the role for all projects
-// and the roles from groups; or the roles of a group.
+// and the roles from groups. For a group, it shows the group's role in each project.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";

@@ -161,7 +161,7 @@ export class StrataViewCube extends LitElement {
 
   private onUp(): void {
     if (!this._drag?.moved)
-      this._drag = null; // after a drag, the click resets it
+      this._drag = null; // after a drag, onClick() resets it
     else setTimeout(() => (this._drag = null));
   }
 

@@ -25,7 +25,7 @@ export function columnsForLabels(session: ModelSession, layer: Layer): Column[] 
   return columns.sort((a, b) => Number(b === title) - Number(a === title));
 }
 
-/** Returns this part of the request, or null if the figure has no labels. */
+/** Returns the labels for the request, or null if the figure has no labels. */
 export function labelsOf(session: ModelSession): FigureLabels | null {
   const { layer: id, column } = session.figures.draft.labels ?? {};
   const layer = session.layers.all.find((each) => each.id === id);

@@ -23,7 +23,7 @@ export const kSurfaceNames = [
   "slope",
   "curvature",
 ] as const;
-const kEverywhere = 4; // the number of first names that also work in conditions over stored layers
+const kEverywhere = 4; // the first 4 names also work in conditions over stored layers
 
 export interface Name extends Suggestion {
   /** The name that users see. The default is the text itself. */

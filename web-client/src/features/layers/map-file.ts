@@ -52,7 +52,7 @@ export function fileKind(names: readonly string[]): "table" | "map" | null {
     : null;
 }
 
-/** Returns the first file of another kind. */
+/** Returns the name of the first file whose kind is not supported. */
 export const unknownFile = (names: readonly string[]): string =>
   names.find((name) => fileKind([name]) === null) ?? names[0] ?? "";
 

@@ -17,7 +17,10 @@ export const directionField = (chosen: Along, choose: (along: Along) => void): T
     </select>
   </label>`;
 
-/** A picture that contains its position needs no numbers. */
+/**
+ * Renders the field for the numbers of a world file, or a note if the picture contains its
+ * position.
+ */
 export const worldField = (
   contents: MapContents,
   text: string,

@@ -201,7 +201,7 @@ export class StrataStatisticsDialog extends LitElement {
       ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
   }
 
-  /** Returns the share of the model's surface. */
+  /** Returns an area as a share of the model's surface. */
   private share(areaM2: number): string {
     const whole = this.session.model?.area_m2 ?? 0;
     return whole > 0 ? `${formatNumber((areaM2 / whole) * 100)} %` : "";

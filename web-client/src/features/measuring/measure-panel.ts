@@ -111,7 +111,7 @@ export class StrataMeasurePanel extends LitElement {
     this._hasKeyboard = this.shadowRoot?.activeElement instanceof HTMLButtonElement;
   }
 
-  /** The pressed button may have disappeared with its measurement. */
+  /** Moves the focus if the pressed button was removed together with its measurement. */
   override updated(): void {
     if (this._hasKeyboard && !this.shadowRoot?.activeElement)
       this.renderRoot.querySelector<HTMLElement>(".acts button")?.focus();

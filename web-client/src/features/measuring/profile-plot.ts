@@ -1,5 +1,5 @@
 // <strata-profile-plot>: height, or a layer's values, along the measured line. The pointer or the
-// arrow keys select a point. The model also marks it.
+// arrow keys select a point, which is also marked on the model.
 
 import { css, html, LitElement, nothing, render, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";

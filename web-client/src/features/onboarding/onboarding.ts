@@ -25,7 +25,7 @@ import {
 
 const words = texts.tour;
 const kGapPx = 12;
-const kLargePx = 100; // wider elements get more space inside the ring
+const kLargePx = 100; // the outline around a wider element is farther from the element
 const kNarrow = "(max-width: 820px)"; // as in modelStyles
 
 @customElement("strata-tour")

@@ -1,6 +1,7 @@
-// The area that polygon and lasso select: outlines that are combined in their order. Each is in the
-// window of the camera that it was drawn with. The 3D view highlights the area until it is painted,
-// erased or discarded. Corners can be changed while the 3D view shows the view of their outline.
+// The area that polygon and lasso select: outlines that are combined in their order. The points of
+// each outline are pixels in the window of the camera with which the outline was drawn. The 3D view
+// highlights the area until it is painted, erased or discarded. Corners can be changed while the 3D
+// view shows the view of their outline.
 
 import type { OutlineStep, SelectRequest, SelectResponse } from "../../core/protocol.gen";
 import type { CameraMessage } from "../../math/camera";

@@ -15,8 +15,8 @@ export class BrushSettings {
   through = false; // whether hidden surfaces are painted too
   pressure = true; // whether a pen with less pressure paints a narrower line
   /**
-   * If limited, surfaces at a larger angle to the camera are not painted. Cannot be combined with
-   * hidden surfaces.
+   * If limited, surfaces at a larger angle to the camera are not painted. Has no effect while
+   * `through` is true.
    */
   slant = { limited: false, maxDeg: 60 };
   /** Settings of polygon, lasso and bucket. */

@@ -57,7 +57,7 @@ export class BrushTool implements Tool {
     const spacing = Math.max(0.5, this._host.radiusPx() * 0.1);
     for (const sample of samples) {
       this.see(sample);
-      // a change of pressure also counts without a movement
+      // a change of pressure adds a point even without a movement
       const pressed = Math.abs(this._newestWidth - this._lastWidth) >= kWidthStep;
       if (pressed || Math.hypot(sample.x - this._last[0], sample.y - this._last[1]) >= spacing)
         this.take();

@@ -19,7 +19,10 @@ const words = texts.past;
 @customElement("strata-past-restore")
 export class StrataPastRestore extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Null before the user chooses: a layer that changed after the state, the selected one first. */
+  /**
+   * Null before the user chooses. The default is then a layer that has changed since the state, if
+   * possible the selected layer.
+   */
   @state() private _layer: number | null = null;
   @state() private _count: Difference | null = null;
   @state() private _working = false;

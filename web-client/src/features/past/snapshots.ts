@@ -76,7 +76,10 @@ export class Snapshots {
       ),
     );
   }
-  /** Deletes the loaded version under the same condition. */
+  /**
+   * Deletes the loaded version. Throws the same ApiError as rename() if another user has changed it
+   * since.
+   */
   async remove({ id, version }: Snapshot): Promise<void> {
     await this.newestAfter(() =>
       this._api.send("DELETE /models/{model}/snapshots/{snapshot}", {

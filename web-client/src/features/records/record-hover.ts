@@ -25,7 +25,7 @@ export interface RecordHoverHost {
 export class RecordHover {
   private _shown: RecordAt | null = null;
   private _from: PointerSample | null = null; // the position where the mouse stopped
-  // null while `_from` is set means that the delay is over
+  // if it is null while `_from` is set, the delay is over
   private _timer: ReturnType<typeof setTimeout> | null = null;
 
   constructor(private readonly _host: RecordHoverHost) {}

@@ -229,7 +229,7 @@ export class StrataColumnFilter extends LitElement {
       text: this.textOf(value),
     }));
     const known = new Set(lines.map(({ value }) => value));
-    // selected and possible values are listed too
+    // also lists selected values and possible values that no record has
     const also = [
       ...this._values,
       ...(column.kind === "enumeration"

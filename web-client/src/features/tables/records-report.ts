@@ -52,7 +52,7 @@ export const reportStyles = css`
 export const isUseful = (report: RecordsReport): boolean =>
   report.problems.length === 0 && report.created + report.changed > 0;
 
-/** `rows` is the term for the file's rows. */
+/** `rows` is the label for the number of rows in the file, such as “Rows” or “Terms”. */
 export function recordsReport(report: RecordsReport, rows: string): TemplateResult {
   const counts: [string, number][] = [
     [rows, report.rows],

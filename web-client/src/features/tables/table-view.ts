@@ -37,7 +37,10 @@ export class TableView {
   readonly edits: CellEdits;
   /** The keys of the selected rows. */
   readonly selected = new Set<number>();
-  /** The result of undo or redo. A notice would cover the model. */
+  /**
+   * The result of undo or redo, as a text in the bar above the table, because a notice would cover
+   * the model.
+   */
   told = "";
   /** The key of the record to scroll to. */
   sought: number | null = null;

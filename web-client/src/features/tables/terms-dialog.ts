@@ -20,7 +20,7 @@ import { texts } from "../../texts";
 
 const words = texts.terms_dialog;
 
-const kMostOfU16 = 30_000; // a new layer's list can have this many terms, and double its size later
+const kMostOfU16 = 30_000; // up to this number of terms, u16 keys suffice even if it doubles
 
 @customElement("strata-terms-dialog")
 export class StrataTermsDialog extends LitElement {

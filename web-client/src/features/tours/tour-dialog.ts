@@ -215,7 +215,7 @@ export class StrataTourDialog extends LitElement {
       yes: words.leave_yes,
       danger: true,
     }).finally(() => (this._asked = null));
-    return this._asked; // all ways to leave share one question
+    return this._asked; // all attempts to leave wait for the same question
   };
 
   // ── rendering ──────────────────────────────────────────────────────────────────────────────────

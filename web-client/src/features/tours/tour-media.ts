@@ -188,7 +188,7 @@ export class StrataTourMedia extends LitElement {
   private put(media: readonly MediumDraft[]): void {
     this.dispatchEvent(new CustomEvent("changed", { detail: media }));
   }
-  /** The tour's draft must contain the file. */
+  /** Reports an uploaded file to the editor, because the tour's draft must contain it. */
   private tell(file: TourFile): void {
     this.dispatchEvent(
       new CustomEvent<TourFile>("file", { detail: file, bubbles: true, composed: true }),

@@ -78,7 +78,8 @@ export class Tours {
     );
   }
   /**
-   * Uploads a picture, sound, video or subtitles. The tour uses the file after it is saved with it.
+   * Uploads a picture, sound, video or subtitles. The tour uses the file only after a version of
+   * the tour that contains the file is saved.
    */
   addFile(tour: number, file: File, progress: Progress): Upload<TourFile> {
     return this._api.upload(
@@ -93,7 +94,10 @@ export class Tours {
     const address = `/api/v1/models/${this._modelId}/tours/${tour}/files/${file}`;
     return thumbnail ? `${address}?thumbnail=${thumbnail}` : address;
   }
-  /** Deletes the loaded version under the same condition. */
+  /**
+   * Deletes the loaded version. Throws the same ApiError as change() if another user has changed it
+   * since.
+   */
   async remove({ id, version }: TourEntry): Promise<void> {
     try {
       await this._api.send("DELETE /models/{model}/tours/{tour}", {

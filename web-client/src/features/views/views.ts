@@ -234,7 +234,10 @@ export class Views {
       ),
     );
   }
-  /** Saves the current view under the existing name, under the same condition. */
+  /**
+   * Saves the current view under the existing name. Throws the same ApiError as describe() if
+   * another user has changed the saved view since.
+   */
   async replace(view: View): Promise<void> {
     const changed = await this.putContent(view, this.content());
     this.remember(changed);
@@ -244,7 +247,10 @@ export class Views {
       void this.putContent(changed, before).catch((error: unknown) => notices.error(error));
     notices.show("success", words.replaced(view.name), "", { label: words.undo, act: undo });
   }
-  /** Deletes the loaded version under the same condition. */
+  /**
+   * Deletes the loaded version. Throws the same ApiError as describe() if another user has changed
+   * it since.
+   */
   async remove(view: View): Promise<void> {
     await this.newestAfter(view, () =>
       this._api.send("DELETE /models/{model}/views/{view}", {
