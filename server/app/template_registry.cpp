@@ -172,7 +172,7 @@ Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, Pr
                   problem.field);
     };
     if (!template_table.terms && !template_table.columns)
-      return refuse({ErrorCode::invalid, "Terms or columns",
+      return refuse({ErrorCode::invalid, "Terms and columns missing",
                      "A table must have `terms`, `columns` or both.", "tables"});
     store::NewTable made;
     made.table.project_id = project_id;

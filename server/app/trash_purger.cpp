@@ -36,7 +36,7 @@ bool TrashPurger::is_stopping() {
   return stopping_;
 }
 
-// Both functions return false when they are done, and true if the server stops before.
+// Both functions return false when they are done, and true if the server stops before that.
 Result<bool> TrashPurger::empty_trash() {
   STRATA_TRY(trash_.expire(keep_));
   Result<bool> some = true;

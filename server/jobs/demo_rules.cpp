@@ -57,7 +57,7 @@ Cell cell_of(const std::vector<glm::dvec3>& seeds, const glm::dvec3& p) {
   return cell;
 }
 
-// Returns a number from 0 to 1 for the border of two cells. Both sides of it have the same number.
+// Returns a number from 0 to 1 for the border of two cells. The order of the cells has no effect.
 double chance_of(const Cell& cell) {
   const auto [low, high] = std::minmax(cell.nearest, cell.second);
   return mesh::lattice_noise(low, high, 7) * 0.5 + 0.5;

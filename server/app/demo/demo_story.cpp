@@ -101,14 +101,14 @@ class Story {
     store::JournalWriter writer(store_, {});
     writer_ = &writer;
     progress_.begin_stage(0.8, 1);
-    progress_.report(0, "Telling the story of the demo");
+    progress_.report(0, "Adding the story of the demo");
     STRATA_TRY(at(day(56) + 9h));
     STRATA_TRY(make_people());
     STRATA_TRY(make_tables_and_layers());
     STRATA_TRY(at(day(49) + 10h));
     STRATA_TRY(map_condition());
     if (progress_.cancelled()) return cancelled_problem();
-    progress_.report(0.5, "Telling the story of the demo");
+    progress_.report(0.5, "Adding the story of the demo");
     STRATA_TRY(observe());
     STRATA_TRY(discuss_and_clean());
     const std::string kiosk = STRATA_TRY(show());

@@ -250,8 +250,8 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   };
   std::vector<figure::Legend> legends;
   if (request.legend) {
-    // The drawing is largest without a legend. The legend therefore lists the content of that
-    // drawing.
+    // Without a legend, the drawing is largest. The legend therefore lists the content of this
+    // largest drawing.
     auto seen = STRATA_TRY(
         legends_of(store, request, drawing_on(compose(request, {}, size, model.metres()))));
     legends = std::move(seen);

@@ -214,8 +214,8 @@ FeatureTable features_in(const FeatureRequest& request, const Records& records,
   return table;
 }
 
-// A map has coordinates in meters and shows the model along z. Otherwise, the coordinate system has
-// no code.
+// Returns the code of the model's coordinate system if the unit is the meter and the plane is seen
+// along z, as on a map. Otherwise returns 0.
 int epsg_of(const Model& model, const query::OutlinePlane& plane) {
   constexpr std::string_view kAuthority = "EPSG:";
   int code = 0;

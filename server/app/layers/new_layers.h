@@ -25,7 +25,7 @@ class NewLayers {
   Result<Layer> add(Layer layer, TileMap tiles, nlohmann::json recipe);
   // Creates the layer and calls `fill`.
   Result<Layer> add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill);
-  // Sets the requested visibility of the layers. The last update stores the response.
+  // Sets the requested visibility of the layers. The last update also stores `answer`.
   Result<void> show(const store::IdempotentResponse<Layer>& answer);
   void take_back();  // removes all added layers
 

@@ -18,8 +18,8 @@ namespace strata::app {
 // other computed layers. Computes one layer after the other. A computation blocks edits of the
 // model, so `attempt` first waits for a second without edits. It waits at most ten times. Polls the
 // database once a second, so a restart loses no change. Retries failures at increasing intervals.
-// Also counts the surface of layers that were never counted (store::Layers::to_sum), such as layers
-// from older versions.
+// Also sums the areas of the values of a layer if they were never summed (store::Layers::to_sum),
+// as in layers from older versions.
 class Recomputer {
  public:
   explicit Recomputer(const Services& services);

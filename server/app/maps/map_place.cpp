@@ -34,14 +34,14 @@ Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& fil
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
   if (in_degrees)
     return fail(ErrorCode::invalid, "Coordinates in degrees",
-                "The coordinates of the map are longitudes and latitudes. Save the map in the "
-                "plane coordinates of the model" +
+                "The coordinates of the map are longitudes and latitudes. Export it in the "
+                "projected coordinate system of the model" +
                     (model.crs.empty() ? "." : ", " + model.crs + "."),
                 "body");
   if (!crs.empty() && !model.crs.empty() && crs != model.crs)
     return fail(ErrorCode::invalid, "Different coordinate systems",
                 "The map has the coordinate system " + crs + ", but the model has " + model.crs +
-                    ". Save the map in " + model.crs + ".",
+                    ". Export the map again in " + model.crs + ".",
                 "body");
   return {};
 }
@@ -68,7 +68,7 @@ Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::strin
   auto bits = encode_value(layer.type, value);
   if (bits) return *bits;
   Error problem = bits.error();
-  problem.detail = where + query::number_text(value) + " does not fit. " + problem.detail;
+  problem.detail = where + query::number_text(value) + " cannot be stored. " + problem.detail;
   problem.field = "body";
   return tl::unexpected(std::move(problem));
 }

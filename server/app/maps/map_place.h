@@ -49,9 +49,9 @@ Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& fil
 // Refuses a map whose file names a coordinate system other than the model's.
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees);
 
-// If the map names a coordinate system and the model has none, the user must confirm that their
-// coordinates are the same. The option `crs` must then name that system. Refuses (invalid, at
-// `crs`) a missing name, and a name other than the map's or the model's.
+// If the map names a coordinate system and the model has none, the user must confirm that both use
+// the same coordinates. The option `crs` must then name that system. Refuses (invalid, at `crs`) a
+// missing name, and a name other than the map's or the model's.
 Result<void> confirm_map_crs(const MapOptions& options, const Model& model, const std::string& crs);
 
 // Encodes a value for the layer. In an error, `where` describes the origin of the value.

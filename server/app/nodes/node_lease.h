@@ -48,7 +48,7 @@ class NodeLease {
   bool draining() const { return draining_; }
   const store::NewNode& node() const { return options_.node; }
 
-  // Allows other nodes to claim the models of this node. It renews its lease until `leave`.
+  // Allows other nodes to claim the models of this node. This node renews its lease until `leave`.
   void begin_drain();
   // Stops renewing and removes the node. Blocks for a few seconds at most.
   void leave();
@@ -72,7 +72,7 @@ class NodeLease {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Clock::time_point sent_;    // when the last successful renewal was sent
-  bool is_over_ = false;      // the database said so; the rooms must be closed before a new lease
+  bool is_over_ = false;      // over in the database; the rooms must be closed before a new lease
   bool surrendered_ = false;  // the rooms are closed
   bool stopping_ = false;
   // Used by the renewing thread: when the load was last measured, and the processor time until

@@ -32,7 +32,7 @@ std::string where_painted(const std::vector<PaintedLayer>& layers,
                           const std::vector<std::int64_t>& keys);
 
 // Clears the texels with the key on these layers, or sets them to another key. On each layer with
-// such texels, this is one edit of the author. The author can undo it, as with a fill. Changes
+// such texels, this is one edit of the author, which the author can undo like a fill. Changes
 // nothing if one of the layers is locked for the author (403).
 Result<void> repaint_key(const Services& services, const std::vector<PaintedLayer>& layers,
                          std::int64_t key, std::optional<std::int64_t> to, const Author& author);

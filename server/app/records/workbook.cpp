@@ -50,8 +50,8 @@ std::string escaped(std::string_view text, std::string_view character) {
   return std::string(character);
 }
 
-// The library counts all characters of an escape, but Excel counts one. The text must satisfy both
-// limits.
+// The library counts all characters of an escape, but Excel counts an escape as one character. The
+// text must satisfy both limits.
 std::string cell_text(std::string_view text) {
   std::string out;
   std::size_t units = 0, written = 0, before_last = 0;

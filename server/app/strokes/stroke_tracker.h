@@ -37,7 +37,7 @@ class StrokeTracker {
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t kMaxStrokes = 256;   // per user and model
   static constexpr std::size_t kMaxBatches = 8192;  // stored per stroke
-  static constexpr std::size_t kMaxPath = 4096;     // points per edit, with the joining point
+  static constexpr std::size_t kMaxPath = 4096;     // points per edit, including the joining point
   static constexpr std::chrono::minutes kKeepFor{10};
 
   struct Owner {
@@ -69,8 +69,8 @@ class StrokeTracker {
   };
   // Returns 404 for an unknown stroke. Returns 409 for a batch out of order, a number that belongs
   // to another id, and an ended stroke. Returns 422 for a path that is too long with the joining
-  // point, and for a wrong number of widths. A repeated id returns the same batch and changes
-  // nothing.
+  // point, and for a wrong number of widths. For a repeated id, returns the batch of the first
+  // call, and changes nothing.
   Result<Batch> extend(const Owner& owner, const Uuid& stroke, const Uuid& id, int n,
                        const std::vector<glm::dvec2>& path, const std::vector<double>& widths = {},
                        Clock::time_point now = Clock::now());

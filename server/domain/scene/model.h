@@ -45,7 +45,7 @@ struct AtlasReport {
   int lowest_resolution = 2048;
   int charts = 0;
   double coverage = 0;  // fraction of texels on the surface, at lowest_resolution
-  // The fraction of covered texels with several owners, at lowest_resolution.
+  // The fraction of covered texels in two or more triangles, at lowest_resolution.
   double overlap = 0;
   double stretch_mean = 0;  // surface area per uv area, relative to the mean, area-weighted
   double stretch_p99 = 0;

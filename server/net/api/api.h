@@ -35,8 +35,8 @@
 
 namespace strata::net {
 
-// The layer between the sockets and the rooms. Finds the route, authenticates and authorizes the
-// caller, and detects repeated requests. Does not depend on a socket library.
+// The part of the server between the sockets and the rooms. Finds the route, authenticates and
+// authorizes the caller, and detects repeated requests. Does not depend on a socket library.
 class Api {
  public:
   Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,

@@ -22,7 +22,7 @@ struct Metrics {
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
   std::atomic<std::uint64_t> questions_left{0};  // the client disconnected before the response
-  // The expiry of the TLS certificate, in seconds since 1970. 0: plain HTTP.
+  // The expiry of the TLS certificate, in seconds since 1970. 0: the server uses plain HTTP.
   std::atomic<std::int64_t> certificate_end{0};
 
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(kLastErrorCode) + 1> problems{};

@@ -17,7 +17,7 @@ constexpr std::string_view kFileName = "filename*=UTF-8''";
 constexpr std::size_t kMaxPath = 500;  // bytes of the path and of the media type in the log
 constexpr std::size_t kMaxIdLength = 18;
 
-// The parameters of a path that can name what a client downloads. The first one of a path counts.
+// The parameters of a path that can name the downloaded object. The first in a path is used.
 constexpr const char* kSubjects[] = {"layer", "attachment", "table", "job", "model", "project"};
 
 std::string attached_name(const Response& response) {

@@ -40,8 +40,8 @@ Result<void> check_theme_colors(const protocol::TourTheme& theme) {
     return fail(ErrorCode::invalid, "Contrast too low",
                 "Text on " + background_text + " has a contrast of " + ratio(now) +
                     ", but requires " + ratio(kMinTextContrast) + ". Choose a " +
-                    (dark ? "darker background, or the light design."
-                          : "lighter background, or the design for dark rooms."),
+                    (dark ? "darker background, or the mode `light`."
+                          : "lighter background, or the mode `dark`."),
                 "theme.background");
   if (const double now = contrast(accent, background); now < kMinAccentContrast)
     return fail(ErrorCode::invalid, "Contrast too low",

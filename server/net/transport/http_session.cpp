@@ -251,7 +251,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   // GCC 12 destroys some objects twice if they are created inside a co_await expression. The
   // callers of these functions therefore pass named locals by reference.
   asio::awaitable<void> refuse_head(beast::error_code error) {
-    trace_ = continued_trace({});  // not that of the request before
+    trace_ = continued_trace({});  // not the trace of the previous request
     Response refusal;
     if (error == http::error::header_limit) {
       refusal = problem_response({ErrorCode::head_too_large,

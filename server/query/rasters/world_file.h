@@ -17,7 +17,7 @@ struct WorldFile {
 // separated by commas, blanks or line ends. Returns an `invalid` error at `field` for another
 // count, for numbers that are not finite, and for an image without area.
 Result<WorldFile> parse_world_file(std::string_view text, const std::string& field);
-// Checks values from another source in the same way.
+// Makes these checks for values from another source, such as GeoTIFF tags.
 Result<WorldFile> checked(const WorldFile& world, const std::string& field);
 
 }  // namespace strata::query

@@ -11,7 +11,7 @@ namespace strata::store {
 class Pool;
 
 // Responses to HTTP requests that change data, by Idempotency-Key. They are kept for 7 days. Part
-// of Store, with the same rules for threads and errors.
+// of Store, whose rules for threads and errors apply.
 class Answers {
  public:
   explicit Answers(Pool& pool) : pool_(pool) {}

@@ -47,7 +47,7 @@ struct Comment {
   Visibility visibility = Visibility::everyone;
 };
 
-// Threads of comments. Part of Store, with the same rules for threads and errors.
+// Threads of comments. Part of Store, whose rules for threads and errors apply.
 class Comments {
  public:
   static constexpr std::int64_t kMaxComments = 10'000;  // per model, including replies

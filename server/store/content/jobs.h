@@ -28,8 +28,8 @@ struct StoredJob {
   std::optional<Uuid> node{};  // the node that runs it, if the site has several
 };
 
-// Jobs that can be found again after a restart. Part of Store, with the same rules for threads and
-// errors. The success of a job is written in the transaction of its result
+// Jobs that can be found again after a restart. Part of Store, whose rules for threads and errors
+// apply. The success of a job is written in the transaction of its result
 // (`IdempotentResponse::job`), so neither exists without the other.
 class Jobs {
  public:

@@ -20,7 +20,7 @@ namespace strata::store {
 class Pool;
 
 // Layers of models. Computed layers are created and changed together with their formulas. Part of
-// Store, with the same rules for threads and errors.
+// Store, whose rules for threads and errors apply.
 class Layers {
  public:
   explicit Layers(Pool& pool) : pool_(pool) {}

@@ -35,8 +35,8 @@ struct NewModel {
   std::vector<NewSurfaceImage> images;  // bottom to top; initially, only the first is visible
 };
 
-// 3D models with their geometry and source files. Part of Store, with the same rules for threads
-// and errors.
+// 3D models with their geometry and source files. Part of Store, whose rules for threads and errors
+// apply.
 class Models {
  public:
   explicit Models(Pool& pool) : pool_(pool) {}

@@ -30,8 +30,8 @@ struct NamedPart {
   std::int64_t version = 1;
 };
 
-// Saved views of models, tours, or snapshots. Part of Store, with the same rules for threads and
-// errors.
+// Saved views of models, tours, or snapshots. Part of Store, whose rules for threads and errors
+// apply.
 class NamedParts {
  public:
   struct Kind {

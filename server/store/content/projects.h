@@ -18,7 +18,7 @@ namespace strata::store {
 class Pool;
 
 // Projects of the site; `default` exists from the start. `ref` is an id in digits or a slug. Part
-// of Store, with the same rules for threads and errors.
+// of Store, whose rules for threads and errors apply.
 class Projects {
  public:
   explicit Projects(Pool& pool) : pool_(pool) {}

@@ -14,8 +14,8 @@ namespace strata::store {
 
 class Pool;
 
-// Images of the surface of a model, stored unchanged. Part of Store, with the same rules for
-// threads and errors.
+// Images of the surface of a model, stored unchanged. Part of Store, whose rules for threads and
+// errors apply.
 class SurfaceImages {
  public:
   explicit SurfaceImages(Pool& pool) : pool_(pool) {}

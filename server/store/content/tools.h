@@ -14,7 +14,7 @@ namespace strata::store {
 
 class Pool;
 
-// Brush shapes of the whole site. Part of Store, with the same rules for threads and errors.
+// Brush shapes of the whole site. Part of Store, whose rules for threads and errors apply.
 class Tools {
  public:
   explicit Tools(Pool& pool) : pool_(pool) {}

@@ -38,7 +38,7 @@ struct NewTourFile {
   std::optional<int> width, height;
 };
 
-// Files of tours. Part of Store, with the same rules for threads and errors.
+// Files of tours. Part of Store, whose rules for threads and errors apply.
 class TourFiles {
  public:
   static constexpr std::int64_t kMaxFiles = 200;                    // per tour

@@ -38,7 +38,7 @@ struct TrashRestored {
   std::string former_slug;
 };
 
-// The Trash of projects. Part of Store, with the same rules for threads and errors. All other parts
+// The Trash of projects. Part of Store, whose rules for threads and errors apply. All other parts
 // of Store ignore models and layers that are in the Trash (db/migrations/000023_bin.sql). Records
 // are never erased: the journals of their tables keep their values, and the Trash reads them there.
 class Trash {

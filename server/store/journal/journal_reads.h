@@ -40,8 +40,8 @@ struct JournalState {
   std::vector<JournalRow> known;
 };
 
-// Reads the journal of edits. JournalWriter writes it. Part of Store, with the same rules for
-// threads and errors.
+// Reads the journal of edits. JournalWriter writes it. Part of Store, whose rules for threads and
+// errors apply.
 class Journal {
  public:
   explicit Journal(Pool& pool) : pool_(pool) {}

@@ -56,16 +56,16 @@ struct Ownership {
 // slashes at the end. Other text is `malformed`, also a URL with a user, a query or a fragment.
 Result<std::string> check_node_url(const std::string& url);
 
-// The nodes of a site, and which of them has which model. A model has one owner and an epoch, a
+// The nodes of a site, and the models that each of them has. A model has one owner and an epoch, a
 // number that grows with each claim. A commit of the journal names the epoch in which its room was
 // opened (JournalEntry::epoch), so a node that lost a model can never change it.
 //
-// A node has a lease of `kLease`, which it renews every second. The clock of the database decides.
-// If the lease is over, other nodes may claim its models. No session locks are used: if the
+// A node has a lease of `kLease`, which it renews every second. The clock of the database measures
+// it. If the lease is over, other nodes may claim its models. No session locks are used: if the
 // database ends a session, its locks are free while their holder still relies on them.
 //
-// A server that is alone has no row and no lease. Its claims have no owner. Part of Store, with the
-// same rules for threads and errors.
+// A server without other nodes has no row and no lease. Its claims have no owner. Part of Store,
+// whose rules for threads and errors apply.
 class Nodes {
  public:
   static constexpr std::chrono::milliseconds kLease{3000};
@@ -96,7 +96,7 @@ class Nodes {
   // writes the journal without a room: a room that is open on any server is closed when it next
   // uses the journal.
   Result<std::int64_t> begin_epoch(ModelId model);
-  // Gives the model up, if this epoch is the newest. The epoch stays.
+  // Removes the owner of the model, if this epoch is the newest. The epoch does not change.
   Result<void> release(ModelId model, std::int64_t epoch);
   // Returns the owner, if it has a lease and does not drain. `ref` is an id or a slug. Also returns
   // nothing if there is no such model.

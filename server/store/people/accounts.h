@@ -15,7 +15,7 @@ namespace strata::store {
 
 class Pool;
 
-// User accounts and their passwords. Part of Store, with the same rules for threads and errors.
+// User accounts and their passwords. Part of Store, whose rules for threads and errors apply.
 class Accounts {
  public:
   explicit Accounts(Pool& pool) : pool_(pool) {}

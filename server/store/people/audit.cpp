@@ -42,7 +42,7 @@ AuditRow read_audit_row(const PgResult& rows, int i) {
   return found;
 }
 
-// Replaces what PostgreSQL cannot store: invalid UTF-8 and U+0000.
+// Replaces text that PostgreSQL cannot store: invalid UTF-8 and U+0000.
 std::string storable(std::string_view text) {
   std::string mended = mended_utf8(text.substr(0, kMaxTriedName));
   for (char& c : mended)

@@ -69,8 +69,8 @@ struct AuditExport {
   nlohmann::json details = nlohmann::json::object();
 };
 
-// The audit log. Triggers of the database write most rows. Part of Store, with the same rules for
-// threads and errors.
+// The audit log. Triggers of the database write most rows. Part of Store, whose rules for threads
+// and errors apply.
 class Audit {
  public:
   explicit Audit(Pool& pool) : pool_(pool) {}

@@ -63,8 +63,8 @@ struct Regrouped {
   std::vector<std::string> people;
 };
 
-// Groups of users. Part of Store, with the same rules for threads and errors. `by` is the user
-// named in the activity of the projects; if it is empty, the activity gets no entry.
+// Groups of users. Part of Store, whose rules for threads and errors apply. `by` is the user named
+// in the activity of the projects; if it is empty, the activity gets no entry.
 class Groups {
  public:
   // limits for groups of the site, and for users in a group

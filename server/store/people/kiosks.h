@@ -35,7 +35,7 @@ struct NewKiosk {
   Kiosk kiosk;
 };
 
-// Links of kiosks. Part of Store, with the same rules for threads and errors.
+// Links of kiosks. Part of Store, whose rules for threads and errors apply.
 class Kiosks {
  public:
   static constexpr std::int64_t kMaxKiosks = 100;  // valid links per tour

@@ -13,7 +13,7 @@ namespace strata::store {
 
 class Pool;
 
-// Roles of users in single projects. Part of Store, with the same rules for threads and errors.
+// Roles of users in single projects. Part of Store, whose rules for threads and errors apply.
 class Members {
  public:
   explicit Members(Pool& pool) : pool_(pool) {}

@@ -11,8 +11,8 @@ namespace strata::store {
 
 class Pool;
 
-// The display settings of each user for the layers of models. Part of Store, with the same rules
-// for threads and errors.
+// The display settings of each user for the layers of models. Part of Store, whose rules for
+// threads and errors apply.
 class PersonalViews {
  public:
   explicit PersonalViews(Pool& pool) : pool_(pool) {}

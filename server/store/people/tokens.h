@@ -15,8 +15,8 @@ namespace strata::store {
 
 class Pool;
 
-// Sessions, links and tokens for scripts. Part of Store, with the same rules for threads and
-// errors.
+// Sessions, links and tokens for scripts. Part of Store, whose rules for threads and errors
+// apply.
 class Tokens {
  public:
   explicit Tokens(Pool& pool) : pool_(pool) {}

@@ -34,7 +34,7 @@ struct Attached {
 };
 
 // Files in the cells of picture and document columns. Files are read and written as streams. Part
-// of Store, with the same rules for threads and errors.
+// of Store, whose rules for threads and errors apply.
 class Attachments {
  public:
   explicit Attachments(Pool& pool) : pool_(pool) {}

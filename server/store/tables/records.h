@@ -45,7 +45,7 @@ struct RecordPage {
   std::optional<nlohmann::json> last{};
 };
 
-// Rows of tables. Part of Store, with the same rules for threads and errors.
+// Rows of tables. Part of Store, whose rules for threads and errors apply.
 class Records {
  public:
   explicit Records(Pool& pool) : pool_(pool) {}

@@ -37,7 +37,7 @@ struct TableHistory {
 // Tables of a project with their columns, by id or slug. Changes to columns and records are entries
 // in the journal of the table, each by one user. Results contain only the columns that the role
 // sees. They contain no names and no past states of other columns. Only a TableChange has all
-// columns. Part of Store, with the same rules for threads and errors.
+// columns. Part of Store, whose rules for threads and errors apply.
 class Tables {
  public:
   explicit Tables(Pool& pool) : pool_(pool) {}
