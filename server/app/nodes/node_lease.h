@@ -21,9 +21,9 @@ namespace strata::app {
 
 // Keeps the lease of this process while the site has several nodes (store/nodes/nodes.h). If no
 // renewal that was sent within the last `trusted_for` has succeeded, the process may no longer be
-// the owner of its models. Then it surrenders its rooms, and joins again when the database answers.
-// `trusted_for` is shorter than the lease, so the rooms are closed before another node can claim
-// their models.
+// the owner of its models. It then surrenders its rooms, and joins the site again when the database
+// answers. `trusted_for` is shorter than the lease, so the rooms are closed before another node can
+// claim their models.
 //
 // One thread renews, and may hang in the database. Another thread watches the monotonic clock, and
 // never waits for the database. Thread-safe.

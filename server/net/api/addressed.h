@@ -19,8 +19,8 @@ namespace strata::net {
 struct Request;
 struct RouteContext;
 
-// Return the entity that the address names, as visible to the caller's role. They read the database
-// and do not open a room.
+// Return the entity that the address names, as visible to the caller's role. These functions read
+// the database and open no room.
 Result<Project> stored_project(const RouteContext& context, const Request& request);
 Result<Model> stored_model(const RouteContext& context, const Request& request);
 Result<Layer> stored_layer(const RouteContext& context, const Request& request);

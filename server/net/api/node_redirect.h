@@ -27,8 +27,8 @@ Result<void> check_job_is_here(const RouteContext& context, const Request& reque
 
 // Returns the response to a request whose handler needed a model that the node at `node` has. The
 // path does not name this model, or the node has just claimed it. `target` is that of the request.
-// A request is redirected in this way only once, because it may need models of several nodes. Then,
-// or if `node` is empty, returns 503, and the client repeats the request later.
+// A request is redirected in this way only once, because it may need models of several nodes. If
+// `again` is true or `node` is empty, returns 503, and the client repeats the request later.
 Response redirected_by_handler(std::string_view node, std::string_view target, bool again);
 
 }  // namespace strata::net

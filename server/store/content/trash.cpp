@@ -67,7 +67,7 @@ tl::unexpected<Error> not_in_trash(const TrashEntry& entry) {
                   " is no longer in the Trash: somebody restored or erased it.");
 }
 
-// Returns success if one row was changed. Otherwise the layer or model `id` does not exist.
+// Returns success if one row was changed. Otherwise returns the error that `id` does not exist.
 Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t id) {
   if (!done) return tl::unexpected(done.error());
   return done->affected() > 0 ? Result<void>{} : no_such(name_of(kind), std::to_string(id));

@@ -109,10 +109,10 @@ TileAddress read_address(const PgResult& rows, int i) {
 // Reads tile by tile, by the primary key, and for each tile the rows since its last key tile. Older
 // rows are not read, so a layer opens as fast after a year of painting as after a day. Nested loops
 // determine the order, because a sort would keep every row in memory. Tile addresses are compared
-// as row values, which only the primary key supports. Otherwise, for a new table without
-// statistics, the planner would read the whole index by sequence for each tile. This SQL follows a
-// WITH query `tiles`. It returns the rows of each tile, from its last key tile up to $2. Because of
-// the LEFT JOIN, a tile without rows has one row of nulls.
+// as row values, which only the primary key supports. With other comparisons, for a new table
+// without statistics, the planner would read the whole index by sequence for each tile. This SQL
+// follows a WITH query `tiles`. It returns the rows of each tile, from its last key tile up to $2.
+// Because of the LEFT JOIN, a tile without rows has one row of nulls.
 constexpr auto kRowsOfTiles = sql(
     "SELECT t.tile_y, t.tile_x, r.sequence, r.sequence = k.sequence, CASE WHEN r.sequence = k.sequence THEN r.key_tile ELSE r.difference END "
     "FROM tiles t LEFT JOIN LATERAL (SELECT sequence FROM tile_revisions WHERE layer_id = $1 AND tile_y = t.tile_y "

@@ -11,8 +11,8 @@ inline constexpr std::size_t kMinPasswordLength = 10,
                              kMaxPasswordLength = 1024;  // limits in characters, and in bytes
 
 // Checks whether a user may choose the password, and returns an `invalid` error at `field` if not.
-// It must be long enough and differ from the name. There are no other rules, because they make
-// passwords worse (NIST SP 800-63B, 5.1.1.2).
+// The password must be long enough and differ from the name. There are no other rules, because they
+// make passwords worse (NIST SP 800-63B, 5.1.1.2).
 Result<void> check_password(std::string_view password, std::string_view user,
                             const std::string& field);
 
