@@ -25,7 +25,7 @@ struct Stated {
 };
 
 // Recognizes "unit: mm", "units millimetres", "File units = meters" (Alias, SketchUp), "obj_info
-// units millimeter" and "UNITS=mm" (headers of STL). The first comment with a unit decides. If it
+// units millimeter" and "UNITS=mm" (headers of STL). The first comment with a unit is used. If it
 // names an unsupported unit, such as inches, the result is empty.
 std::optional<Stated<Unit>> stated_unit(std::span<const std::string> comments);
 

@@ -37,9 +37,9 @@ class ObjReader {
     if (colored_ > 0)
       note(loaded_.repairs, "vertices without colour", loaded_.mesh.positions.size() - colored_);
     faces_.report(loaded_.repairs);
-    note(loaded_.repairs, "faces that name texture coordinates which the file does not have",
+    note(loaded_.repairs, "faces that refer to texture coordinates missing from the file",
          without_named_uv_);
-    note(loaded_.repairs, "faces that name normals which the file does not have",
+    note(loaded_.repairs, "faces that refer to normals missing from the file",
          without_named_normal_);
     note(loaded_.repairs, "materials without a definition", undefined_.size());
     UdimTiles::resolve(shelf_, references_, loaded_.mesh);

@@ -40,7 +40,7 @@ class PlyReader {
     }
     if (!has_vertices_) return refuse_file("The PLY has no element \"vertex\".");
     note(loaded_.repairs, "ignored bytes after the last element", source_.bytes_left_over());
-    note(loaded_.repairs, "lines with more words than the header says", source_.surplus_elements());
+    note(loaded_.repairs, "lines with more values than declared", source_.surplus_elements());
     for (auto& [element, begin] : put_off_) {
       source_ = begin;
       STRATA_TRY(read_triangles(*element));

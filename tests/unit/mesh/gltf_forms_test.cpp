@@ -442,7 +442,7 @@ TEST(MeshGltfForms, every_attribute_in_every_form_means_what_the_specification_s
             expect_the_pyramid(loaded->mesh, attributes);
             EXPECT_EQ(loaded->mesh.vertex_colors.empty(), !is_color);
             EXPECT_EQ(count_of(loaded->repairs,
-                               "colours taken as normalised, which their accessors do not say"),
+                               "integer colors without a normalized flag, read as normalized"),
                       is_color && type != kFloat && !normalized ? 1u : 0u);
           }
   EXPECT_EQ(read, 972);
@@ -492,7 +492,7 @@ TEST(MeshGltfForms, shapes_that_do_not_belong_to_an_attribute_are_refused) {
 }
 
 TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the_accessor_says) {
-  // The stream stores bytes, but the accessor specifies shorts. The accessor decides.
+  // The stream stores bytes, but the accessor specifies shorts. The type of the accessor applies.
   const auto attributes = with_positions(attribute("TEXCOORD_0", kUnsignedByte, 2, true));
   File file(attributes, Store::draco_sequential, 0, false);
   file.document()["accessors"][1]["componentType"] = kUnsignedShort;
@@ -501,7 +501,7 @@ TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the
   Attribute as_shorts = attributes[1];
   as_shorts.type = kUnsignedShort;
   expect_the_pyramid(shorts->mesh, {attributes[0], as_shorts});
-  // Without an accessor, the flag of the stream decides. This stream has not set it.
+  // Without an accessor, the flag of the stream applies. This stream has not set it.
   file.document()["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
   const auto alone = file.load();
   ASSERT_TRUE(alone) << alone.error().detail;

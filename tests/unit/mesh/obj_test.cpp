@@ -124,18 +124,17 @@ TEST(MeshObj,
   EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
   EXPECT_EQ(loaded->mesh.corner_uvs[1], glm::vec2(1, 0));
   EXPECT_EQ(
-      count_of(loaded->repairs, "faces that name texture coordinates which the file does not have"),
+      count_of(loaded->repairs, "faces that refer to texture coordinates missing from the file"),
       1u);
-  EXPECT_EQ(count_of(loaded->repairs, "faces that name normals which the file does not have"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "faces that refer to normals missing from the file"), 1u);
   EXPECT_EQ(count_of(loaded->repairs, "triangles without texture coordinates"), 1u);
   // None of these indices exist, including those that count from the end.
   const auto none = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/-3/-3 -2/-2/-2 -1/-1/-1\n", "a.obj");
   ASSERT_TRUE(none) << none.error().detail;
   EXPECT_TRUE(none->mesh.corner_uvs.empty());
   EXPECT_EQ(
-      count_of(none->repairs, "faces that name texture coordinates which the file does not have"),
-      1u);
-  EXPECT_EQ(count_of(none->repairs, "faces that name normals which the file does not have"), 1u);
+      count_of(none->repairs, "faces that refer to texture coordinates missing from the file"), 1u);
+  EXPECT_EQ(count_of(none->repairs, "faces that refer to normals missing from the file"), 1u);
 }
 
 // Returns UTF-16 with its byte order mark, including characters of two units.

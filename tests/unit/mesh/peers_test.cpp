@@ -98,7 +98,7 @@ TEST_F(MeshPeers, surplus_words_of_a_ply_are_said) {
   ASSERT_TRUE(loaded) << loaded.error().detail;
   EXPECT_EQ(loaded->mesh.triangle_count(), 1000u);
   EXPECT_FALSE(loaded->mesh.corner_uvs.empty());
-  EXPECT_EQ(count_of(*loaded, "lines with more words than the header says"), 1000u);
+  EXPECT_EQ(count_of(*loaded, "lines with more values than declared"), 1000u);
 }
 
 TEST_F(MeshPeers, faces_of_an_obj_that_name_absent_coordinates_are_said) {
@@ -107,10 +107,9 @@ TEST_F(MeshPeers, faces_of_an_obj_that_name_absent_coordinates_are_said) {
     const auto loaded = load({name});
     ASSERT_TRUE(loaded) << name << loaded.error().detail;
     EXPECT_EQ(loaded->mesh.triangle_count(), 12u) << name;
-    EXPECT_GT(
-        count_of(*loaded, "faces that name texture coordinates which the file does not have") +
-            count_of(*loaded, "faces that name normals which the file does not have"),
-        0u)
+    EXPECT_GT(count_of(*loaded, "faces that refer to texture coordinates missing from the file") +
+                  count_of(*loaded, "faces that refer to normals missing from the file"),
+              0u)
         << name;
   }
 }

@@ -241,7 +241,7 @@ TEST(MeshPly, words_that_a_line_has_more_than_the_header_says_are_passed_over_an
     ASSERT_TRUE(loaded) << loaded.error().detail;
     EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
     EXPECT_EQ(loaded->mesh.corner_uvs[4], glm::vec2(1, 1));
-    EXPECT_EQ(count_of(loaded->repairs, "lines with more words than the header says"), 5u);
+    EXPECT_EQ(count_of(loaded->repairs, "lines with more values than declared"), 5u);
   }
 }
 
@@ -252,7 +252,7 @@ TEST(MeshPly, lists_may_be_folded_and_all_may_stand_in_one_line) {
     const auto loaded = load_text(ascii(kSquare + kFace, data), "a.ply");
     ASSERT_TRUE(loaded) << data << loaded.error().detail;
     EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2}));
-    EXPECT_EQ(count_of(loaded->repairs, "lines with more words than the header says"), 0u);
+    EXPECT_EQ(count_of(loaded->repairs, "lines with more values than declared"), 0u);
   }
 }
 

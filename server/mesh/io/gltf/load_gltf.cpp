@@ -40,7 +40,7 @@ class GltfReader {
     note(loaded_.repairs, "ignored points and lines", remarks_.points_and_lines);
     note(loaded_.repairs, "ignored parts of meshes without positions", remarks_.without_positions);
     note(loaded_.repairs, "ignored skins and morph targets", ignored_motion_);
-    note(loaded_.repairs, "colours taken as normalised, which their accessors do not say",
+    note(loaded_.repairs, "integer colors without a normalized flag, read as normalized",
          remarks_.colors_taken_as_normalized);
     loaded_.unit = Unit::m;  // both values are defined by the specification
     loaded_.up = "y";
