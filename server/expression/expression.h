@@ -55,8 +55,8 @@ struct Expression {
     // The number at `index` of the values that are read from records (expression/record_parts), for
     // the key in the layer `name`.
     record_number,
-    // Of any type: `path` of the record whose key the layer `name` holds. Without a name, `path` of
-    // the filtered record.
+    // Of any type: the column `path` of the record whose key is in the layer `name`. Without a
+    // name, the column of the filtered record.
     column,
     // Texts. They also represent times (ISO 8601, EDTF).
     text,          // `text`

@@ -17,7 +17,7 @@
 namespace strata::room {
 
 // Receives the events of a room. Called on the strand of the room, in the same order for all
-// listeners. Must return quickly (post to a socket).
+// listeners. Must return quickly, so post the event to a socket.
 class Listener {
  public:
   virtual ~Listener() = default;

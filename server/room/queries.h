@@ -70,9 +70,9 @@ struct SeenLine {
 };
 using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
 
-// Questions to an open model. The first questions may take more time (search tree, surface map), so
-// call from a worker thread. Answers contain only values of the given layers. Returns an `invalid`
-// error at `at` for a sequence that is not durable yet. Thread-safe.
+// Questions to an open model. The first questions also build the search tree and the surface maps,
+// so call from a worker thread. Answers contain only values of the given layers. Returns an
+// `invalid` error at `at` for a sequence that is not durable yet. Thread-safe.
 class Queries {
  public:
   virtual ~Queries() = default;
@@ -101,8 +101,8 @@ class Queries {
                                                 const Selection& selection = {}) = 0;
   // Returns the amount of each class of the layer's legend (query::classes_of).
   virtual Result<query::Quantities> quantities(const std::string& layer, At at = {}) = 0;
-  // The same, with the borders of these classes (query::measure_perimeters, in model units) and the
-  // texels. All data is from the same state.
+  // Like `quantities`, with the borders of the classes (query::measure_perimeters, in model units)
+  // and the texels. All data is from the same state.
   virtual Result<LayerAreas> layer_areas(const std::string& layer, At at = {}) = 0;
   // Returns a layer with the positions of its texels in the selection. The result stays valid after
   // later edits.

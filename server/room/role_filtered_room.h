@@ -7,8 +7,8 @@
 
 namespace strata::room {
 
-// Returns the room as a user with this role sees it. All calls leave out hidden data: layers and
-// their readers, columns of records, frames and events. Returns the room itself if the role sees
+// Returns the room as a user with this role sees it. No call returns hidden data: layers, values
+// read from them, columns of records, frames and events. Returns the room itself if the role sees
 // everything.
 std::shared_ptr<Room> seen_as(std::shared_ptr<Room> room, Role role);
 

@@ -34,14 +34,14 @@ class Room;
 
 struct RoomOptions {
   std::chrono::seconds close_after{60};  // after the last user has left
-  // Maximum number of unanswered edits of a room. Further edits are refused (too_many_requests).
+  // Maximum of unanswered edits of a room. Further edits are refused with `too_many_requests`.
   std::size_t max_waiting_edits = 512;
   std::chrono::milliseconds retry_for{30'000};  // time to retry failed commits
   std::chrono::milliseconds drain_for{40'000};  // longer than the time to retry commits
   // The limit of main memory for open models: geometry, surface maps and layers. 0: 60 % of the
   // memory of the machine or container.
   std::uint64_t memory_bytes = 0;
-  // This server among the nodes of a site (store/nodes/nodes.h). Empty if it is alone.
+  // The id of this server as a node of a site (store/nodes/nodes.h). Empty if it is alone.
   std::optional<Uuid> node{};
   // Edits that take longer are logged with the times of their stages. 0: no limit.
   std::chrono::milliseconds slow_after{1000};
@@ -92,8 +92,8 @@ class Rooms {
   const EditTimings& edit_timings() const;
   const store::JournalWriter& journal() const;
   // Refuses new edits. Returns when every other edit is durable or refused. After `drain_for`,
-  // refuses the edits that are left. If the site has several nodes, each room is released as soon
-  // as its edits are durable, and its listeners are notified (Listener::moved).
+  // refuses the remaining edits. If the site has several nodes, each room is released as soon as
+  // its edits are durable, and its listeners are notified (Listener::moved).
   void drain();
 
  private:

@@ -22,8 +22,8 @@ struct MovingPicture {
 // and acknowledged. Two frames that were sent close together and acknowledged further apart give
 // the link's rate (a packet pair). The delay is the shortest recent time of a frame, without the
 // time for its bytes at that rate (as in TCP Vegas). A frame's wait is its time beyond the delay.
-// Waits longer than `kMaxWait` reduce quality and size of the frames. A reduction that hardly
-// shortens the waits is reverted, because then something else is slow. After a series of short
+// Waits longer than `kMaxWait` reduce the quality and size of frames. A reduction that hardly
+// shortens the waits is reverted, because the link is then not the cause. After a series of short
 // waits, frames improve again, step by step. If a better step was too slow, it is tried again after
 // longer and longer periods. If the delay is long and the waits are short, the link is idle between
 // two frames. Then three unacknowledged frames are allowed, until they wait for each other. Frames

@@ -32,11 +32,11 @@ struct StreamContext {
 // - After frames of a moving camera, a full-quality frame follows within 250 ms of the last input.
 // - Quality never decreases during painting.
 // - Viewers with the same frame share its drawing and its encoding.
-// - Over a slow link, frames of a moving camera have less quality and size
-// (stream/link_pace). - Users who only watch do not delay a user who moved the camera or
-// edited recently (render/thread/frame_queue). Thread-safe. Calls `send` on encoder
-// threads, in frame order, and `refused` on the GPU thread, but never both at the same
-// time.
+// - Over a slow link, frames of a moving camera have lower quality and size (stream/link_pace).
+// - Users who only watch do not delay a user who moved the camera or edited recently
+//   (render/thread/frame_queue).
+// Thread-safe. Calls `send` on encoder threads, in frame order, and `refused` on the GPU thread,
+// but never both at the same time.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {

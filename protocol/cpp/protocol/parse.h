@@ -31,8 +31,8 @@ Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
   return from_json<T>(json);
 }
 
-// Parses a text message of the WebSocket. Sets `ref`, if it is not null, to the `id` of the message
-// if the `id` is readable. This also applies to a refused message, so the `problem` can contain it.
+// Parses a text message of the WebSocket. If `ref` is not null, sets it to the message's `id` if
+// this is readable. A refused message also sets it, so the `problem` can contain the id.
 Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref = nullptr,
                                            const JsonLimits& limits = {});
 Result<ServerMessage> parse_server_message(std::string_view text,

@@ -17,8 +17,8 @@ struct JsonLimits {
 
 // Parses JSON text from outside the server. Accepts only valid UTF-8 without duplicate members,
 // without NUL in texts, with numbers in the range of double, and with nothing after the value.
-// The code is `too_large` for a long text, `malformed` for no JSON, otherwise `invalid`. Refuses a
-// list that exceeds its limit before its items are built, and does not read the rest.
+// Returns `too_large` if the text is too long, `malformed` if it is not JSON, else `invalid`.
+// Refuses a list beyond its limit before its items are built, and does not read the rest.
 Result<nlohmann::json> parse_json(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace strata::protocol

@@ -126,7 +126,7 @@ class Builder {
     return a != kNoTexel && b != kNoTexel && island_of_texel_[a] == island_of_texel_[b];
   }
 
-  // Returns the island's texel at a point, or the nearest texel of the island within kGutterRing.
+  // Returns the island's texel at a point, or its nearest texel at most kGutterRing texels away.
   std::uint32_t resolve(const glm::dvec2& point, std::uint32_t island) const {
     const int x = std::clamp(static_cast<int>(point.x), 0, map_.resolution - 1),
               y = std::clamp(static_cast<int>(point.y), 0, map_.resolution - 1);

@@ -32,13 +32,13 @@ struct BaseColor {
 // Pixels are lost if the textures together exceed the largest image or `memory` has too little
 // room. They are also lost if some textures are much denser than others. `repairs` then lists the
 // original and the kept size. The result is empty if the mesh has only one color, which is applied
-// to its vertices. It is also empty if the mesh has vertex colors that no texture hides. Textures
-// that cannot be decoded are noted in `repairs`, and their triangles are treated like triangles
-// without a texture. The bytes of the textures are removed from the mesh.
+// to its vertices. The result is also empty if the mesh has vertex colors that no texture hides.
+// Textures that cannot be decoded are noted in `repairs`, and their triangles are treated like
+// triangles without a texture. The bytes of the textures are removed from the mesh.
 //
 // The function needs about 6 bytes per texel of the image and 4 bytes per pixel of the largest
-// texture. They are reserved in `memory` (null: not counted). Fails when cancelled, and if `memory`
-// has no room for the smallest image. Can be called on any thread, and uses two threads.
+// texture. This memory is reserved in `memory` (null: not counted). Fails when cancelled, and if
+// `memory` has no room for the smallest image. Can be called on any thread, and uses two threads.
 Result<std::optional<BaseColor>> bake_base_color(TriangleMesh& mesh, const Atlas& atlas,
                                                  std::vector<Repair>& repairs, Progress& progress,
                                                  MemoryLedger* memory = nullptr);

@@ -34,7 +34,7 @@ class FrameJob {
     for (const auto& asker : task_.askers) asker.done(frame);
   }
   enum class Stage { prepare, layers, gbuffer, area, shade, mean, readback };
-  // The picture has buffers of its own: the view's frame stays as it is.
+  // The picture has its own buffers, so the view's frame stays unchanged.
   bool is_separate() const { return task_.request.samples > 1; }
   void release_view(GpuScene& scene, bool is_complete) const;
   Result<void> start_samples(GpuScene& scene, ModelHandle model);

@@ -41,10 +41,10 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b);
 //    rectangle for a viewer precedes the next whole frame of a user who rotates the model, and no
 //    request waits forever.
 // 4. If both wait, acting users and onlookers (`FrameRequest::acting`) get half of the time each,
-//    by the same rule. A hundred onlookers do not delay a user who paints, but still see the edits.
+// by rule 3. A hundred onlookers do not delay a user who paints, but still see the edits.
 // 5. Bands of large images (`FrameRequest::large`) wait for their turns like all other requests.
-// Only a few of them are in progress at a time. Between their drawing steps, smaller frames whose
-// turns come first can be drawn.
+//    Only a few of them are in progress at a time. Between their drawing steps, smaller frames
+//    whose turns come first can be drawn.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}

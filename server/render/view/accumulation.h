@@ -18,8 +18,8 @@ namespace strata::render {
 // moved so that its mean is 0.
 glm::dvec2 sample_offset(int index, int count);
 
-// The same for a frame with smooth edges. The first sample is the center of the pixel, and the
-// others surround it.
+// Like `sample_offset`, for a frame with smooth edges. The first sample is the center of the pixel,
+// and the others surround it.
 glm::dvec2 smooth_sample_offset(int index, int count);
 
 // Returns a camera that moves the scene in a frame of `width` × `height` pixels by `offset` pixels

@@ -16,7 +16,7 @@ struct DepthCopy {
   int width = 0, height = 0;
   std::vector<float> depth;
   // The change of depth within half a pixel: the sum, over both axes, of the smaller of two
-  // one-sided differences. shaders/edit_pass.comp computes the same from the texture.
+  // one-sided differences. shaders/edit_pass.comp computes the same values from the texture.
   std::vector<float> slope;
   std::vector<float> grid;  // largest depth of each cell of kDepthCell² pixels
 };

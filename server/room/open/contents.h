@@ -28,7 +28,7 @@ struct JournalContents {
 Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held);
 
-// The result has mirrors, but no handles.
+// The result has tile mirrors, but no handles of GPU layers.
 Result<LayerState> read_layer_state(store::Store& store, Layer layer);
 
 // Returns the mesh of the model and its coarser copies.

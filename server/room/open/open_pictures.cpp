@@ -117,7 +117,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& picture,
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
     add_styles(style, waiting, request.style.layers);
     if (!item.layer.table) continue;
-    // For the newest edit, the present records apply, including later changes to them.
+    // An image of the newest edit shows the present records, also if they have changed since then.
     const bool is_past = picture.at && *picture.at < room_.durable_;
     auto features = is_past ? room_.record_features_->when(*item.layer.table, sight, *picture.at)
                             : room_.record_features_->newest(*item.layer.table, sight);

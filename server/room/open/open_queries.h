@@ -65,7 +65,7 @@ class OpenRoom::QueriesPart final : public Queries {
   // Returns nullopt for the whole surface.
   Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
-  // The same, for each map.
+  // Like `texels_within`, for each map.
   Result<std::vector<std::optional<query::TexelSelection>>> select_texels(
       const Selection& selection, std::span<const mesh::SurfaceMap* const> maps);
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,

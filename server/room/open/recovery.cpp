@@ -1,8 +1,8 @@
 // Recovery of an open room. After a lost context, the room makes its copies on the GPU again. If
-// the journal contains more edits than the mirrors, the room reads the mirrors again. Both happen
-// while the pipeline is paused and no edit is in progress, so nothing else changes the layers. A
-// failed recovery is repeated until the room is closed. Waiting edits are refused after each
-// attempt.
+// the journal contains more edits than the mirrors, the room reads their content from it again.
+// Both happen while the pipeline is paused and no edit is in progress, so nothing else changes the
+// layers. A failed recovery is repeated until the room is closed. Waiting edits are refused after
+// each attempt.
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"

@@ -204,8 +204,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::deque<Pending> pending_;  // in the order of sequences
   // By layer: the tiles where the GPU may differ from the mirror.
   std::map<LayerId, std::set<TileAddress>> stale_;
-  // The same for texels that wait for review. The upload is repeated together with the next one of
-  // the layer, and does not delay edits.
+  // Like `stale_`, for texels that wait for review. The upload is repeated together with the next
+  // one of the layer, and does not delay edits.
   std::map<LayerId, std::set<TileAddress>> stale_marks_;
   boost::asio::steady_timer repair_timer_;
   bool repair_waits_ = false;  // waiting for the timer

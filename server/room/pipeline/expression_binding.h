@@ -38,11 +38,11 @@ Result<query::BoundExpression> bind_expression(
     Role seen_by, std::optional<std::int64_t> at, const std::string& field,
     const std::vector<query::LayerView>* candidates = {});
 
-// The same for a formula whose result is written into a layer with visibility `layer`. The formula
-// may read only data that every user of the layer can see, so the result reveals no hidden data.
-// `layers` are all layers of the model. The result contains the layers that the formula may read.
-// Also returns an `invalid` error at `field` for data that `author` can see but not every user of
-// the layer.
+// Like `bind_expression`, for a formula whose result is written into a layer with visibility
+// `layer`. The formula may read only data that every user of the layer can see, so the result
+// reveals no hidden data. `layers` are all layers of the model. The result contains the layers that
+// the formula may read. Also returns an `invalid` error at `field` for data that `author` can see
+// but not every user of the layer.
 struct BoundForLayer {
   query::BoundExpression expression;
   std::vector<query::LayerView> layers;

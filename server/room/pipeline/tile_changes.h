@@ -44,11 +44,11 @@ using WrittenValue = std::optional<std::uint32_t>;
 // Sets the value of every texel of the surface, or erases it.
 std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type,
                                         const mesh::SurfaceMap& map, WrittenValue value);
-// The same for the selected surface texels and their gutter texels.
+// Like `fill_everywhere`, for the selected surface texels and their gutter texels.
 std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type,
                                       const mesh::SurfaceMap& map, query::TexelSelection selection,
                                       WrittenValue value);
-// The same for the texels of the masks, which must belong to the surface or its gutter.
+// Like `fill_selected`, for the texels of the masks, which must belong to surface or gutter.
 std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
                                    const mesh::SurfaceMap& map,
                                    const std::map<TileAddress, TileMask>& masks,
