@@ -80,9 +80,9 @@ class Strata:
         return json.loads(self.request("POST", path, body, content_type))
 
     def all(self, path: str, name: str, page: int = 500) -> list:
-        """Returns a whole list, page by page: `name` is its member in the answers. The header
-        `Link` of each page has the address of the next page, so that no entry is missing or doubled
-        while others write."""
+        """Returns a whole list, page by page: `name` is the member of each response that contains a
+        part of the list. The header `Link` of each page has the address of the next page, so that
+        no entry is missing or doubled while others write."""
         found: list = []
         following: str | None = f"{path}{'&' if '?' in path else '?'}limit={page}"
         while following:
@@ -103,7 +103,8 @@ class Strata:
             time.sleep(every_s)
 
     def import_model(self, file: str | pathlib.Path, **query) -> dict:
-        """Imports a scan: `name`, `unit` (mm, cm, m), `project` and more, see POST /models."""
+        """Imports a scan. POST /models describes the arguments: `name`, `unit` (mm, cm or m),
+        `project` and others."""
         file = pathlib.Path(file)
         asked = urllib.parse.urlencode({"filename": file.name, **query})
         job = self.post(f"/models?{asked}", file.read_bytes())

@@ -73,7 +73,7 @@ std::map<TileAddress, TileData> painted(const mesh::SurfaceMap& map, const mesh:
   return best;
 }
 
-// Returns the stored size of the same texels with incompressible values.
+// Returns the stored size of a tile with the same valid texels and incompressible values.
 std::size_t stored_as_noise(TileData tile) {
   std::mt19937 random(1);
   for (int i = 0; i < kTexelsPerTile; ++i)

@@ -30,7 +30,7 @@ StrokeBatch dab(const EditScene& scene, glm::dvec2 center, double radius_px) {
   stroke.camera = scene.camera;
   stroke.path = {center};
   stroke.radius_px = radius_px;
-  stroke.fixed_depth_bias = kPaperDepthBias;  // both methods paint the same texels
+  stroke.fixed_depth_bias = kPaperDepthBias;  // so tiles and paper paint the same texels
   stroke.value_bits = kValue;
   return stroke;
 }
@@ -376,8 +376,8 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
       const auto per_side = static_cast<std::size_t>(map.blocks_per_side);
       const std::size_t x = map.block_of_slot[slot] % per_side * 8 + i % 8;
       const std::size_t y = map.block_of_slot[slot] / per_side * 8 + i / 8;
-      // Skip texels that the paper's raster does not cover: the paper treats them as padding,
-      // although a thin triangle may own them in Strata's tiles.
+      // Skip texels that the paper's raster does not cover, because the paper treats them as
+      // padding, although a thin triangle may own them in Strata's tiles.
       if (!coverage[y * side + x]) continue;
       const bool a = theirs[y * side + x] != 0, b = written[y * side + x] != 0;
       agreement.compared += a || b;

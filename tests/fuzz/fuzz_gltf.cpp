@@ -1,6 +1,6 @@
 #include "fuzz/mesh_invariants.h"
 
-// Fuzzes a GLB or glTF file. Its external buffer has the same bytes.
+// Fuzzes a GLB or glTF file. The input is also the content of the external buffer.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   strata::Progress progress;
   std::vector<strata::mesh::InputFiles::Entry> entries;

@@ -3,7 +3,7 @@
 #include "fuzz/mesh_invariants.h"
 #include "media/picture.h"
 
-// Fuzzes the materials of a fixed OBJ. The image files of the materials have the same bytes.
+// Fuzzes the materials of a fixed OBJ. The input is also the content of their image files.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static constexpr std::string_view kObj =
       "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0.2 0.3\nvt 1.5 2\nvt 3 0\nusemtl m\nf 1/1 2/2 3/3\nusemtl n o\nf "

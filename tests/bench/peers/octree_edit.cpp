@@ -45,8 +45,8 @@ class RayWalk {
     if (depth == tree_.depth()) return node;
     const Octree::Node& here = tree_.level(depth)[node];
     const glm::vec3 middle = 0.5f * (span.enter + span.leave);
-    // Selects the first child. On each axis it is in the upper half if the ray passes the middle
-    // before it enters the node.
+    // Selects the first child. On each axis the child is in the upper half if the ray passes the
+    // middle before it enters the node.
     const float entered = std::max({span.enter.x, span.enter.y, span.enter.z});
     std::uint32_t child = 0;
     for (int axis = 0; axis < 3; ++axis) child |= middle[axis] < entered ? 1u << axis : 0u;

@@ -1,5 +1,5 @@
-// The lease of a node: its rooms close when it is lost, also while the database hangs, and open
-// again when the node has joined again.
+// The lease of a node: the rooms of the node close when the lease is lost, also while the database
+// hangs. They open again when the node has joined again.
 #include "app/nodes/node_lease.h"
 
 #include <chrono>

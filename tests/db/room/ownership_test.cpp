@@ -146,7 +146,7 @@ TEST_F(TwoNodes, the_next_owner_has_every_saved_edit_and_the_former_one_saves_no
   EXPECT_EQ(saved.sequence, 5);
   EXPECT_TRUE(test::equal((*open_on_b)->queries().tiles(layer.slug, {})->tiles, saved.tiles));
 
-  // A does not know yet that it is deposed.
+  // Node A has not detected yet that it is deposed.
   const auto edit = stroke(layer, 77, {{320, 240}}, 20);
   const auto refused = send(edit);
   ASSERT_FALSE(refused);
@@ -170,7 +170,7 @@ TEST_F(TwoNodes, the_next_owner_has_every_saved_edit_and_the_former_one_saves_no
 TEST_F(TwoNodes, a_commit_under_way_is_refused_after_another_claim) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
-  // The commit waits for this lock, and finds the newer epoch after it.
+  // The commit waits for this lock, and then finds the newer epoch.
   auto holder = store::PgConnection::connect(dsn_);
   ASSERT_TRUE(holder);
   ASSERT_TRUE(

@@ -185,7 +185,7 @@ TEST(Groups, it_is_told_who_could_do_less_without_one) {
   Groups& groups = store->groups();
   const auto villa = project(*store, "Villa"), forum = project(*store, "Forum");
   // Of these users, only those without another role lose access. Users keep access if they have a
-  // role on the whole server, in another group or of their own.
+  // role for the whole server, a role through another group, or their own role.
   session_of(*store, "Only", Role::guest);
   session_of(*store, "Viewer", Role::viewer);
   session_of(*store, "Other", Role::guest);

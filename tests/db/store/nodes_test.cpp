@@ -193,7 +193,7 @@ TEST_F(OwnershipOfModels, a_deposed_server_cannot_commit) {
   EXPECT_EQ(next.error().problem.location, b_.url);
   EXPECT_FALSE(next.error().transient);
 
-  // The new owner has the same sequence, so the insert fails as well.
+  // The new owner has already saved this sequence, so the insert fails as well.
   ASSERT_TRUE(commit(painter_.entry(2), second));
   const auto same = commit(painter_.entry(2), first);
   ASSERT_FALSE(same);
@@ -322,7 +322,7 @@ TEST_F(OwnershipOfModels, no_two_nodes_ever_commit_in_one_epoch) {
         break;
       }
       default: {
-        // The node does not know whether it is deposed, or whether its lease is over.
+        // The node cannot detect whether it is deposed, or whether its lease is over.
         const auto held = member.held.find(which);
         if (held == member.held.end()) break;
         test::Painter painter(model.layer, 1);

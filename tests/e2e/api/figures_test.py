@@ -732,7 +732,7 @@ def test_states_and_jobs(server, story):
         assert server.request("GET", job + "/file", token=who).status == 404
     assert server.request("DELETE", job, token=viewer).status == 409
 
-    # only the user who started a long figure can cancel it, and it leaves no file
+    # only the user who started a long figure can cancel it, and a canceled figure leaves no file
     long = {**wish, "dpi": 600, "paper": "a3", "format": "tiff", "scale": 0.3}
     for who, ends in ((viewer, viewer), (other, True)):
         started = server.request("POST", F, long, headers={"Prefer": "respond-async"}, token=who)
@@ -774,7 +774,8 @@ def test_states_and_jobs(server, story):
         == answers[0].body
     )
 
-    # figures for users who cannot see private content contain no color, legend or label of it
+    # figures for users who cannot see private content contain no color, legend or label of that
+    # content
     server.ok("PATCH", M + "/layers/units", {"visibility": "private"})
     svg = figure(server, token=viewer, format="svg", dpi=60).body
     assert b">Units<" not in svg and b">Marks<" in svg

@@ -132,8 +132,8 @@ def test_scripts(server, guest, villa):
 
 
 def test_both(server, villa, forum):
-    """A user who can view all projects has more rights in a project with a role, and the same
-    rights elsewhere."""
+    """A user who can view all projects has more rights in a project in which the user has a role,
+    and the usual rights in other projects."""
     vera = Someone(server, "Vera", "viewer")
     vera.now("villa", "curator")
     vera.ok("PATCH", "/models/" + villa["model"]["slug"], {"credit": "Vera"})

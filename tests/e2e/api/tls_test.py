@@ -178,7 +178,7 @@ def test_https_from_files(folder):
             assert link.version() == "TLSv1.2"
 
         # The server redirects requests to http://. Connections that send random bytes, or nothing,
-        # have no effect on it.
+        # have no effect on the server.
         with socket.create_connection((server.host, server.port)) as plain:
             plain.sendall(
                 f"GET /pot?x=1 HTTP/1.1\r\nHost: {server.host}:{server.port}\r\n\r\n".encode()

@@ -342,7 +342,7 @@ def test_a_node_that_is_stopped_passes_its_models_on(site, model):
 
 
 def test_one_of_two_nodes_takes_over():
-    """With three nodes, the two that are left agree on the owner."""
+    """After one of three nodes has ended, the other two agree on the owner."""
     with Site(3, seed=2) as three:
         made = three.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
         three.ok("POST", f"/models/{made['id']}/layers", {"name": "marks", "type": "u8"})

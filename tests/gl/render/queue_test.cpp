@@ -175,8 +175,8 @@ TEST_F(FrameTurns, bands_of_large_pictures_take_turns_with_live_views_and_leave_
   EXPECT_EQ(draw(queue), 4u);
   queue.finished(*first, 50);
   queue.finished(*second, 50);
-  // Large frames of three views and constant requests of a fourth view: each view gets the same
-  // time.
+  // Large frames of three views and constant requests of a fourth view: each view gets an equal
+  // share of the time.
   std::map<ViewHandle, int> drawn;
   push(queue, large(whole(1)));
   push(queue, large(whole(2)));

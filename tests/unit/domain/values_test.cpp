@@ -151,7 +151,7 @@ TEST(Camera, the_ray_through_a_pixel_hits_what_projects_there) {
     const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(point, 1);
     EXPECT_NEAR((clip.x / clip.w * 0.5 + 0.5) * 800, 300.5, 1e-4);
     EXPECT_NEAR((0.5 - clip.y / clip.w * 0.5) * 600, 200.5, 1e-4);
-    // In floats relative to the model's origin, the same point has the same pixel.
+    // In floats relative to the model's origin, the point has the same pixel as in doubles.
     const glm::vec4 near_origin =
         clip_from_model(camera, target) * glm::vec4(glm::vec3(point - target), 1);
     EXPECT_NEAR((near_origin.x / near_origin.w * 0.5 + 0.5) * 800, 300.5, 1e-2);

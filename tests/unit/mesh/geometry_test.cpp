@@ -198,7 +198,7 @@ TEST(MeshGeometry, damaged_bytes_are_refused) {
       auto bad = good;
       bad[i] ^= static_cast<std::uint8_t>(1 << bit);
       const auto decoded = decode_geometry(bad);
-      // A flipped bit may be unused. Then the decoded result must be the same.
+      // A flipped bit may be unused. Then the result must be the same as without the flip.
       if (decoded) expect_equal(*decoded, *decode_geometry(good));
     }
   }

@@ -10,8 +10,8 @@
 namespace strata::query {
 namespace {
 
-// Returns four vertices at the corners of the unit square of texture coordinates, with the same
-// scan color. Vertex 4 has the position of vertex 3.
+// Returns four vertices at the corners of the unit square of texture coordinates, all with one scan
+// color. Vertex 4 has the position of vertex 3.
 std::shared_ptr<const mesh::Geometry> square() {
   auto geometry = std::make_shared<mesh::Geometry>();
   for (int i = 0; i < 5; ++i) {

@@ -87,7 +87,9 @@ export const kRoles: readonly wire.Role[] = [
 /** The roles in a project, the lowest first. */
 export const kProjectRoles: readonly wire.ProjectRole[] = ["viewer", "annotator", "curator"];
 
-/** Whether the role may download a model's scan and other files with the same quality. */
+/**
+ * Whether the role may download a model's scan and other files with the full quality of the scan.
+ */
 export const mayDownload = (
   role: wire.Role,
   { source_download: sourceDownload }: Pick<wire.Model, "source_download">,

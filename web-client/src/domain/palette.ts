@@ -171,7 +171,7 @@ export function samePalette(a: Palette, b: Palette): boolean {
   );
 }
 
-/** Returns the palette with the same colors and another range. */
+/** Returns a copy of the palette with another range of values. */
 export function withRange(palette: Palette, min: number, max: number): Palette {
   const span = palette.max - palette.min || 1;
   const points = palette.points.map((point) => ({

@@ -412,7 +412,7 @@ export class KioskSession {
     }
   }
 
-  /** Shows the same stop with the current model and tour. */
+  /** Shows the current stop again, with the newest version of the model and the tour. */
   private showAgain(): void {
     const { stop, show, choice } = this;
     if (!stop || !show) return void this.changed();

@@ -1,4 +1,4 @@
-// The same tour on a visitor's phone: the address in the screen's QR code, and the data that the
+// The kiosk's tour on a visitor's phone: the address in the screen's QR code, and the data that the
 // phone reads from it.
 
 import { svg, type TemplateResult } from "lit";

@@ -1,4 +1,5 @@
-// Follows another camera: computes the position from which this window shows the same content.
+// Follows another camera: computes the position from which this window shows the content of the
+// other camera's window.
 
 import {
   boundingRadius,

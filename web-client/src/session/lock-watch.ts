@@ -48,8 +48,8 @@ export class LockWatch {
   }
 
   /**
-   * Shows the same notice if the server refused a stroke because the layer is locked. Returns
-   * whether it did.
+   * Shows the notice about the lock if the server refused a stroke for this reason. Returns whether
+   * it showed the notice.
    */
   explains({ status, field }: Pick<ProblemMessage, "status" | "field">): boolean {
     const selected = this._host.selected();

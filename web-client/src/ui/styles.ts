@@ -498,8 +498,8 @@ export const chipStyles = css`
 `;
 
 /**
- * A dialog that uploads files. It shows their content, the numbers of their placement, and the
- * progress.
+ * A dialog that uploads files. It shows the content of the files, the numbers that define their
+ * position, and the progress.
  */
 export const filesStyles = css`
   .part {

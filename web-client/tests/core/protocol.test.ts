@@ -1,4 +1,4 @@
-// The server's tests read the same fixtures (tests/unit/protocol_messages_test.cpp). Both must
+// The server's tests read the same fixtures (tests/unit/protocol/messages_test.cpp). Both must
 // agree.
 import Ajv from "ajv";
 import { readdirSync, readFileSync } from "node:fs";

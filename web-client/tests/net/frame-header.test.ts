@@ -1,4 +1,4 @@
-// The server's tests read the same reference vectors (tests/unit/protocol_frame_header_test.cpp).
+// The server's tests read the same reference vectors (tests/unit/protocol/frame_header_test.cpp).
 import { describe, expect, it } from "vitest";
 
 import golden from "../../../protocol/golden/frame_headers.json";

@@ -1,5 +1,5 @@
-"""Analysts read with SQL: areas that agree with the statistics after every edit, tables under their
-own names, and no other data."""
+"""Data that analysts read with SQL: areas that agree with the statistics after every edit, tables
+under their own names, and no other data."""
 import csv
 import io
 import os

@@ -341,8 +341,8 @@ def test_delete_painted(server):
 
 
 def test_delete_under_a_stroke(server, cameras):
-    """A stroke that began with a record does not paint it after its deletion. The stroke continues
-    after the record is restored."""
+    """If the record that a stroke paints is deleted, the rest of the stroke does not paint the
+    record. The stroke continues after the record is restored."""
     camera = cameras["north"]
     server.ok("POST", T + "/records", {"key": 500, "values": {"code": "SU 500"}})
     with LiveClient(server, "north") as live:

@@ -129,7 +129,8 @@ def test_import_again(server):
         dry = server.ok("POST", LIST + "/terms?dry_run=true", text.encode(), headers=CSV).json()
         assert dry["problems"] == problems and dry["dry_run"]
     assert len(tree(server)) == 6
-    # the server lists and reports a cycle that was made by hand, and does not hide its terms
+    # the server lists and reports a cycle that was made by hand, and does not hide the terms of the
+    # cycle
     server.ok("PATCH", LIST + "/records/1", {"values": {"parent": 2}})
     assert server.ok("GET", LIST + "/columns/parent/cycles").json()["cycles"] == [[1, 2]]
     assert len(tree(server)) == 6

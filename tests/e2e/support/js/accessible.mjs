@@ -125,7 +125,7 @@ export async function walk(page) {
     `window.reached = new Set();
      window.unseen = [];
      document.activeElement?.blur();
-     // A dialog that is not modal does not keep the focus: the walk begins in it.
+     // A dialog that is not modal does not keep the focus, so the walk begins in the dialog.
      deep_all().findLast((each) => each.matches("dialog[open]:not(:modal)"))?.focus();`,
   );
   const count = await evaluate(

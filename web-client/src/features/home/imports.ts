@@ -79,7 +79,7 @@ function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
  */
 export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   const meshes = files.filter(({ path }) => kScans.test(path));
-  // without a mesh, each file becomes a scan, and the server refuses it with its name
+  // without a mesh, each file becomes a scan, so the refusal by the server names each file
   if (meshes.length === 0)
     return files.map((file): Scan => ({ files: [file], name: nameOfFile(file.file.name) }));
   const companions = files.filter(({ path }) => kCompanions.test(path));

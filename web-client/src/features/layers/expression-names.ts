@@ -89,7 +89,7 @@ export function nameGroups({ layers, table, computes }: NamesOf): NameGroup[] {
   for (const layer of layers) {
     const slug = nameInText(layer.slug);
     const classes = classesOf(layer);
-    // a layer with only one class has it wherever it is painted
+    // in a layer with only one class, each painted texel has that class
     if (classes.length > 1)
       groups.push({
         title: words.groups.classes(labelOf(layer)),

@@ -101,7 +101,10 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
   return recipe;
 }
 
-/** Returns the models that this one can be compared with. Those of the same project are first. */
+/**
+ * Returns the models that this one can be compared with. The models of this model's project are
+ * first.
+ */
 export function otherModels(all: readonly Model[], model: Model): Model[] {
   const others = all.filter((other) => other.id !== model.id);
   return [

@@ -212,7 +212,10 @@ export class Measuring {
     this.followPointer();
   }
 
-  /** Chooses between the line as seen from here and the nearest points to its straight legs. */
+  /**
+   * Chooses between the line as the current camera sees it and the nearest points to its straight
+   * legs.
+   */
   chooseWay(way: Way): void {
     this._way = way;
     void this.learn(this.cameraNow());
@@ -384,7 +387,7 @@ export class Measuring {
     };
   }
 
-  /** Requests the same line with the values of the plotted layer. */
+  /** Requests the profile of the same points again, with the values of the plotted layer. */
   private async askValues(profile: MeasuredProfile): Promise<void> {
     const { layer } = this;
     const model = this._host.model();

@@ -1,5 +1,5 @@
 // <strata-delete-record-dialog>: deletes a record. If its key is painted, the dialog asks for the
-// new content of these texels.
+// new content of the texels with this key.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";

@@ -134,7 +134,7 @@ export class CellEditor implements ReactiveController {
       }`;
   }
 
-  /** Whether another user is editing the same record. */
+  /** Whether another user is editing the record of the edited cell. */
   private get isTaken(): boolean {
     return this._claim !== null && this._claim.other !== null;
   }
