@@ -20,7 +20,7 @@ namespace {
 constexpr double kMaxCells = 250'000;
 constexpr std::size_t kMaxPlaces = 32;  // tested points per line
 constexpr double kOpaque = 0.99;
-// Limits the slope, so steep surfaces also hide points behind them.
+// The distance counts with at least this factor, so steep surfaces also hide points behind them.
 constexpr double kMinCosine = 1.0 / 12;
 // The depth below the surface at which lines and points are still drawn in the image.
 constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;

@@ -37,8 +37,8 @@ class QuestionEnded : public std::exception {
   const Error problem_;
 };
 
-// A request whose answer the server is computing, with its user, its remaining limits, and whether
-// the answer is still needed. Long loops over texels check the question at every tile with
+// A query: a request whose answer the server is computing, with its user, its remaining limits, and
+// whether the answer is still needed. Long loops over texels check the question at every tile with
 // `QuestionTurn` or `mesh::parallel_for`. They stop when it has ended, and wait while questions of
 // other users are using the processors. Thread-safe, except Scope and QuestionTurn (one thread).
 class Question : public std::enable_shared_from_this<Question> {

@@ -69,7 +69,7 @@ void write_requests(MetricsWriter& out, const Metrics& metrics, const Gauges& ga
               "{" + metric_label("status", std::to_string(i) + "xx") + "}",
               metrics.requests[i].load());
   out.head("strata_http_request_seconds", "histogram",
-           "Time until the answer to a request is ready, without the transfer of its body.");
+           "Time until the response to a request is ready, without the transfer of its body.");
   out.histogram("strata_http_request_seconds", {}, metrics.request_times);
   out.head("strata_problems_total", "counter", "Problems that were sent to clients, by code.");
   for (std::size_t i = 0; i < metrics.problems.size(); ++i)
@@ -79,15 +79,15 @@ void write_requests(MetricsWriter& out, const Metrics& metrics, const Gauges& ga
   out.gauge("strata_open_connections", "TCP connections.", metrics.open_connections.load());
   out.gauge("strata_open_sockets", "WebSocket connections.", metrics.open_sockets.load());
   out.gauge("strata_waiting_requests", "Requests that wait for a worker.", gauges.waiting_requests);
-  out.gauge("strata_waiting_questions", "Questions that wait to be answered.",
+  out.gauge("strata_waiting_questions", "Queries that wait for their turn.",
             gauges.waiting_questions);
-  out.gauge("strata_questions_under_way", "Questions that are being answered.",
+  out.gauge("strata_questions_under_way", "Queries in progress.",
             gauges.questions_under_way);
   out.counter("strata_questions_left_total",
-              "Questions whose client disconnected before the answer.",
+              "Queries whose client disconnected before the response.",
               metrics.questions_left.load());
   out.counter("strata_question_steps_total",
-              "Steps of questions: texels times the parts of a condition.", gauges.question_steps);
+              "Steps of queries: texels times the parts of a condition.", gauges.question_steps);
   out.counter("strata_messages_received_total", "WebSocket messages received.",
               metrics.messages_received.load());
   out.counter("strata_messages_refused_total", "WebSocket messages refused.",
@@ -98,7 +98,7 @@ void write_edits(MetricsWriter& out, const Metrics& metrics, const Gauges& gauge
   out.counter("strata_edits_applied_total", "Edits that became visible.",
               metrics.edits.applied.load());
   out.counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits.saved.load());
-  out.counter("strata_edits_unsaved_total", "Edits that were visible and had to be taken back.",
+  out.counter("strata_edits_unsaved_total", "Edits that were visible but could not be saved.",
               metrics.edits.unsaved.load());
   out.counter("strata_edits_refused_total", "Edits that were refused.",
               metrics.edits.refused.load());
@@ -121,11 +121,11 @@ void write_edits(MetricsWriter& out, const Metrics& metrics, const Gauges& gauge
 }
 
 void write_drawing(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges) {
-  out.counter("strata_frames_sent_total", "Encoded pictures sent to viewers.",
+  out.counter("strata_frames_sent_total", "Encoded frames sent to clients.",
               metrics.frames_sent.load());
-  out.counter("strata_frame_bytes_sent_total", "Bytes of the pictures.",
+  out.counter("strata_frame_bytes_sent_total", "Bytes of the encoded frames.",
               metrics.frame_bytes_sent.load());
-  out.head("strata_frame_seconds", "histogram", "Time of the GPU thread for a picture.");
+  out.head("strata_frame_seconds", "histogram", "Time of the GPU thread for a frame.");
   out.histogram("strata_frame_seconds", {}, gauges.frames);
   out.gauge("strata_gpu_ready", "1 if the graphics context works, otherwise 0.", gauges.gpu_ready);
   out.gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
