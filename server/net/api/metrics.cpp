@@ -81,8 +81,7 @@ void write_requests(MetricsWriter& out, const Metrics& metrics, const Gauges& ga
   out.gauge("strata_waiting_requests", "Requests that wait for a worker.", gauges.waiting_requests);
   out.gauge("strata_waiting_questions", "Queries that wait for their turn.",
             gauges.waiting_questions);
-  out.gauge("strata_questions_under_way", "Queries in progress.",
-            gauges.questions_under_way);
+  out.gauge("strata_questions_under_way", "Queries in progress.", gauges.questions_under_way);
   out.counter("strata_questions_left_total",
               "Queries whose client disconnected before the response.",
               metrics.questions_left.load());
