@@ -1,6 +1,6 @@
 // Measures the processor time of frames of a moving camera, drawn with the shaders of two or more
 // folders. The folders take turns frame by frame, so other programs affect all of them equally.
-// Also measures whether the refinement of one view delays the pixels of a change in another.
+// Also measures whether the refinement of one view delays the pixels of a change in another view.
 #include <cmath>
 #include <ctime>
 #include <iostream>

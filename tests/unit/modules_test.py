@@ -52,7 +52,7 @@ def drawn() -> set[tuple[str, str]]:
 
 
 def circle(graph: Graph) -> list[str]:
-    """Returns a cycle of the graph; empty if there is none."""
+    """Returns a cycle of the graph, or an empty list if the graph has no cycle."""
     done: set[str] = set()
 
     def walk(node: str, path: list[str]) -> list[str]:

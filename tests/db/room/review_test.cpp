@@ -133,7 +133,7 @@ TEST_F(Reviews, rejecting_takes_the_paint_out_below_what_others_painted) {
   EXPECT_TRUE(test::equal(tiles(), before));
   EXPECT_EQ(texels_waiting(), 0u);
 
-  // After a decision is reopened, the edits wait again.
+  // After a decision is reopened, the edits wait for review again.
   ASSERT_TRUE(send(review(Decision::reopen, {{2}, {}})));
   ASSERT_TRUE(send(review(Decision::reopen, {{3}, {}})));
   EXPECT_TRUE(test::equal(tiles(), both));

@@ -177,7 +177,7 @@ TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
             ErrorCode::not_found);
   for (const auto& secret : {session, weak, strong})
     EXPECT_FALSE(store->tokens().find(secret).value());
-  // Users can change their own account at the same time. That change does not revert the first one.
+  // Users may change their own account too. This does not revert an administrator's change.
   EXPECT_TRUE(store->accounts().update(ada.id, {"Ada L.", {}, {}}).value().disabled);
   ASSERT_TRUE(store->accounts().update(ada.id, {{}, {}, false}));
   for (const auto& ended : {session, invitation}) EXPECT_FALSE(store->tokens().find(ended).value());

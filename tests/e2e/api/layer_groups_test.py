@@ -1,5 +1,5 @@
-"""Groups of layers: created, changed, removed, sent to open pages, and set by templates. Also the
-blending mode of layers."""
+"""Groups of layers: created, changed, removed, sent to open pages, and set by templates. The file
+also tests the blending mode of layers."""
 import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient

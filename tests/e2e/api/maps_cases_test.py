@@ -1,5 +1,5 @@
 """Flat maps that are painted into a layer: shapefiles, GeoTIFF, and scanned maps by their colors.
-Also refusals, undo and a restart."""
+The file also tests refusals, undo and a restart."""
 import json
 import os
 import urllib.parse

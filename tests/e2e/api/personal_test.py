@@ -1,6 +1,6 @@
 """The data of one user, over HTTP and live: the user's own view of a model's layers, the name and
-the color. Also computed layers, which are locked until a curator unlocks them for edits by hand.
-"""
+the color. The file also tests computed layers, which are locked until a curator unlocks them for
+edits by hand."""
 import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient

@@ -1,6 +1,6 @@
 // Elements do not overlap or touch: long names of layers, numbers with their units, the filter next
 // to a selected record, the switch of the light. On a phone the active layer and undo stay visible.
-// The visible text of a control is its name. All of the page is in landmarks.
+// The visible text of a control is its name. All content of the page is inside ARIA landmarks.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";

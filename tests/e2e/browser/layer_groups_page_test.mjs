@@ -1,6 +1,6 @@
 // Long lists of layers: groups that a curator makes in the layer's dialog and by dragging, and that
-// other pages receive immediately. Also folding, showing and hiding a whole group, search, and
-// filter.
+// other pages receive immediately. The tests also fold, show and hide a whole group, and use the
+// search and the filter.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";

@@ -1,5 +1,6 @@
-// The number of bytes that a browser loads before it first shows a page. They are counted with
-// gzip, which is larger than Brotli, because browsers accept only gzip over plain HTTP.
+// The number of bytes that a browser loads before it first shows a page. The test counts the bytes
+// of the gzip files, although those of Brotli are smaller, because browsers accept only gzip over
+// plain HTTP.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";

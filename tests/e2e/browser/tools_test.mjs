@@ -1,5 +1,6 @@
 // Brush shapes on the page: made from a picture by file and by drop, selected by mouse and by keys,
-// used for painting, renamed, and deleted by another user. Also the limit of the slant.
+// used for painting, renamed, and deleted by another user. The tests also cover the largest angle
+// of the surfaces that a brush paints.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";

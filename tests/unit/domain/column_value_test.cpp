@@ -1,5 +1,5 @@
-// The values that a column of a table accepts: values of each kind, in JSON and as text. Also
-// columns with contradictory settings.
+// The values that a column of a table accepts: values of each kind, in JSON and as text. The file
+// also tests columns with contradictory settings.
 #include <gtest/gtest.h>
 
 #include "domain/tables/column_value.h"

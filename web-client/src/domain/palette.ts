@@ -128,7 +128,8 @@ export function purposeOf(layer: Pick<Layer, "kind" | "palette">): LayerPurpose 
   return layer.palette.points.length === 1 ? "presence" : "classes";
 }
 
-// The colors of Okabe and Ito and two others. Users with color blindness can distinguish them.
+// The colors of Okabe and Ito, and two more colors. Users with color blindness can distinguish
+// them.
 export const kClassColors = [
   "#e69f00ff",
   "#56b4e9ff",

@@ -1,6 +1,6 @@
 """Files of records over HTTP: upload and download of photos and documents, thumbnails, ranges, undo
-and earlier states. Also a gigabyte with little memory, a full disk, and a folder of photos that is
-matched to records."""
+and earlier states. The file also tests a gigabyte with little memory, a full disk, and a folder of
+photos that is matched to records."""
 import hashlib
 import http.client
 import os

@@ -1,6 +1,6 @@
 """Lists of terms over HTTP: import and export as CSV and SKOS, search in the tree, painting in the
-terms' colors, and refusals of hostile files. Also templates, which make tables and layers together.
-"""
+terms' colors, and refusals of hostile files. The file also tests templates, which make tables and
+layers together."""
 import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient

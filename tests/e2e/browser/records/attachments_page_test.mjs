@@ -1,6 +1,6 @@
 // Pictures and documents of records on the page: added in the form, visible in the table and on the
-// card of the surface, removed, and restored by undo. Also a folder of photos whose names match
-// records.
+// card of the surface, removed, and restored by undo. The tests also add a folder of photos whose
+// names match records.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";

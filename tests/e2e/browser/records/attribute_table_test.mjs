@@ -1,6 +1,6 @@
 // The table of a layer's records with ten thousand rows: sorted, edited, refused, changed by two
-// users at the same time, and undone. Also new and deleted records, columns, and CSV import and
-// export. The test compares the page with the server's data.
+// users at the same time, and undone. The tests also cover new and deleted records, columns, and
+// CSV import and export. The test compares the page with the server's data.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../../support/js/browser.mjs";

@@ -1,6 +1,6 @@
 // The table of records together with the other tools: the page's keys while the table has the
-// keyboard focus, a filter for each column, and files. Also areas and cross-tables as copies and
-// files.
+// keyboard focus, a filter for each column, and files. The tests also copy areas and cross-tables,
+// and save them as files.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";

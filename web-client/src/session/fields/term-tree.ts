@@ -1,6 +1,6 @@
 // The terms of a list in the user's language. They are loaded at the first use, and again when the
 // list changes. Of very large lists, only the first terms are loaded. The server can search the
-// others.
+// other terms.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
