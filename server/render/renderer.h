@@ -40,7 +40,7 @@ enum class EditPath { automatic, compute, kernel };
 
 struct RendererOptions {
   std::string shader_dir;              // path of the folder `shaders`
-  std::uint64_t gpu_memory_bytes = 0;  // budget; 0: 70 % of the reported memory, else 4 GiB
+  std::uint64_t gpu_memory_bytes = 0;  // 0: 70 % of the memory if the driver reports it, else 4 GiB
   bool debug = false;                  // KHR_debug context that counts errors (`debug_errors`)
   std::size_t queue_capacity = 4096;
   EditPath edit_path = EditPath::automatic;
@@ -130,9 +130,9 @@ struct FrameRequest {
   // share one, and any of these views may draw it.
   ModelHandle model = 0;
   Camera camera;
-  // The camera is moving: a coarser copy of the model may be drawn to save time.
+  // The camera is moving, so a coarser copy of the model may be drawn to save time.
   bool moving = false;
-  // A band of a large image. Smaller frames are drawn before it, and also between its steps.
+  // A band of a large image. Smaller frames with earlier turns can be drawn between its steps.
   bool large = false;
   // The user paints or moves the camera. Frames of other users do not delay this frame.
   bool acting = false;

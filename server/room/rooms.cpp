@@ -141,8 +141,8 @@ struct Rooms::Impl {
     return moved_to(other && *other ? (*other)->url : std::string());
   }
 
-  // Closes rooms that were empty for a while. Returns the memory of participants who left to the
-  // system: each view takes about 15 MB, in small pieces if the CPU draws.
+  // Closes rooms that were empty for a while. Gives the system the memory of participants who have
+  // left: each view takes about 15 MB, in small pieces if the CPU draws.
   void sweep() {
     std::size_t departed = 0;  // since memory was last returned
     bool due = false;  // return memory in the next round, when the renderer has released the views
@@ -413,7 +413,7 @@ void Rooms::drain() {
   const auto deadline = std::chrono::steady_clock::now() + impl_->services.options.drain_for;
   if (impl_->services.options.node) {
     const Error why = impl_->moved_elsewhere();
-    // Passes on each room as soon as it can, because its users wait.
+    // Passes on each room as soon as possible, because the users of the room wait.
     while (!rooms.empty() && std::chrono::steady_clock::now() < deadline) {
       const auto ready = std::ranges::stable_partition(
           rooms, [](const auto& room) { return !room->has_no_edits(); });

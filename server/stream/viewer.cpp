@@ -256,7 +256,7 @@ void Viewer::wait_for_rest() {
     std::lock_guard lock(impl_->mutex);
     if (impl_->rest_timer_runs || impl_->closed || !impl_->flow.wants_rest_timer()) return;
     if (waits_until(impl_->rests_at, &Impl::rest_timer_runs, &Viewer::wait_for_rest)) return;
-    // Over a slow link, the next camera would wait for the refined frame.
+    // Over a slow link, the frame of the next camera would wait for the refined frame.
     if (impl_->link.has_room()) impl_->flow.on_rest();
   }
   step();

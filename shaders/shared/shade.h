@@ -20,7 +20,7 @@ const uint kBarePatterns = 2u;  // hatch and dots have neither tint nor border
 // Sizes of patterns, in pixels of the camera's window. In a figure such a pixel is a hundredth of
 // an inch on paper.
 const float kPatternPixels = 7.0;         // between lines or dots if the palette sets no spacing
-const float kPatternClosestPixels = 6.0;  // of closer lines or dots, every 2nd, 4th … is drawn
+const float kPatternClosestPixels = 6.0;  // of closer lines or dots, only every 2nd, 4th … is drawn
 const float kPatternGround = 0.3;         // opacity between lines or dots
 const float kHatchShare = 0.4;            // the line's share of the spacing
 const float kDotRadius = 0.32;            // as a share of the spacing

@@ -33,8 +33,8 @@ struct FrameHeader {
   bool operator==(const FrameHeader&) const = default;
 };
 
-// Returns the first bytes of the message. Asserts that the header obeys the rules because the
-// server has created it.
+// Returns the first bytes of the message. The server creates the header, so a violated rule is a
+// programming error (assert).
 std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeader& header);
 
 // Returns the header of a whole message. The payload begins at kFrameHeaderBytes. Refuses a message

@@ -52,8 +52,8 @@ class NamePattern {
   std::vector<Span> spans(std::string_view name, std::string_view word) const;
   std::map<std::string, std::string> words_around(std::string_view name, std::string_view word,
                                                   Span span) const;
-  // Returns a table by part (and the end) and by position in the name. An entry is true if the
-  // parts from there to `last` match the rest of the name.
+  // Returns a table with a row for each part and the end, and a column for each position in the
+  // name. An entry is true if the parts from there to `last` match the rest of the name.
   std::vector<std::vector<bool>> fits(std::string_view name, std::size_t first,
                                       std::size_t last) const;
   // Returns where the parts before `last` can end if they match from the beginning of the name.

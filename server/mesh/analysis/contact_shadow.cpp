@@ -15,8 +15,8 @@ constexpr int kMargin = 20;  // texels around the model, for the soft border
 constexpr int kModel = kSize - 2 * kMargin;
 constexpr int kFade = 4;  // texels at the border of the map over which the shadow fades out
 
-// The sum of three shadows: of the foot, of the parts just above the floor, and of the whole model.
-// Heights are shares of the model's extent on the floor.
+// The sum of three shadows: of the parts on the floor, of the parts just above it, and of the
+// model. Heights are shares of the model's extent on the floor.
 struct Part {
   double height;  // parts of the model above this height have no effect
   double spread;  // standard deviation of the blur, in texels

@@ -116,7 +116,7 @@ std::optional<double> roughness_at(const SurfaceSamples& samples, const glm::vec
                yz = products[4] / area - mean.y * mean.z, zz = products[5] / area - mean.z * mean.z;
   // The direction of least variance. The smallest root of the characteristic polynomial has a
   // closed form. The direction is then the longest cross product of two rows of the matrix minus
-  // this root.
+  // root · identity.
   const double third = (xx + yy + zz) / 3;
   const double off = xy * xy + xz * xz + yz * yz;
   const double dx = xx - third, dy = yy - third, dz = zz - third;

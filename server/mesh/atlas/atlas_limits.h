@@ -9,7 +9,7 @@
 
 namespace strata::mesh {
 
-// promised share of the texels with surface; a smaller share is explained
+// promised share of the texels with surface; the report explains a smaller share
 constexpr double kPromisedCoverage = 0.6;
 
 // Returns the reasons why an atlas of these charts has a `coverage` below kPromisedCoverage. The

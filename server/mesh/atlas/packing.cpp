@@ -47,7 +47,7 @@ std::vector<std::uint32_t> ordered(std::span<const ChartShape> shapes, std::uint
   return numbers;
 }
 
-// The row where the search for a chart's position begins. Nothing is free below the position of an
+// The row where the search for a chart's position begins. No place is free below the position of an
 // earlier chart with the same shape. There is rarely free space below the positions of the last
 // charts of similar size, or of any size if no chart is similar. With many charts, the search
 // assumes that no space is free there. Otherwise it would read the whole atlas for each chart.

@@ -85,8 +85,8 @@ class ObjReader {
     return line;
   }
 
-  // The name of a library may contain blanks, and one line may name several libraries. If no
-  // library is named, the only uploaded .mtl file is used.
+  // The name of a material library may contain blanks, and one line may name several libraries. If
+  // no library is named, the only uploaded .mtl file is used.
   std::vector<const InputFiles::Entry*> find_libraries() {
     std::vector<const InputFiles::Entry*> found;
     for (const std::string& library : libraries_) {

@@ -50,7 +50,7 @@ class StlReader {
       return static_cast<unsigned char>(c) < 32 && !is_blank(c) && c != kEndOfDosFile;
     });
   }
-  // Some writers pad a name with zeros, so words are searched for instead.
+  // Some writers pad a name with zero bytes, so this function searches for words.
   bool has_words_of_text() const {
     bool facet = false;
     std::string_view rest = text_.substr(0, kSample);

@@ -253,7 +253,7 @@ std::array<double, 6> poses_of(const Shape& shape) {
   std::vector<glm::dvec3> corners;
   for (const HullFacet& facet : facets)
     corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
-  // Each facet takes a pass over all triangles. Only the most likely facets are examined, and of
+  // Each facet needs a pass over all triangles, so only the most likely facets are examined, and of
   // these only the facets with an axis pointing up.
   std::vector<std::size_t> order(facets.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -28,8 +28,8 @@ class SurfacePaint {
 
   // Paints the triangles of `atlas.moved` into an image of the file's own texture, and `ring`
   // texels around them that belong to no triangle. Triangles without coordinates mix the colors of
-  // their corners on neighboring triangles. Texels continue as defined by the materials of
-  // `texture`.
+  // their corners on neighboring triangles. Beyond its edges, the image continues as defined by the
+  // materials of `texture`.
   void paint_moved(int texture, int ring, Picture& picture) const;
 
  private:

@@ -41,7 +41,7 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
   return glm::length(point - (a + along * t));
 }
 
-// If at least kSubtreesForThreads subtrees of level kSharedLevel pass, threads share them.
+// If kSubtreesForThreads or more subtrees of level kSharedLevel pass the tests, threads share them.
 constexpr std::size_t kSharedLevel = 3;
 constexpr std::size_t kSubtreesForThreads = 32;
 

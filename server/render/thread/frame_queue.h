@@ -37,11 +37,11 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b);
 // 2. Requests for the same frame of one model (`FrameRequest::model`) are combined. The view that
 //    has drawn this frame before draws it again.
 // 3. Turns are fair by drawing time (start-time fair queueing): the view with the shortest served
-//    time is next. A view without requests gains no credit over waiting views. Therefore an edit's
+//    time is next. A view without requests gains no advantage over waiting views. So an edit's
 //    rectangle for a viewer precedes the next whole frame of a user who rotates the model, and no
 //    request waits forever.
 // 4. If both wait, acting users and onlookers (`FrameRequest::acting`) get half of the time each,
-// by rule 3. A hundred onlookers do not delay a user who paints, but still see the edits.
+//    by rule 3. A hundred onlookers do not delay a user who paints, but still see the edits.
 // 5. Bands of large images (`FrameRequest::large`) wait for their turns like all other requests.
 //    Only a few of them are in progress at a time. Between their drawing steps, smaller frames
 //    whose turns come first can be drawn.

@@ -177,7 +177,7 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
   std::ranges::copy(section_in_model(camera, origin), uniforms.section);
   uniforms.eye_is_cut_away = eye_is_cut_away(camera) ? 1 : 0;
   view.is_cut = !camera.section.empty();
-  // Clip space is left-handed, so a camera without mirroring has a negative product.
+  // Clip space is left-handed, so for a camera without mirroring the product is negative.
   view.is_mirrored = glm::determinant(camera.projection) * glm::determinant(camera.view) > 0;
   return view;
 }

@@ -50,8 +50,8 @@ struct ShadeInput {
 // that it needs, and resets scissor and blending.
 class ShadePass {
  public:
-  // Each chunk uses two texture units, and the pass uses three others. So it uses 15 of the 16
-  // units that all drivers have.
+  // Each chunk uses two texture units, and the pass uses three others. So the pass uses 15 of the
+  // 16 units that all drivers have.
   static constexpr std::size_t kChunksPerDraw = 6;
   static constexpr std::size_t kLayersPerProgram = 4;
 

@@ -77,7 +77,7 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
   class Place;
   std::shared_ptr<Place> new_place();
   // Returns the last moment that is ready. It may belong to an earlier request. A worker processes
-  // the newest request of each place, and skips the requests before it.
+  // the newest request of each `Place`, and skips the requests before it.
   Found find(const std::shared_ptr<Place>& place, const Request& request);
 
   // Drops the copies on the GPU, which were deleted together with the old model.

@@ -34,8 +34,8 @@ Result<LayerState> read_layer_state(store::Store& store, Layer layer) {
 Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held) {
   JournalContents contents;
-  // Read before the tiles. If the tiles contain later edits, the next commit detects the
-  // difference, and everything is read again.
+  // The state is read before the tiles. If the tiles contain later edits, the next commit detects
+  // the difference, and everything is read again.
   const auto journal = STRATA_TRY(store.journal().state(model_id, {}));
   contents.last_sequence = journal.last_sequence;
   contents.epoch = journal.epoch;

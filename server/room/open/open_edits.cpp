@@ -21,7 +21,7 @@ void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved sav
         fail(ErrorCode::unavailable, "Server is stopping",
              "The server is saving its edits and will then stop. Send the edit again when it is "
              "running again."));
-  // Counts before posting, because the queue of the strand has no limit.
+  // Counts the edit before posting it, because the queue of the strand has no limit.
   if (++room_.unanswered_ > room_.services_.options.max_waiting_edits) {
     --room_.unanswered_;
     return saved(fail(ErrorCode::too_many_requests, "Too many edits",

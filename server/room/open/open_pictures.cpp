@@ -157,7 +157,7 @@ Result<void> OpenRoom::PicturesPart::draw_in_bands(render::FrameRequest request,
         ErrorCode::invalid, "Size out of range",
         "Each side of a picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels long.",
         "width");
-  // Bands consist of whole rows of the camera's window, so each band can be drawn by a camera.
+  // A band consists of whole rows of the camera's window, so a camera with fewer rows can draw it.
   const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
   const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));
   const int step = is_large ? std::clamp(most, 1, camera.height) : camera.height;

@@ -30,7 +30,7 @@ void OpenRoom::recover() {
   recovery_.timer.cancel();
   if (recovery_.gpu_lacks_all) {  // comes first, because viewing needs no database
     recovery_.working = true;
-    services_.renderer.remove_model(model_handle());  // the memory may be too small for both
+    services_.renderer.remove_model(model_handle());  // the memory may be too small for two models
     boost::asio::post(
         services_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
           auto contents = fill_gpu(self->services_.renderer, {self->geometry_, self->coarser_},

@@ -29,8 +29,8 @@ bool has_layer(const std::vector<query::LayerView>& layers, const std::string& s
 constexpr std::array<std::string_view, 4> kPlaceNames{"x", "y", "z", "area"};
 
 // Returns the names for which `wrong` may be a typing mistake: slugs of `layers` and values of the
-// surface. The name of a layer also leads to its slug. `wet-dry` may be a subtraction without
-// spaces.
+// surface. If a layer has a similar name, its slug is returned. `wet-dry` may be a subtraction
+// without spaces.
 std::vector<std::string> similar_layers(const std::string& wrong,
                                         const std::vector<query::LayerView>& layers) {
   for (auto hyphen = wrong.find('-'); hyphen != std::string::npos;

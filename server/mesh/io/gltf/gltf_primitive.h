@@ -30,7 +30,7 @@ struct GltfPrimitive {
   }
 };
 
-// Counts of deviations from the file and of content that was not read.
+// Counts of values read in a changed form and of content that was not read.
 struct GltfRemarks {
   std::uint64_t points_and_lines = 0, without_positions = 0, colors_taken_as_normalized = 0;
 };
