@@ -15,7 +15,7 @@ namespace strata {
 // the end.
 class MemoryLedger {
  public:
-  // A counted number of bytes, released by the destructor. Move-only. Must not outlive the ledger.
+  // Bytes that count as used until the destructor runs. Move-only. Must not outlive the ledger.
   class Share {
    public:
     Share() = default;

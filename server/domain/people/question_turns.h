@@ -14,13 +14,13 @@ namespace strata {
 // Shares the processors between questions. A few questions run at the same time. The others wait,
 // and running questions pause after a while. The processor time is shared fairly between users,
 // regardless of the number of their questions (start-time fair queueing, as in
-// render/thread/frame_queue). The user with the least processor time is next. A user gains no
-// credit while the user has no questions. Thread-safe.
+// render/thread/frame_queue). The user with the least processor time is
+// next. Time without questions gives a user no advantage. Thread-safe.
 class QuestionTurns {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `slice` is the minimum running time before a question of another user can run.
+  // A question runs for at least `slice` before it pauses for a question of another user.
   explicit QuestionTurns(int at_once = 1, Clock::duration slice = std::chrono::milliseconds(30))
       : at_once_(at_once), slice_(slice) {}
 

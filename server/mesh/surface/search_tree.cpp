@@ -112,8 +112,8 @@ struct PreparedRay {
     shear = glm::dvec3(direction[kx], direction[ky], 1.0) / direction[kz];
   }
 
-  // Returns the entry distances of the boxes, or infinity. The factor covers the rounding of the
-  // three divisions.
+  // Returns the entry distances of the boxes, or infinity. The factor 1 + 1e-14 allows for the
+  // rounding errors of the distances.
   Keys<double> enter(const Boxes& boxes, double limit) const {
     constexpr std::size_t kLanes = sizeof(Doubles) / sizeof(double);
     Keys<double> keys;

@@ -40,8 +40,8 @@ Result<TexelSelection> select_where(const BoundExpression& condition,
 // Computes the content of a layer of `type` with the resolution of the map. Each surface texel gets
 // the value of the formula, or no value where the formula is unknown. A condition gives 1 where it
 // is true, and no value elsewhere. Values of integer types are rounded to the nearest integer.
-// Gutter texels get the values of their owners. Returns the errors of select_where, and an
-// `invalid` error at `type` for a number that the type cannot hold.
+// Gutter texels copy surface texels. Returns the errors of select_where, and an `invalid` error at
+// `type` for a number that the type cannot hold.
 Result<TileMap> compute_tiles(const BoundExpression& expression,
                               const std::vector<LayerView>& layers, const mesh::SurfaceMap& map,
                               const Frame& frame, ValueType type, const std::string& field,

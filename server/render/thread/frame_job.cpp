@@ -278,7 +278,7 @@ Result<bool> FrameJob::add_sample(GpuScene& scene, const View& view) {
     if (task_.request.refinement && fit < least)
       return fail(ErrorCode::too_large, "Picture not refined",
                   "One sample of each pixel takes " + std::to_string(std::lround(sample_ms)) +
-                      " ms, so the time is too short for " + std::to_string(least) + " samples.");
+                      " ms, so " + std::to_string(least) + " samples would exceed the time limit.");
     samples_ = std::max(1, fit);
   }
   scene.accumulation_pass().add(view.picture, *mean_, samples_);

@@ -26,7 +26,7 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
   using SurfaceFeatures =
       std::shared_ptr<const std::vector<KeyFeature>>;  // by key; compared by address
 
-  // `ready` is called, on any thread, when requested features were read and have changed.
+  // Calls `ready`, on any thread, after it has read features that differ from the previous ones.
   RecordFeatures(store::Store& store, boost::asio::thread_pool& workers, ModelId model_id,
                  std::function<void()> ready);
   ~RecordFeatures();

@@ -79,8 +79,8 @@ Error no_record_layer(const query::RecordPart& part, const Expression& first,
                             first.position, field, mistake::kUnknownLayer, std::move(similar));
 }
 
-// Adds the name of the layer to the suggestions, because the part of an expression that reads
-// records does not contain it.
+// Puts the name of the layer before each suggested column. The part of an expression that reads
+// records contains the path of a column without the layer.
 Error with_layer(Error problem, const std::string& slug) {
   if (problem.reason == mistake::kUnknownColumn)
     for (std::string& path : problem.suggestions)

@@ -71,7 +71,7 @@ Result<std::size_t> Projects::names_until(const NamedId& place, std::span<const 
 
 Result<std::string> Projects::state(ProjectId id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::string> {
-    // Returns SQL for the ids and versions of some rows of the project. `part` is the FROM clause.
+    // Returns SQL for the ids and versions of the rows that the FROM clause `part` selects.
     const auto versions = [](const std::string& part) {
       return "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " +
              part + "), '')";

@@ -92,7 +92,7 @@ class Nodes {
   // with the address of the owner. Returns `unavailable` if the lease of `self` is over or `self`
   // is draining.
   Result<std::int64_t> claim(ModelId model, const std::optional<Uuid>& self);
-  // Begins an epoch without an owner, also if a node has the model, and returns it. For code that
+  // Returns a new epoch without an owner, even if a node has claimed the model. For code that
   // writes the journal without a room: a room that is open on any server is closed when it next
   // uses the journal.
   Result<std::int64_t> begin_epoch(ModelId model);

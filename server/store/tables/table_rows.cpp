@@ -38,8 +38,8 @@ const char* sql_type(ColumnKind kind) {
   }
 }
 
-// Returns the value as columns store it, because PostgreSQL prints times in another format, and
-// whole numbers without a decimal point.
+// Converts a value that PostgreSQL has printed to the form of the column's kind. PostgreSQL prints
+// times in another format, and whole numbers without a decimal point.
 nlohmann::json value_of(const Column& column, const nlohmann::json& stored) {
   if (stored.is_null()) return stored;
   if (column.kind == ColumnKind::numeric) return stored.get<double>();
@@ -343,7 +343,7 @@ Result<std::string> collation_of(PgConnection& connection, const std::string& la
 Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, TableId table_id,
                                                 Role seen_by, const std::string& collation,
                                                 int depth) {
-  // The title column of a table may name records of another table, and so on, possibly in a cycle.
+  // Title columns can contain records of other tables, in a cycle too, so the depth is limited.
   constexpr int kDeepest = 3;
   auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
   std::vector<RecordOrder> order;

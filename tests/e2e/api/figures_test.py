@@ -668,7 +668,7 @@ def test_legends(server):
         "Low 2",
     ], "what hangs before the surface is drawn"
     assert "Above" not in told(direction="bottom"), "what lies behind it is not"
-    # a long list continues below its title
+    # a long list continues in the next column, below its repeated title
     points = [{"at": at, "color": "#2040ff", "label": f"Class {at}"} for at in range(1, 61)]
     server.ok(
         "POST",

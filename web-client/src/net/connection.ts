@@ -101,7 +101,8 @@ export interface ConnectionOptions {
   random?: () => number;
 }
 
-// The time limit for the handshake and the welcome, during which the server may load the model.
+// The time limit for the handshake and the message `welcome`. The server may load the model in this
+// time.
 const kOpeningMs = 30_000;
 const kBusySocketBytes = 256 * 1024; // cameras wait above this number of unsent bytes
 const kAdvice = "advice"; // id of messages whose failure is not reported

@@ -706,7 +706,7 @@ export const texts = {
       yes: "Ja, Karte verwenden",
       no: "Nein",
     },
-    along: "Blickrichtung der Karte",
+    along: "Richtung der Projektion",
     direction: {
       "-z": "in Richtung −z (Koordinaten x, y)",
       "+z": "in Richtung +z (Koordinaten x, y)",

@@ -676,7 +676,7 @@ export const texts = {
       yes: "Yes, use the map",
       no: "No",
     },
-    along: "Direction of the map",
+    along: "Direction of projection",
     direction: {
       "-z": "in the direction of −z (coordinates x, y)",
       "+z": "in the direction of +z (coordinates x, y)",
@@ -692,7 +692,7 @@ export const texts = {
   orthophoto: {
     open: "Add an orthophoto…",
     title: "Orthophoto as a surface image",
-    lead: "Projects a picture along an axis onto the surface that is visible in this direction. The result is a surface image that you can show, hide and blend.",
+    lead: "Projects a picture along an axis onto the surface that is visible from this direction. The result is a surface image that you can show, hide and blend.",
     file: "Picture, with its world file if there is one",
     name: "Name",
     add: "Add",
@@ -893,7 +893,7 @@ export const texts = {
     open: "Colors and patterns…",
     title: (layer: string) => `Colors of ${layer}`,
     column: "Color by",
-    each_record: "Each record its own color",
+    each_record: "A different color for each record",
     method: "Classes",
     methods: {
       quantile: "Equal counts (quantiles)",
@@ -901,7 +901,7 @@ export const texts = {
       smooth: "Smooth gradient",
       unique: "Each value",
     },
-    count: "How many",
+    count: "Number of classes",
     ramp: "Colors from low to high",
     ramps: { viridis: "Blue to yellow", reds: "Light to dark red", blues: "Light to dark blue" },
     patterns: { solid: "Plain", hatch: "Hatch", dots: "Dots", outline: "Outline" },

@@ -697,7 +697,7 @@ export const texts = {
       yes: "Sí, usar el mapa",
       no: "No",
     },
-    along: "Dirección del mapa",
+    along: "Dirección de la proyección",
     direction: {
       "-z": "en la dirección −z (coordenadas x, y)",
       "+z": "en la dirección +z (coordenadas x, y)",
@@ -920,7 +920,7 @@ export const texts = {
     open: "Colores y tramas…",
     title: (layer) => `Colores de ${layer}`,
     column: "Colorear por",
-    each_record: "Cada registro, su propio color",
+    each_record: "Un color distinto para cada registro",
     method: "Clases",
     methods: {
       quantile: "Cantidades iguales (cuantiles)",

@@ -15,8 +15,8 @@ using Values = GltfDocument::Values;
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
 
-// The required form of an attribute. KHR_mesh_quantization adds integers for positions and texture
-// coordinates. They are read even if the file does not name the extension.
+// The required form of an attribute. With KHR_mesh_quantization, positions and texture
+// coordinates can be integers. They are read even if the file does not name the extension.
 struct Attribute {
   std::string name;
   Values* values;

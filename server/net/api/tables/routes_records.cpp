@@ -187,8 +187,8 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   }
   if (page.after && records.last && !cursor_of(request, *records.last))
     return fail(ErrorCode::invalid, "Sort values too long",
-                "The sort values at the end of this page are too long for an address. Sort by "
-                "fewer columns.",
+                "The link to the next page contains the sort values of the last record, and these "
+                "are too long for a URL. Sort by fewer columns.",
                 "sortby");
   Response response;
   switch (format) {
