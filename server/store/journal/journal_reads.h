@@ -49,9 +49,9 @@ class Journal {
   // Returns all tiles of a layer as they were after the edit `at_sequence`. Empty: as they are now.
   Result<TileMirror::Snapshot> load_tiles(const Layer& layer,
                                           std::optional<std::int64_t> at_sequence = {});
-  // Returns all tiles of a layer as they were after the edit `sequence` (0: before all edits). Reads
-  // only the tiles that edits between `sequence` and `near` wrote. The other tiles are those of
-  // `near`, which is a state in the journal.
+  // Returns all tiles of a layer as they were after the edit `sequence` (0: before all edits).
+  // Reads only the tiles that edits between `sequence` and `near` wrote. The other tiles are those
+  // of `near`, which is a state in the journal.
   Result<TileMirror::Snapshot> load_tiles_near(const Layer& layer, std::int64_t sequence,
                                                const TileMirror::Snapshot& near);
   // Returns the last edit of each layer up to a sequence of the model. Layers without an edit are
