@@ -178,8 +178,8 @@ setup_web_client() {
   end_step
 }
 
-# The number of compilers that run at the same time: one for each core, fewer if memory is short. A
-# unit may take 1.2 GB.
+# The number of compilers that run at the same time: one for each core, fewer if memory is short.
+# The compiler can need 1.2 GB of memory for one source file.
 build_jobs() {
   local cores memory
   cores=$(nproc) memory=$(awk '/^MemAvailable/ { print int($2 / 1200000) }' /proc/meminfo)

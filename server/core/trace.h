@@ -33,8 +33,8 @@ struct TraceContext {
   bool operator==(const TraceContext&) const = default;
 };
 
-// Reads a header `traceparent`. Returns nothing unless it has version 00, lower-case digits and ids
-// that are not zero. The caller then begins a new trace (section 3.2.2 and 4.3 of the standard).
+// Reads a header `traceparent`. Returns nothing unless the version is 00, all hexadecimal digits
+// are lower-case, and no id is zero. The caller then begins a new trace (standard, 3.2.2 and 4.3).
 std::optional<TraceContext> parse_traceparent(std::string_view text);
 std::string to_traceparent(const TraceContext& context);
 

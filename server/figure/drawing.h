@@ -63,9 +63,9 @@ struct Drawing {
 // resolution.
 constexpr int kCameraDpi = 100;
 
-// A part of the drawing, with its camera. Pixels outside the drawing are discarded. The camera also
-// renders a margin on each side, which is discarded too. With this margin, a symbol that extends
-// into the part is tested against the surface at its position.
+// A part of the drawing, with its camera, which also renders a margin on each side. The margin and
+// pixels outside the drawing are discarded. A symbol in the margin can extend into the part. The
+// margin contains the surface at the symbol's position, so the server can test if it is hidden.
 struct Part {
   Camera camera;
   // In pixels, without the margin. Origin at the drawing's top left.

@@ -27,7 +27,7 @@ struct ShapeLayer {
 // from `store`. Returns the Error `invalid` or `not_found`, with the name of the field, if the
 // other model or the property cannot be used. Also returns an Error for the boundary distance of a
 // closed model, and for values that do not fit the type. Takes long, reports progress and can be
-// canceled. May run on any thread that may block.
+// canceled. Blocks, so call it only on a thread that is allowed to block.
 Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
                                        const std::shared_ptr<const mesh::Geometry>& geometry,
                                        const ShapeRecipe& recipe, ValueType type, int resolution,

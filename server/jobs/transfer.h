@@ -52,10 +52,10 @@ struct TransferSummary {
 // Transfers layers. For each texel of the target, finds the nearest point of the source within the
 // tolerance. The triangle at that point must face the same direction as the texel, within the
 // angle. Copies the value of one source texel for each layer, without mixing values, so keys stay
-// valid. The world coordinates of both models must belong to the same system, each in the model's
-// own unit. Ignores edits of the source that are not durable yet. Passes one layer after another to
+// valid. Both models must have the same world coordinate system. Each model may have its own unit.
+// Ignores edits of the source that are not durable yet. Passes one layer after another to
 // `deliver`. An Error of `deliver` ends the transfer. Takes long, reports progress and can be
-// canceled. May run on any thread that may block.
+// canceled. Blocks, so call it only on a thread that is allowed to block.
 using Deliver = std::function<Result<void>(TransferredLayer layer)>;
 Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarget& target,
                                         const TransferRequest& request, const Deliver& deliver,

@@ -17,8 +17,8 @@ struct TransferredFeatures {
 
 // Moves lines and points of the source to the target. Each vertex moves to the nearest point of the
 // target's surface. A line is split at vertices for which that point is farther than the tolerance.
-// The world coordinates of both models must belong to the same system, each in the model's own
-// unit.
+// Both models must have the same world coordinate system.
+// Each model may have its own unit.
 TransferredFeatures transfer_features(std::span<const SurfaceFeature> features, const Model& source,
                                       const TransferTarget& target, double tolerance_mm);
 

@@ -74,7 +74,7 @@ std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths,
                                                 const render::MeshBuffers& mesh,
                                                 const Camera& camera);
 
-// Returns a dab with a disc and a u8 value.
+// Returns a stroke of one point with a round brush and a value of type u8.
 StrokeBatch dab(const Camera& camera, double x, double y, double radius_px,
                 std::uint32_t value_bits = 7);
 

@@ -48,7 +48,7 @@ struct ListedTerm {
 std::vector<ListedTerm> list_terms(const TermColumns& columns, std::span<const Record> records);
 
 // Returns the label of a term in a language ("es-mx"), or else in its base language, without a
-// language, or in any language. Returns the code of a term without labels.
+// language, or in any language. If the term has no labels, returns its code.
 std::string label_in(const Term& term, const std::string& language);
 
 // Returns for each term whether its code and its labels in all languages contain all words of

@@ -178,7 +178,7 @@ class SampleBands {
     for (int i = 0; i < cuts; ++i) {
       int j_begin = 0, j_end = cuts - i;
       if (cuts > kManyCuts) {
-        // The points where the row enters and leaves the band, widened by a cell and a piece.
+        // Pieces that can be in [first, end), plus 2 cells and 1 piece for their size and rounding.
         const double at = (a[axis_] + double{ab[axis_]} * i / cuts - samples_.low_[axis_]) / cell_;
         const double step = double{ac[axis_]} / cuts / cell_;
         const double low = (first - 2 - at) / step, high = (end + 2 - at) / step;

@@ -24,14 +24,14 @@ struct Atlas {
 // 10 % of the surface. Otherwise returns an error with the reason, and the caller makes an atlas.
 Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
 
-// Unwraps the surface into charts bounded by a cone of normals. Charts are grown on a smoothed copy
-// and flattened so that no triangle is folded and few are squeezed. Each chart has the scale of its
-// surface. Charts are packed by their exact texels with at least 2 texels between them at
-// `lowest_resolution`. Connected faces of one plane form one chart. If less than 60 % of the texels
-// would be used, charts as long as the atlas are squeezed. Hollow charts of larger meshes are cut,
-// and the gaps are narrowed. If the coverage stays lower, the report's limits give the reasons. The
-// result is verified at the final density, and conflicting faces get their own charts. Uses two
-// threads. The result does not depend on the number of threads.
+// Unwraps the surface into charts bounded by a cone of normals. Grows the charts on a smoothed copy
+// of the mesh. Flattens them so that no triangle is folded and only a few are compressed. Each
+// chart has the scale of its surface. Charts are packed by their exact texels with at least 2
+// texels between them at `lowest_resolution`. Connected faces of one plane form one chart. If less
+// than 60 % of the texels would be used, charts as long as the atlas are squeezed. Hollow charts of
+// larger meshes are cut, and the gaps are narrowed. If the coverage stays lower, the report's
+// limits give the reasons. The result is verified at the final density, and conflicting faces get
+// their own charts. Uses two threads. The result does not depend on the number of threads.
 Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
 
 }  // namespace strata::mesh

@@ -337,7 +337,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
                                                   {view.gbuffer, view.depth->texture}, progress_);
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
-  // A software renderer draws during the calls. A GPU draws until the frame can be read.
+  // A software renderer draws during the calls. A GPU finishes later, when the frame can be read.
   if (scene.info().software && &view != sample_view_.get())
     scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
   return true;

@@ -50,8 +50,8 @@ Result<void> validate(const StrokeBatch& stroke) {
                   "max_angle_deg");
     if (stroke.through)
       return fail(ErrorCode::invalid, "Angle for hidden surfaces",
-                  "A hidden surface has no viewing angle. Leave out either `through` or "
-                  "`max_angle_deg`.",
+                  "The largest angle applies only to visible surfaces. Send either `through` or "
+                  "`max_angle_deg`, but not both.",
                   "max_angle_deg");
   }
   if (const auto bias = stroke.fixed_depth_bias; bias && !(*bias >= 0 && *bias <= 1)) {

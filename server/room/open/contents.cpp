@@ -79,7 +79,7 @@ Result<std::vector<Level>> read_coarser_levels(store::Store& store, ModelId mode
 }  // namespace
 
 Result<render::ModelGeometry> read_geometry(store::Store& store, ModelId model_id) {
-  // All coarser levels take about as long to read as the full mesh, so both are read in parallel.
+  // Reading all coarser levels takes about as long as the full mesh, so both are read in parallel.
   auto coarser_later =
       std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });
   auto bytes = STRATA_TRY(store.models().geometry(model_id));

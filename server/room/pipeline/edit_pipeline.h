@@ -65,7 +65,7 @@ class PipelineHost {
 // determines the revision in the journal, the counts, and the change on screen.
 //
 // The mirrors are always correct: they contain the edits in the journal and those on the way to it.
-// The GPU may be behind them (`stale_`), and is updated before any other work starts.
+// The GPU may still contain older values (`stale_`). It is updated before any other work starts.
 //
 // Only the pipeline enforces the lock of a layer. It checks the lock again before each edit begins,
 // regardless of the source of the edit and the time of the lock. An edit in the journal keeps its

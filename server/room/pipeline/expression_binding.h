@@ -29,10 +29,10 @@ std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>
                                              Role role);
 
 // Binds a formula over layers to the records of their keys. Reads from the database the present
-// records, or those at the time of the model's edit `at`, with the columns that `seen_by` sees.
-// Blocks. Returns `invalid` for a layer without records, and for a column that is missing or has
-// another type. The error has `field` and the position in the formula. Suggestions contain only
-// layers in `candidates` (null: `layers`). All readers of the error must be allowed to see these.
+// records, or those at the model's edit `at`, with the columns that `seen_by` sees. Blocks. Returns
+// `invalid` for a layer without records, and for a missing column or one of another type. The error
+// has `field` and the position in the formula. Suggestions contain only layers in `candidates`, or
+// in `layers` if `candidates` is null. All readers of the error must be allowed to see these.
 Result<query::BoundExpression> bind_expression(
     const Expression& expression, const std::vector<query::LayerView>& layers, store::Store& store,
     Role seen_by, std::optional<std::int64_t> at, const std::string& field,

@@ -167,8 +167,8 @@ Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes) {
   PgArray list(oid::kBytea);
   for (const auto& hash : hashes) list.add(Bytes(hash));
-  // Lock first. If there are two concurrent deletions, the later one then sees that the model of
-  // the earlier one is deleted.
+  // Lock first. If two models are deleted at the same time, the second deletion waits for the
+  // first, and then finds that the first model is deleted.
   auto locked =
       connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE",
                        Params().array(list));

@@ -17,8 +17,8 @@ std::uint64_t sum_of(const std::vector<LiveClient::Counts>& all,
       [&](std::uint64_t sum, const auto& counts) { return sum + counts.*member; });
 }
 
-// Adds the times from a camera to the last byte of the first frame that shows it. Later frames of
-// the same camera show other changes.
+// For each camera, adds the time from sending the camera until the last byte of its first frame
+// arrives. Later frames of the same camera show other changes.
 void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, Samples& times) {
   std::uint64_t shown = 0;
   for (const auto& frame : client.frames()) {

@@ -26,8 +26,9 @@ const kUpright = { width: 1080, height: 1920 };
 // The layout is checked on each screen. The rest of the test uses the last one.
 const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright];
 const kTarget_px = 57; // 15 mm on the screen of a kiosk
-// In MB, for the page and (next line) for the server. The allocators of both grow a little although
-// the work stays the same. The limits allow this growth, but not a leak of one picture per round.
+// In MB, for the page and (next line) for the server. The memory that they use grows a little
+// although the work stays the same. The limits allow this growth, but not a leak of one picture
+// per round.
 const kMostHeapGrowth = 1.5;
 const kMostServerGrowth = 48; // in MB
 const kMostNodeGrowth = 60;

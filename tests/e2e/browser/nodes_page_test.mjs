@@ -87,7 +87,8 @@ test("the node is killed during a stroke: the page continues at another node", a
   const edits_before = (await history()).length;
   let begun = 0;
   await drag_slowly(0.5, async () => {
-    // Waits from before the end of the node, because the page can be connected again very soon.
+    // Starts to wait for the banner before the node is killed, because the page can reconnect very
+    // soon.
     const lost = page.locator(".banner").waitFor();
     await site.command("kill_owner", kModel);
     begun = Date.now();

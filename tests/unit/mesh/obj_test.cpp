@@ -128,7 +128,7 @@ TEST(MeshObj,
       1u);
   EXPECT_EQ(count_of(loaded->repairs, "faces that refer to normals missing from the file"), 1u);
   EXPECT_EQ(count_of(loaded->repairs, "triangles without texture coordinates"), 1u);
-  // None of these indices exist, including those that count from the end.
+  // Without `vt` and `vn`, references to them are invalid. Negative indices count from the end.
   const auto none = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/-3/-3 -2/-2/-2 -1/-1/-1\n", "a.obj");
   ASSERT_TRUE(none) << none.error().detail;
   EXPECT_TRUE(none->mesh.corner_uvs.empty());

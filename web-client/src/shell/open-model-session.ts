@@ -1,13 +1,13 @@
 // One open model on this page: its life cycle, and the messages between its parts. `view` is the
 // camera, `lit` the highlighted part of the surface, `layers` the layers, and `tables` the records
 // behind the layers' keys. `comments` are the comments on the surface, and `hovered` is the record
-// under a resting mouse. `appearance` contains the surface images, the light and the section.
-// `pointer` contains the values under the pointer, `painting` the brush and the edits. `together`
-// contains the participants and the followed view, `cursors` their pointers. `views` are the saved
-// views, `tours` the tours, `measuring` the measurement, and `figures` the figures to scale. `face`
-// is the face to pick, and `past` the earlier states. Elements subscribe to the parts' state and
-// render it. They change it only through methods. The file is long because it is the only one that
-// connects the parts.
+// under the mouse pointer while the pointer does not move. `appearance` contains the surface
+// images, the light and the section. `pointer` contains the values under the pointer, `painting`
+// the brush and the edits. `together` contains the participants and the followed view, `cursors`
+// their pointers. `views` are the saved views, `tours` the tours, `measuring` the measurement, and
+// `figures` the figures to scale. `face` is the face to pick, and `past` the earlier states.
+// Elements subscribe to the parts' state and render it. They change it only through methods. The
+// file is long because it is the only one that connects the parts.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";

@@ -1016,7 +1016,7 @@ export const texts = {
     point_set: (record) => `Punkt für „${record}“ gesetzt.`,
     missed: "Dort ist keine Oberfläche.",
     changed_since:
-      "Die Tabelle wurde nach dem Zeichnen geändert. Entfernen Sie die Linie oder den Punkt im Formular des Datensatzes, oder machen Sie die Änderungen in der Tabelle schrittweise rückgängig.",
+      "Nicht rückgängig gemacht: Die Tabelle wurde seitdem geändert. Entfernen Sie die Linie oder den Punkt im Formular des Datensatzes, oder machen Sie zuerst die späteren Änderungen in der Tabelle rückgängig.",
   },
 
   comments: {

@@ -732,7 +732,7 @@ export const texts = {
       annotator: "annotators and curators",
       curator: "curators only",
     },
-    no_download: "Your role cannot download this file.",
+    no_download: "You cannot download this file with your role.",
   },
 
   layers: {
@@ -976,7 +976,7 @@ export const texts = {
     point_set: (record: string) => `Point set for “${record}”.`,
     missed: "There is no surface at this point.",
     changed_since:
-      "The table has changed since you drew the line or point. Remove it in the record's form, or undo the changes step by step in the table.",
+      "Not undone: the table has changed since then. Remove the line or point in the record's form, or undo the later changes in the table first.",
   },
 
   comments: {
@@ -1368,7 +1368,7 @@ export const texts = {
     title_hint: "Legends, notices and cards show this column as the name of a record.",
     drop_column: "Delete…",
     drop_title: (column: string) => `Delete the column “${column}”?`,
-    drop_lead: "Its values are hidden. Undo restores the column with all values.",
+    drop_lead: "Its values will no longer be shown. Undo restores the column with all values.",
     drop: "Delete",
     save_csv: "Save as CSV",
     save_xlsx: "Save as XLSX (Excel)",

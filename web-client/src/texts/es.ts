@@ -1007,7 +1007,7 @@ export const texts = {
     point_set: (record) => `Punto dibujado para «${record}».`,
     missed: "Ahí no hay superficie.",
     changed_since:
-      "La tabla ha cambiado después de dibujar. Quite la línea o el punto en el formulario del registro, o deshaga paso a paso en la tabla.",
+      "No se ha deshecho: la tabla ha cambiado desde entonces. Quite la línea o el punto en el formulario del registro, o deshaga antes los cambios posteriores en la tabla.",
   },
 
   comments: {

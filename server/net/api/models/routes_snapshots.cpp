@@ -70,8 +70,8 @@ Result<Response> get_snapshot(const RouteContext& context, const Request& reques
   return with_etag(json_response(to_json(request, snapshot)), request, snapshot.version);
 }
 
-// Converts a state to its stored format. Refuses states that are not in the journal yet because the
-// journal may still refuse their edits.
+// Converts a state to its stored format. Refuses states that are not in the journal yet. The
+// journal may still refuse the edits of such a state.
 Result<nlohmann::json> content_of(const RouteContext& context, const room::Room& room,
                                   const std::optional<protocol::At>& at) {
   const std::int64_t durable = room.edits().durable_sequence();

@@ -209,7 +209,7 @@ Result<Response> show_column(const RouteContext& context, const Request& request
   };
   auto now = STRATA_TRY(context.store.tables().show_column(
       table.id, column.id, visibility, table.version, idempotent_response<Table>(request, answer)));
-  // For users who can no longer see the column, the colors, lines and points change.
+  // Some users can no longer see the column. Their views must show other colors, lines and points.
   context.rooms.records_changed(now.id);
   tell_table(context.live_sockets, protocol::TableEventEvent::changed, now, request.user());
   return answer(now);

@@ -1,5 +1,6 @@
-// <strata-hover-card>: a summary of the record under a resting mouse. It is only for display, so
-// pointer events pass through it. Users without a mouse open the card with a tap.
+// <strata-hover-card>: a summary of the record under the mouse pointer while the pointer does not
+// move. It is only for display, so pointer events pass through it. Users without a mouse open the
+// card with a tap.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";

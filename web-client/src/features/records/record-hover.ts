@@ -1,5 +1,5 @@
-// The record under a resting mouse. A click there would open its card. This class sends no
-// requests, because it uses the responses to the pointer's requests.
+// The record under the mouse pointer while the pointer does not move. A click there would open its
+// card. This class sends no requests, because it uses the responses to the pointer's requests.
 
 import type { PointerSample } from "../../ui/input";
 import type { Layer } from "../../core/types";
