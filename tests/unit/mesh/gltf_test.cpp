@@ -409,7 +409,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "4000000000 values"},
         BadGltf{"offset_lies",
                 [](auto& j) { j["accessors"][1]["byteOffset"] = 18446744073709551615u; },
-                "ends before"},
+                "too short"},
         BadGltf{"view_lies", [](auto& j) { j["bufferViews"][0]["byteLength"] = 1000; },
                 "beyond the end of its buffer"},
         BadGltf{"negative", [](auto& j) { j["accessors"][0]["count"] = -4; },

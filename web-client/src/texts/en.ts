@@ -894,7 +894,7 @@ export const texts = {
     title: (layer: string) => `Colors of ${layer}`,
     column: "Color by",
     each_record: "A different color for each record",
-    method: "Classes",
+    method: "Classification",
     methods: {
       quantile: "Equal counts (quantiles)",
       equal: "Equal intervals",
