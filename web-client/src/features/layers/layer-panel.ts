@@ -411,8 +411,8 @@ export class StrataLayerPanel extends LitElement {
   }
 
   /**
-   * Every user who may change the layer may recompute it, because the lock of a computed layer only
-   * prevents editing by hand.
+   * Users who may change the layer may also recompute it. The lock of a computed layer only prevents
+   * edits by hand.
    */
   private mayRecompute(layer: Layer): boolean {
     const { canPaint, canCurate } = this.session;
