@@ -31,6 +31,7 @@ const kNone: ActivityLog = { lines: [], next: undefined };
 export class Activities {
   loaded = false;
   failed = false;
+  /** Whether earlier lines are being loaded. */
   busy = false;
   /** Whether another user has changed something since the panel was last open. */
   unseen = false;
@@ -38,7 +39,9 @@ export class Activities {
   private _watched = false;
   private _log = kNone;
   private readonly _again = new ReadAgain(() => void this.load());
-  private _asked = 0; // the latest request; responses to older ones are ignored
+  // The latest requests. Responses to older ones are ignored. A new first page must not cancel the
+  // request for earlier lines, because the user asked for these.
+  private readonly _asked = { first: 0, next: 0 };
 
   constructor(
     private readonly _api: Api,
@@ -61,6 +64,8 @@ export class Activities {
     this._whole = whole;
     this._log = kNone;
     this.loaded = false;
+    this.busy = false;
+    ++this._asked.next;
     void this.load();
   }
 
@@ -89,17 +94,29 @@ export class Activities {
   }
 
   load(): Promise<void> {
-    return this.ask(undefined, (page) => (this._log = withFirstPage(this._log, page)));
+    return this.ask("first", undefined, (page) => (this._log = withFirstPage(this._log, page)));
   }
-  more(): Promise<void> {
-    return this.ask(this._log.next, (page) => (this._log = withNextPage(this._log, page)));
+  async more(): Promise<void> {
+    const before = this._log.next;
+    if (this.busy || before === undefined) return;
+    this.busy = true;
+    let isReplaced = false;
+    await this.ask("next", before, (page) => {
+      isReplaced = this._log.next !== before; // the page does not continue this log
+      if (!isReplaced) this._log = withNextPage(this._log, page);
+      this.busy = false;
+    });
+    if (isReplaced) await this.more();
   }
 
-  private async ask(before: string | undefined, take: (page: ActivityLog) => void): Promise<void> {
+  private async ask(
+    which: "first" | "next",
+    before: string | undefined,
+    take: (page: ActivityLog) => void,
+  ): Promise<void> {
     const model = this._host.model();
     if (!model) return;
-    const question = ++this._asked;
-    this.busy = true;
+    const question = ++this._asked[which];
     this._host.changed();
     try {
       const page = await this._api.json("GET /projects/{project}/activity", {
@@ -110,16 +127,16 @@ export class Activities {
           model: this._whole ? undefined : `${model.id}`,
         },
       });
-      if (question !== this._asked) return;
+      if (question !== this._asked[which]) return;
       take({ lines: page.activity, next: page.next });
       this.loaded = true;
       this.failed = false;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (question !== this._asked) return;
+      if (question !== this._asked[which]) return;
       this.failed = true;
+      if (which === "next") this.busy = false;
     }
-    this.busy = false;
     this._host.changed();
   }
 

@@ -140,6 +140,34 @@ describe("the activity of a model", () => {
     expect(asked[2]).toEqual([1, { limit: 50, before: undefined, model: undefined }]);
   });
 
+  it("gets the earlier lines that were asked for, also if news come at the same time", async () => {
+    activity.watch(true);
+    await settle();
+    let late: (page: ActivityList) => void = () => {};
+    const later = (): Promise<ActivityList> => new Promise((resolve) => (late = resolve));
+    const atOnce = answer;
+    answer = (question) => (question.before === undefined ? atOnce(question) : later());
+    let more = activity.more();
+    await activity.load();
+    expect(activity.busy).toBe(true);
+    late({ activity: [line(1, 10)], next: "y" });
+    await more;
+    expect([ids(activity), activity.busy]).toEqual([[2, 1], false]);
+
+    // so many new lines that the log starts again: the earlier lines continue the new log
+    more = activity.more();
+    answer = ({ before }) =>
+      Promise.resolve(
+        before === undefined
+          ? { activity: [line(9, 50)], next: "z" }
+          : { activity: [line(before === "z" ? 8 : 0, 40)] },
+      );
+    await activity.load();
+    late({ activity: [line(0, 5)] });
+    await more;
+    expect([ids(activity), activity.hasMore, activity.busy]).toEqual([[9, 8], false, false]);
+  });
+
   it("tells that it could not be read, and takes no answer that came too late", async () => {
     answer = () => Promise.reject(new ApiError({ status: 503, title: "Away", detail: "" }));
     activity.watch(true);
