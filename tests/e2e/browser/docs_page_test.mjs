@@ -64,8 +64,15 @@ test("the menu leads to an operation", async ({ page }) => {
   await menu.locator('a[aria-current="location"]').first().waitFor();
 });
 
+// Redoc makes all operations from the same parts, and axe takes minutes for all of them. So axe
+// checks the first operation of each tag.
 test("axe has no serious finding", async ({ page }) => {
-  assert.deepEqual(await findings(page), []);
+  const tags = new Set();
+  const others = operations.filter(({ tags: [tag] }) => tags.size === tags.add(tag).size);
+  const left_out = others.map(({ operationId }) => `main [id$="operation/${operationId}"]`);
+  const all = page.locator('main [id^="operation/"]');
+  assert.equal(await all.count(), operations.length);
+  assert.deepEqual(await findings(page, null, left_out), []);
 });
 
 test("it opens for who is signed in, at both of its addresses", async ({ server, desk, page }) => {

@@ -11,19 +11,19 @@ load_module("axe-core");
 
 /**
  * Returns the serious and critical findings of axe-core, one per line. `rules` limits them to these
- * rules.
+ * rules. Parts of the page that match a selector of `exclude` are not checked.
  */
-export async function findings(page, rules = null) {
+export async function findings(page, rules = null, exclude = []) {
   if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
   const violations = await page.evaluate(
-    async (only) =>
+    async ([only, left_out]) =>
       (
-        await globalThis.axe.run(document, {
+        await globalThis.axe.run(left_out.length > 0 ? { exclude: left_out } : document, {
           resultTypes: ["violations"],
           ...(only ? { runOnly: { type: "rule", values: only } } : {}),
         })
       ).violations,
-    rules,
+    [rules, exclude],
   );
   return violations
     .filter(({ impact }) => impact === "serious" || impact === "critical")

@@ -33,7 +33,7 @@ export const test = playwright.test.extend({
   page: ({ desk }, use) => use(desk.page),
 });
 
-/** Attaches the server's log after a failed case, in addition to the trace and the screenshot. */
+/** Attaches the server's log after a failed case, in addition to the screenshot. */
 export async function attach_log(info, server) {
   if (server && info.status !== info.expectedStatus)
     await info.attach("log of the server", {
