@@ -4,7 +4,6 @@
 // and returns from them. `accessibility_test.mjs [PART…]` runs only these parts of `kParts`, which
 // CTest runs in parallel.
 import assert from "node:assert/strict";
-import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { active, findings, overflows, walk } from "../support/js/accessible.mjs";
@@ -20,12 +19,7 @@ const kSizes = [
   [1280, 800],
   [3840, 2160],
 ];
-const kShownSizes = new Set([390, 1280]); // sizes in which the test takes screenshots
 const kThemes = ["light", "dark", "contrast"];
-const output =
-  process.env.STRATA_TEST_OUTPUT && join(process.env.STRATA_TEST_OUTPUT, "accessibility");
-if (output) mkdirSync(output, { recursive: true });
-
 // each part uses the language of its walk through all screens
 const kParts = { themes: "en", keyboard: "en", german: "de" };
 const parts = process.argv.length > 2 ? process.argv.slice(2) : Object.keys(kParts);
@@ -51,10 +45,6 @@ async function check(language, { page }, screen) {
   for (const theme of themes) {
     await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
     await found(theme, findings(page, theme === "light" ? null : ["color-contrast"]));
-    if (output && theme !== "light")
-      await page.screenshot({
-        path: join(output, `${theme}_${screen.name.replaceAll(/\W+/g, "_")}.png`),
-      });
   }
   await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
   if (language === "de") {
@@ -64,17 +54,6 @@ async function check(language, { page }, screen) {
         () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
       );
       await found(`${width}×${height}`, overflows(page));
-      if (!output || !kShownSizes.has(width)) continue;
-      for (const theme of ["light", "dark"]) {
-        await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-        await page.screenshot({
-          path: join(
-            output,
-            `${width}_${screen.name.replaceAll(/\W+/g, "_")}${theme === "dark" ? "_dark" : ""}.png`,
-          ),
-        });
-      }
-      await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
     }
     await page.setViewportSize({ width: 1280, height: 800 });
   }
@@ -172,7 +151,6 @@ async function chosen_theme(page) {
   await page.emulateMedia({ colorScheme: "light", forcedColors: "active" });
   await becomes("light");
   assert.deepEqual(await findings(page), []);
-  if (output) await page.screenshot({ path: join(output, "forced_colors.png") });
 }
 
 try {
