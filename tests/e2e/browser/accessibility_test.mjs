@@ -20,6 +20,7 @@ const kSizes = [
   [3840, 2160],
 ];
 const kThemes = ["light", "dark", "contrast"];
+
 // each part uses the language of its walk through all screens
 const kParts = { themes: "en", keyboard: "en", german: "de" };
 const parts = process.argv.length > 2 ? process.argv.slice(2) : Object.keys(kParts);
