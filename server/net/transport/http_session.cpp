@@ -798,7 +798,7 @@ void start_http_session(tcp::socket socket, std::shared_ptr<Connections> connect
       std::make_shared<HttpSession>(std::move(socket), std::move(connections), std::move(tls));
   asio::co_spawn(
       executor, [session] { return session->run(); },
-      [](std::exception_ptr failure) {
+      [](const std::exception_ptr& failure) {
         if (!failure) return;
         try {
           std::rethrow_exception(failure);

@@ -255,10 +255,10 @@ void add_auth_routes(Router& router, const RouteContext& context) {
                        const std::vector<std::string>& query = {}) {
     const bool has_body = method == Method::post || method == Method::patch;
     router.add({.method = method,
-                .pattern = std::move(pattern),
+                .pattern = pattern,
                 .handler = answering(answer),
                 .role = Role::guest,
-                .query = std::move(query),
+                .query = query,
                 .check = check_no_script,
                 .body = has_body ? BodyKind::memory : BodyKind::none,
                 .max_body = has_body ? context.options.max_json_bytes : 0});
