@@ -60,8 +60,9 @@ mesh::TriangleMesh bumpy_sphere(int quads_per_edge) {
       return d * (1 + bump);
     };
     // Each chart is rotated in its cell, so texel rows and triangle edges do not align.
-    const glm::vec2 center((0.5f + static_cast<float>(face % 3)) / 3,
-                           (0.5f + static_cast<float>(face / 3)) / 2);
+    const int column = face % 3, row = face / 3;
+    const glm::vec2 center((0.5f + static_cast<float>(column)) / 3,
+                           (0.5f + static_cast<float>(row)) / 2);
     const float turn = 0.1f + 0.2f * static_cast<float>(face), size = 0.21f;
     const auto uv = [&](double u, double v) {
       const glm::vec2 p(static_cast<float>(u) - 0.5f, static_cast<float>(v) - 0.5f);

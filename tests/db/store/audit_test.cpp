@@ -215,11 +215,11 @@ TEST_F(AuditLog, kiosks_have_rows) {
 }
 
 TEST_F(AuditLog, rows_are_not_changed_or_deleted) {
+  constexpr const char* kWithLimit =
+      "BEGIN; SELECT set_config('strata.audit_limit', '9999-01-01', true); DELETE FROM audit_log; COMMIT";
   for (const char* statement :
        {"UPDATE audit_log SET actor = 'nobody'", "UPDATE audit_log SET count = count + 1",
-        "DELETE FROM audit_log", "TRUNCATE audit_log",
-        "BEGIN; SELECT set_config('strata.audit_limit', '9999-01-01', true); "
-        "DELETE FROM audit_log; COMMIT"}) {
+        "DELETE FROM audit_log", "TRUNCATE audit_log", kWithLimit}) {
     const auto done = connection_->script(statement);
     EXPECT_FALSE(done) << statement;
     (void)connection_->script("ROLLBACK");
