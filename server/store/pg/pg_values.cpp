@@ -196,7 +196,8 @@ std::vector<double> PgResult::reals(int row, int column) const {
   return out;
 }
 
-std::string copy_header() { return std::string("PGCOPY\n\377\r\n\0", 11) + std::string(8, '\0'); }
+// The signature, and two fields that are 0: the flags and the size of an extension.
+std::string copy_header() { return {"PGCOPY\n\377\r\n\0\0\0\0\0\0\0\0\0", 11 + 4 + 4}; }
 void append_row_start(std::string& row, std::int16_t fields) { append_big_endian(row, fields); }
 void append_field(std::string& row, Bytes bytes) {
   append_big_endian(row, static_cast<std::int32_t>(bytes.size()));
