@@ -95,6 +95,23 @@ std::optional<std::string> utc_timestamp(std::string_view text) {
   return out;
 }
 
+std::optional<std::chrono::system_clock::time_point> parse_time(std::string_view text,
+                                                                UnzonedTime unzoned) {
+  const auto utc = utc_timestamp(text);
+  if (!utc) return std::nullopt;
+  std::tm civil{};
+  int milliseconds = 0;
+  std::sscanf(utc->c_str(), "%d-%d-%dT%d:%d:%d.%dZ", &civil.tm_year, &civil.tm_mon, &civil.tm_mday,
+              &civil.tm_hour, &civil.tm_min, &civil.tm_sec, &milliseconds);
+  civil.tm_year -= 1900;
+  civil.tm_mon -= 1;
+  civil.tm_isdst = -1;  // daylight saving time as in that zone at that time
+  const bool has_zone = text.size() > 10 && text.find_first_of("Zz+-", 10) != text.npos;
+  const std::time_t seconds =
+      has_zone || unzoned == UnzonedTime::utc ? timegm(&civil) : std::mktime(&civil);
+  return std::chrono::system_clock::from_time_t(seconds) + std::chrono::milliseconds(milliseconds);
+}
+
 std::string utc_text(std::chrono::system_clock::time_point time) {
   const auto milliseconds =
       std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();

@@ -17,6 +17,12 @@ std::optional<std::int64_t> day_of(std::string_view text);
 // nullopt outside the years 1 to 9999.
 std::optional<std::string> utc_timestamp(std::string_view text);
 
+// Parses the same texts. `unzoned` is the zone of a time without a zone: UTC or that of this
+// machine.
+enum class UnzonedTime { utc, local };
+std::optional<std::chrono::system_clock::time_point> parse_time(
+    std::string_view text, UnzonedTime unzoned = UnzonedTime::utc);
+
 // Formats a time as RFC 3339 in UTC, with milliseconds.
 std::string utc_text(std::chrono::system_clock::time_point time);
 
