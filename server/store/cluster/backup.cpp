@@ -1,14 +1,11 @@
 #include "store/cluster/backup.h"
 
-#include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <vector>
 
 #include "core/digest.h"
@@ -26,7 +23,6 @@ constexpr int kFormat = 1;
 constexpr const char* kDump = "database.dump";
 constexpr const char* kManifest = "manifest.json";
 constexpr std::uintmax_t kMaxManifest = 64u << 20;
-constexpr auto kGlance = std::chrono::milliseconds(100);
 
 Error damaged(const fs::path& folder, const std::string& why) {
   return {ErrorCode::invalid, "Backup damaged", folder.string() + ": " + why, {}};
@@ -110,27 +106,13 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
   return shown + "passfile=" + dsn_value(file.string());
 }
 
-// Runs a program until it ends, and calls `watch` from time to time. The output of the program goes
-// to `log`.
+// Calls `watch` while the program runs. The output of the program goes to `log`.
 Result<void> run_program(const std::vector<std::string>& command, const fs::path& log,
                          const Progress& progress, const std::function<void()>& watch) {
-  const auto child = STRATA_TRY(spawn(command, DatabaseUser{}, log, SIGKILL));
-  int status = 0;
-  for (;;) {
-    const pid_t ended = waitpid(child, &status, WNOHANG);
-    if (ended == child || (ended < 0 && errno != EINTR)) break;
-    if (progress.cancelled()) kill(child, SIGKILL);
+  return run_to_end(command, DatabaseUser{}, log, [&] {
     watch();
-    std::this_thread::sleep_for(kGlance);
-  }
-  if (progress.cancelled()) return cancelled_problem();
-  if (status == 0) return {};
-  const std::string name = fs::path(command.front()).filename();
-  const std::string said = tail(log);
-  const bool full = said.find("No space left") != std::string::npos ||
-                    said.find("File too large") != std::string::npos;
-  if (full) return fail(ErrorCode::storage_full, "Disk full", name + ": " + said);
-  return fail(ErrorCode::internal, "Command failed", name + " failed: " + said);
+    return !progress.cancelled();
+  });
 }
 
 // Returns the folder of programs that are not older than the server whose data they read.

@@ -10,9 +10,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
+#include "core/progress.h"
 #include "core/text/slug.h"
 
 extern char** environ;
@@ -163,6 +166,31 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
     return fail(ErrorCode::internal, "Database not started",
                 std::string("Cannot fork: ") + std::strerror(errno));
   return child;
+}
+
+Result<void> run_to_end(const std::vector<std::string>& command, const DatabaseUser& user,
+                        const fs::path& log, const std::function<bool()>& goes_on) {
+  const auto child = STRATA_TRY(spawn(command, user, log, SIGKILL));
+  int status = 0;
+  bool cancelled = false;
+  for (;;) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) break;
+    if (!goes_on()) {
+      cancelled = true;
+      kill(child, SIGKILL);
+      kill(-child, SIGKILL);  // the process group
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  if (cancelled) return cancelled_problem();
+  if (status == 0) return {};
+  const std::string name = fs::path(command.front()).filename();
+  const std::string said = tail(log);
+  const bool full = said.find("No space left") != std::string::npos ||
+                    said.find("File too large") != std::string::npos;
+  if (full) return fail(ErrorCode::storage_full, "Disk full", name + ": " + said);
+  return fail(ErrorCode::internal, "Command failed", name + " failed: " + said);
 }
 
 std::string dsn_value(std::string_view value) {

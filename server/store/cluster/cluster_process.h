@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,12 @@ Result<void> give_folder(const std::filesystem::path& folder, const DatabaseUser
 // reaches only the server. It receives `death_signal` when the calling thread ends.
 Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
                     const std::filesystem::path& log, int death_signal);
+
+// Runs a program until it ends. Asks `goes_on` ten times a second, and kills the program and its
+// children when it returns false (`cancelled`). Returns `storage_full` if the program reports a
+// full disk, and `internal` with the end of `log` if it fails in another way.
+Result<void> run_to_end(const std::vector<std::string>& command, const DatabaseUser& user,
+                        const std::filesystem::path& log, const std::function<bool()>& goes_on);
 
 // Quotes a value for a connection string of libpq.
 std::string dsn_value(std::string_view value);
