@@ -5,6 +5,7 @@
 #include "cli/install_dirs.h"
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
+#include "cli/restore.h"
 #include "store/cluster/backup.h"
 #include "store/cluster/inspect.h"
 
@@ -17,6 +18,8 @@ struct BackupOptions {
   DataOptions data;
   fs::path folder;
   bool check_only = false;
+  fs::path archive;  // restore from this archive instead of `folder`
+  std::string at;
 };
 
 std::string summary(const store::BackupFacts& facts) {
@@ -70,7 +73,7 @@ int backup(const BackupOptions& options) {
 Result<void> restore_into_folder(const BackupOptions& options, const store::BackupFacts& facts,
                                  Progress& progress) {
   const fs::path data = fs::absolute(options.data.data), place = data / "postgres",
-                 beside = data / "restoring";
+                 beside = data / kRestoring;
   std::error_code error;
   if (fs::exists(place, error))
     return fail(ErrorCode::conflict, "Data folder not empty",
@@ -81,19 +84,22 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
     auto cluster = STRATA_TRY(store::Cluster::start(beside));
     return store::restore_backup(options.folder, facts, cluster->dsn(), progress);
   }();
-  if (restored) {
-    fs::rename(beside / "postgres", place, error);
-    if (error)
-      return fail(
-          ErrorCode::internal, "Backup not restored",
-          "Cannot rename the restored folder to " + place.string() + ": " + error.message() + ".");
-  }
+  if (restored) STRATA_TRY(finish_restore(data));
   std::error_code ignored;
   fs::remove_all(beside, ignored);
   return restored;
 }
 
 int restore(const BackupOptions& options) {
+  if (!options.archive.empty()) {
+    if (!options.data.database.empty())
+      return report({ErrorCode::malformed, "Not a data folder",
+                     "An archive can be restored only into a new data folder. Specify it with "
+                     "--data, without --database.",
+                     "--database"});
+    return restore_from_archive(
+        {options.archive, options.data.data, options.at, options.check_only});
+  }
   Progress progress;
   const auto facts = [&] {
     const ProgressLine line(progress);
@@ -144,10 +150,23 @@ Command add_restore(CLI::App& app) {
       app.add_subcommand("restore", "Restore a backup into a new data folder or an empty database");
   auto options = std::make_shared<BackupOptions>();
   add_data_options(*command, options->data);
-  command->add_option("folder", options->folder, "Folder of a backup made by `strata backup`")
-      ->required();
+  auto* folder =
+      command->add_option("folder", options->folder, "Folder of a backup made by `strata backup`");
+  auto* archive = command
+                      ->add_option("--archive", options->archive,
+                                   "Restore from the archive of `strata serve --archive`")
+                      ->excludes(folder);
+  command
+      ->add_option("--at", options->at,
+                   "With --archive: the moment to restore, for example 2026-11-21T14:32 or "
+                   "2026-11-21T14:32:00Z (default: the newest state)")
+      ->needs(archive);
   command->add_flag("--check", options->check_only,
-                    "Only check that the backup is complete, without restoring it");
+                    "Only check the backup, without restoring it. An archive is restored into a "
+                    "temporary folder.");
+  command->callback([folder, archive] {
+    if (folder->empty() && archive->empty()) throw CLI::RequiredError("folder or --archive");
+  });
   return [options] { return restore(*options); };
 }
 

@@ -31,14 +31,14 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   store_options.dsn = options.database;
   if (options.database.empty()) {
     auto cluster =
-        STRATA_TRY(store::Cluster::start(std::filesystem::absolute(options.data), options.sql));
+        STRATA_TRY(store::Cluster::start(std::filesystem::absolute(options.data), options.cluster));
     open->cluster = std::move(cluster);
     store_options.dsn = open->cluster->dsn();
   }
   auto store = store::Store::open(store_options, install_dirs().migrations);
   if (!store) return tl::unexpected(store.error());
   open->store = std::move(*store);
-  if (options.sql)
+  if (options.cluster.sql)
     if (auto admitted = store::admit_readers(store_options.dsn, options.data / "sql-password");
         !admitted)
       return tl::unexpected(admitted.error());

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "store/cluster/cluster.h"
@@ -15,7 +14,7 @@ namespace strata::cli {
 struct DataOptions {
   std::filesystem::path data = "data";
   std::string database;
-  std::optional<store::Cluster::SqlListen> sql{};  // only for `serve`
+  store::ClusterOptions cluster{};  // only for `serve`
 };
 void add_data_options(CLI::App& command, DataOptions& options);
 

@@ -21,6 +21,7 @@
 #include "render/renderer.h"
 #include "room/room.h"
 #include "room/rooms.h"
+#include "store/cluster/archive_keeper.h"
 #include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
 #include "store/people/tokens.h"
@@ -32,6 +33,7 @@ namespace strata::cli {
 namespace {
 
 constexpr int kMaxTrashDays = 36500, kMaxAuditDays = 36500;
+constexpr int kMaxCopyDays = 365, kMaxCopies = 1000;
 constexpr int kMaxTimeout_s = 3600;
 constexpr int kMaxSlow_ms = 3'600'000;
 
@@ -40,6 +42,7 @@ struct ServeOptions {
   std::string listen = "127.0.0.1:8080", sql_listen, node_url;
   std::vector<std::string> origins;
   std::filesystem::path tls_cert, tls_key;
+  int archive_copy_days = 7, archive_copies = 4;
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
   int audit_days = net::ServerOptions{}.audit_days;
@@ -100,7 +103,7 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
       "--listen");
 }
 
-Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
+Result<store::SqlListen> parse_sql_listen(const std::string& text) {
   auto address = STRATA_TRY(parse_address(text, "--sql-listen"));
   if (address.port == 0)
     return fail(ErrorCode::malformed, "Invalid listen address",
@@ -111,7 +114,7 @@ Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
         "SQL connections are not encrypted, so --sql-listen accepts only loopback addresses, such as "
         "127.0.0.1:5433. From other computers, use an SSH tunnel: ssh -L 5433:127.0.0.1:5433 HOST.",
         "--sql-listen");
-  return store::Cluster::SqlListen{address.host, address.port};
+  return store::SqlListen{address.host, address.port};
 }
 
 // For CLI11. Text that is not an address is reported as wrong usage.
@@ -198,6 +201,29 @@ void add_log_options(CLI::App& command, ServeOptions& options) {
       ->capture_default_str();
 }
 
+void add_archive_options(CLI::App& command, ServeOptions& options) {
+  auto* archive =
+      command
+          .add_option("--archive", options.data.cluster.archive,
+                      "Folder for copies of the private database and all changes since then "
+                      "(docs/how-to/back-up-and-restore.md)")
+          ->envname("STRATA_ARCHIVE");
+  command
+      .add_option("--archive-copy-days", options.archive_copy_days,
+                  "Days between two copies in the archive")
+      ->envname("STRATA_ARCHIVE_COPY_DAYS")
+      ->needs(archive)
+      ->check(CLI::Range(1, kMaxCopyDays))
+      ->capture_default_str();
+  command
+      .add_option("--archive-copies", options.archive_copies,
+                  "Number of copies that the archive keeps, with all changes since the oldest")
+      ->envname("STRATA_ARCHIVE_COPIES")
+      ->needs(archive)
+      ->check(CLI::Range(1, kMaxCopies))
+      ->capture_default_str();
+}
+
 int run(ServeOptions options) {
   log::set_format(options.log_format);
   log::set_levels(options.log_levels);
@@ -212,8 +238,13 @@ int run(ServeOptions options) {
           {ErrorCode::malformed, "Not a private database",
            "With --database, give analysts access to that PostgreSQL itself. docs/how-to/query-with-sql.md lists the statements.",
            "--sql-listen"});
-    options.data.sql = std::move(*sql);
+    options.data.cluster.sql = std::move(*sql);
   }
+  if (!options.data.cluster.archive.empty() && !options.data.database.empty())
+    return report(
+        {ErrorCode::malformed, "Not a private database",
+         "With --database, archive that PostgreSQL with its own tools, such as pgBackRest (docs/how-to/back-up-and-restore.md).",
+         "--archive"});
   std::optional<store::NewNode> node;
   if (!options.node_url.empty()) {
     auto url = store::check_node_url(options.node_url);
@@ -228,6 +259,11 @@ int run(ServeOptions options) {
   store::Store& store = *(*database)->store;
   if (auto safe = check_reach(store, *address, !options.tls_cert.empty()); !safe)
     return report(safe.error());
+  std::unique_ptr<store::ArchiveKeeper> archive;
+  if (!options.data.cluster.archive.empty())
+    archive = std::make_unique<store::ArchiveKeeper>(
+        *(*database)->cluster,
+        store::ArchiveRules{std::chrono::days(options.archive_copy_days), options.archive_copies});
   auto orphans = store.attachments().drop_orphans();
   if (!orphans) return report(orphans.error());
   if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
@@ -284,8 +320,8 @@ int run(ServeOptions options) {
   std::cout << "listening on " << url << std::endl;
   const auto owner = store.accounts().find("owner");
   if (!owner) return report(owner.error());
-  if (options.data.sql)
-    std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port
+  if (const auto& sql = options.data.cluster.sql)
+    std::cout << "SQL on " << sql->host << ":" << sql->port
               << ": database strata, user strata_reader, password in "
               << (options.data.data / "sql-password").string() << std::endl;
   // An owner with a password does not need a link, which would appear in logs.
@@ -377,6 +413,7 @@ Command add_serve(CLI::App& app) {
       ->envname("STRATA_AUDIT_DAYS")
       ->check(CLI::Range(0, kMaxAuditDays))
       ->capture_default_str();
+  add_archive_options(*command, *options);
   add_timeout(*command, "head-timeout", options->timeouts.head,
               "Seconds from the connection to the end of the first request head");
   add_timeout(*command, "idle-timeout", options->timeouts.idle,

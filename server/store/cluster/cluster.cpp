@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -81,7 +82,8 @@ struct Cluster::Impl {
   fs::path programs;
   fs::path log_file;
   DatabaseUser user;
-  std::optional<SqlListen> sql;
+  ClusterOptions options;
+  std::optional<ArchiveFolder> archive;
   int lock_fd = -1;
 
   // Only the keeper thread forks and waits for child processes; other threads queue tasks for it.
@@ -179,6 +181,12 @@ struct Cluster::Impl {
     auto found = STRATA_TRY(find_programs(major));
     programs = found;
     if (major == 0) STRATA_TRY(initialise());
+    if (!options.archive.empty()) {
+      auto claimed = STRATA_TRY(ArchiveFolder::claim(options.archive, folder, user));
+      archive = std::move(claimed);
+      for (auto& setting : archive->archive_settings())
+        options.settings.push_back(std::move(setting));
+    }
     return write_access_rules();
   }
 
@@ -186,8 +194,9 @@ struct Cluster::Impl {
   // database user can enter. Only analysts connect by TCP.
   Result<void> write_access_rules() {
     std::ofstream file(access_rules(), std::ios::trunc);
-    file << "local all all trust\n";
-    if (sql)
+    file << "local all all trust\n"
+         << "local replication all trust\n";  // for pg_basebackup, which `all` does not include
+    if (options.sql)
       for (const char* address : {"127.0.0.1/32", "::1/128"})
         file << "host strata " << kReaderRole << " " << address << " scram-sha-256\n";
     file.close();
@@ -239,47 +248,58 @@ struct Cluster::Impl {
     return owner == postmaster;
   }
 
-  int port() const { return sql ? sql->port : kUsualPort; }
+  int port() const { return options.sql ? options.sql->port : kUsualPort; }
   std::string dsn(const std::string& database) const { return dsn_of(sockets, port(), database); }
+
+  std::vector<std::string> postgres_command() const {
+    std::vector<std::string> command{
+        programs / "postgres",
+        "-D",
+        data,
+        "-k",
+        sockets,
+        "-p",
+        std::to_string(port()),
+        "-c",
+        "listen_addresses=" + (options.sql ? options.sql->host : std::string()),
+        "-c",
+        "hba_file=" + access_rules().string(),
+        "-c",
+        "unix_socket_permissions=0700",
+        "-c",
+        "jit=off",
+        "-c",
+        "max_wal_size=2GB",
+        "-c",
+        "log_timezone=UTC",
+        "-c",
+        "log_min_messages=warning",
+        "-c",
+        "logging_collector=off"};
+    for (const auto& setting : options.settings) {
+      command.push_back("-c");
+      command.push_back(setting);
+    }
+    return command;
+  }
 
   // Starts PostgreSQL. After a `kill -9` of the postmaster, its child processes keep the lock file
   // and the shared memory for some time, so a start that fails immediately is repeated every 100
   // ms.
   Result<void> run() {
     if (running()) return {};
-    const auto deadline = Clock::now() + 30s;
+    const auto deadline = Clock::now() + options.patience;
     for (;;) {
-      auto child = spawn({programs / "postgres",
-                          "-D",
-                          data,
-                          "-k",
-                          sockets,
-                          "-p",
-                          std::to_string(port()),
-                          "-c",
-                          "listen_addresses=" + (sql ? sql->host : std::string()),
-                          "-c",
-                          "hba_file=" + access_rules().string(),
-                          "-c",
-                          "unix_socket_permissions=0700",
-                          "-c",
-                          "jit=off",
-                          "-c",
-                          "max_wal_size=2GB",
-                          "-c",
-                          "log_timezone=UTC",
-                          "-c",
-                          "log_min_messages=warning",
-                          "-c",
-                          "logging_collector=off"},
-                         user, log_file, SIGINT);
+      auto child = spawn(postgres_command(), user, log_file, SIGINT);
       if (!child) return tl::unexpected(child.error());
       postmaster = *child;
       // After a crash, PostgreSQL may replay its log for minutes. The wait has no limit, because
-      // the replay either succeeds or ends the postmaster.
-      while (running()) {
+      // the replay either succeeds or ends the postmaster. PostgreSQL logs each refused connection,
+      // so the pauses grow.
+      for (Clock::duration pause = 10ms; running();
+           pause = std::min<Clock::duration>(pause * 21 / 20, 1s)) {
         if (owns_data() && PQping(dsn("postgres").c_str()) == PQPING_OK) return {};
-        std::this_thread::sleep_for(10ms);
+        std::this_thread::sleep_for(pause);
       }
       if (Clock::now() >= deadline)
         return fail(ErrorCode::unavailable, "Database not started",
@@ -327,10 +347,10 @@ Cluster::State Cluster::inspect(const fs::path& data_dir) {
 }
 
 Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir,
-                                                const std::optional<SqlListen>& sql) {
+                                                const ClusterOptions& options) {
   std::unique_ptr<Cluster> cluster(new Cluster);
   Impl& impl = *cluster->impl_;
-  impl.sql = sql;
+  impl.options = options;
   impl.keeper = std::thread([&impl] { impl.keep(); });
   STRATA_TRY(impl.on_keeper([&]() -> Result<void> {
     if (auto prepared = impl.prepare(data_dir); !prepared) return prepared;
@@ -343,6 +363,8 @@ Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir,
 std::string Cluster::dsn() const { return impl_->dsn("strata"); }
 std::string Cluster::dsn(const std::string& database) const { return impl_->dsn(database); }
 int Cluster::postmaster_pid() const { return impl_->postmaster; }
+const fs::path& Cluster::folder() const { return impl_->folder; }
+const std::optional<ArchiveFolder>& Cluster::archive() const { return impl_->archive; }
 
 Result<void> Cluster::ensure_running() {
   return impl_->on_keeper([this] { return impl_->run(); });

@@ -1,13 +1,33 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
+#include "store/cluster/archive_folder.h"
 
 namespace strata::store {
+
+// An address where analysts connect by TCP, in addition to the socket. It is on the loopback
+// interface of this machine. Only the role kReaderRole may connect, with its password
+// (scram-sha-256).
+struct SqlListen {
+  std::string host;  // without brackets
+  int port = 0;      // 1…65535
+};
+
+struct ClusterOptions {
+  std::optional<SqlListen> sql{};
+  std::filesystem::path archive{};      // PostgreSQL archives its WAL there; empty: no archive
+  std::vector<std::string> settings{};  // more settings of PostgreSQL: `name=value`
+  // How long a start is repeated that fails immediately. Processes of a killed server may still use
+  // the data.
+  std::chrono::seconds patience{30};
+};
 
 // The private PostgreSQL of the server. The first start runs `initdb`. By default, PostgreSQL
 // listens on a Unix socket only. It stops with the server, or the kernel stops it if the server is
@@ -26,19 +46,11 @@ class Cluster {
   };
   static State inspect(const std::filesystem::path& data_dir);
 
-  // An address where analysts connect by TCP, in addition to the socket. It is on the loopback
-  // interface of this machine. Only the role kReaderRole may connect, with its password
-  // (scram-sha-256).
-  struct SqlListen {
-    std::string host;  // without brackets
-    int port = 0;      // 1…65535
-  };
-
   // Keeps all files in `data_dir`/postgres. If the server runs as root, the database user must be
   // able to reach `data_dir`; otherwise the error explains the remedy. Returns a `conflict` error
   // if another server uses the folder.
   static Result<std::unique_ptr<Cluster>> start(const std::filesystem::path& data_dir,
-                                                const std::optional<SqlListen>& sql = {});
+                                                const ClusterOptions& options = {});
   ~Cluster();  // waits for a fast shutdown
   Cluster(const Cluster&) = delete;
   Cluster& operator=(const Cluster&) = delete;
@@ -47,6 +59,8 @@ class Cluster {
   std::string dsn() const;
   std::string dsn(const std::string& database) const;  // connection string of another database
   int postmaster_pid() const;
+  const std::filesystem::path& folder() const;          // `data_dir`/postgres
+  const std::optional<ArchiveFolder>& archive() const;  // of ClusterOptions::archive
   // Restarts the postmaster if it has died (tests kill it). Returns quickly if it is running.
   Result<void> ensure_running();
   // Begins to watch the postmaster, and restarts it when it dies.
