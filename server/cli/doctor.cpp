@@ -8,7 +8,9 @@
 #include "cli/install_dirs.h"
 #include "cli/open_database.h"
 #include "cli/support_bundle.h"
+#include "core/text/timestamp.h"
 #include "render/renderer.h"
+#include "store/cluster/archive_keeper.h"
 #include "store/cluster/inspect.h"
 
 namespace strata::cli {
@@ -111,12 +113,28 @@ void check_connection(Report& report, const std::string& dsn, const std::string&
   report.good("Database size", gib(double(state->bytes)));
 }
 
+void check_archive(Report& report, const std::string& dsn) {
+  const auto state = store::archiver_state(dsn);
+  if (!state || !state->archiving) return;
+  const std::string last =
+      state->archived ? "last segment at " + utc_text(*state->archived) : "no segment yet";
+  if (state->failing)
+    report.bad("Archive", "PostgreSQL cannot write to it, " + last,
+               "Check the free space and the permissions of the folder of --archive. The end of "
+               "postgres/postgres.log in the data folder has the reason.");
+  else
+    report.good("Archive", last);
+}
+
 // Only reads. Does not create, start or migrate a database, and does not disturb a running server.
 void check_database(Report& report, const DataOptions& options) {
   if (!options.database.empty()) return check_connection(report, options.database, "external");
   const auto state = store::Cluster::inspect(options.data);
   const std::string where = "private cluster in " + options.data.string();
-  if (state.running) return check_connection(report, state.dsn, where + ", a server is running");
+  if (state.running) {
+    check_connection(report, state.dsn, where + ", a server is running");
+    return check_archive(report, state.dsn);
+  }
   if (state.trouble) return report.bad("PostgreSQL", state.trouble->title, state.trouble->detail);
   if (state.version == 0)
     return report.good("PostgreSQL", "installed; the first start creates the " + where);

@@ -310,6 +310,7 @@ int run(ServeOptions options) {
   server_options.audit_days = options.audit_days;
   server_options.timeouts = options.timeouts;
   server_options.lease = lease.get();
+  server_options.archive = archive.get();
   server_options.slow_after = std::chrono::milliseconds(options.slow_after_ms);
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());

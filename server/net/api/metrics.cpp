@@ -165,6 +165,21 @@ void write_node(MetricsWriter& out, const Gauges& gauges) {
               gauges.node->models_moved);
 }
 
+void write_archive(MetricsWriter& out, const Gauges& gauges) {
+  if (!gauges.archive) return;
+  out.gauge("strata_archive_segment_seconds",
+            "Time of the last archived WAL segment, in seconds since 1970. 0: none yet.",
+            gauges.archive->archived_s);
+  out.gauge("strata_archive_copy_seconds",
+            "Time of the newest copy in the archive, in seconds since 1970. 0: none yet.",
+            gauges.archive->copied_s);
+  out.head("strata_archive_failures_total", "counter", "Failed tries to write to the archive.");
+  out.value("strata_archive_failures_total", "{" + metric_label("of", "segment") + "}",
+            gauges.archive->failed_segments);
+  out.value("strata_archive_failures_total", "{" + metric_label("of", "copy") + "}",
+            gauges.archive->failed_copies);
+}
+
 }  // namespace
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
@@ -174,6 +189,7 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   write_drawing(out, metrics, gauges);
   write_machine(out, metrics, gauges);
   write_node(out, gauges);
+  write_archive(out, gauges);
   return out.text();
 }
 

@@ -38,6 +38,13 @@ struct NodeGauges {
   std::uint64_t models_moved = 0;
 };
 
+// Of a server with an archive (store/cluster/archive_keeper.h). Times are in seconds since 1970,
+// and 0 if there was none yet.
+struct ArchiveGauges {
+  double archived_s = 0, copied_s = 0;
+  std::uint64_t failed_segments = 0, failed_copies = 0;
+};
+
 // The values of other modules. The histograms must exist during the call of `metrics_text`.
 struct Gauges {
   const room::EditTimings& edits;
@@ -50,7 +57,8 @@ struct Gauges {
   std::size_t waiting_requests = 0;
   std::size_t waiting_questions = 0, questions_under_way = 0;
   std::uint64_t question_steps = 0;
-  std::optional<NodeGauges> node{};  // empty if the server runs alone
+  std::optional<NodeGauges> node{};        // empty if the server runs alone
+  std::optional<ArchiveGauges> archive{};  // empty if the server has no archive
   std::size_t journal_waiting = 0;
   std::uint64_t journal_failed_commits = 0;
   bool journal_accepting = false, database_ready = false, gpu_ready = false;

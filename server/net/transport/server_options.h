@@ -11,6 +11,9 @@
 namespace strata::app {
 class NodeLease;
 }
+namespace strata::store {
+class ArchiveKeeper;
+}
 
 namespace strata::net {
 
@@ -51,6 +54,7 @@ struct ServerOptions {
   Timeouts timeouts;
   LiveLimits live;
   const app::NodeLease* lease = nullptr;  // of a site with several nodes; null: the server is alone
+  const store::ArchiveKeeper* archive = nullptr;  // null: the server has no archive
 };
 
 }  // namespace strata::net

@@ -22,6 +22,7 @@ struct Values {
   room::EditTimings edits;
   Histogram frames, commits;
   std::optional<NodeGauges> node = NodeGauges{2.5, 3};
+  std::optional<ArchiveGauges> archive = ArchiveGauges{1'900'000'000.5, 1'900'000'000, 4, 1};
 
   std::string text(bool has_disk = true) {
     Gauges gauges{edits, frames, commits};
@@ -31,6 +32,7 @@ struct Values {
     gauges.jobs = {0, 1, 5, 2, 0};
     if (has_disk) gauges.disk_bytes = 1u << 30;
     gauges.node = node;
+    gauges.archive = archive;
     return metrics_text(metrics, gauges);
   }
 };
@@ -119,6 +121,14 @@ TEST(Metrics, only_a_node_has_a_lease_and_models_that_moved) {
   EXPECT_TRUE(has_line(values.text(), "strata_models_moved_total 3"));
   values.node.reset();
   EXPECT_EQ(values.text().find("strata_node"), std::string::npos);
+}
+
+TEST(Metrics, only_a_server_with_an_archive_has_its_metrics) {
+  Values values;
+  EXPECT_TRUE(has_line(values.text(), "strata_archive_segment_seconds 1900000000.5"));
+  EXPECT_TRUE(has_line(values.text(), "strata_archive_failures_total{of=\"segment\"} 4"));
+  values.archive.reset();
+  EXPECT_EQ(values.text().find("strata_archive"), std::string::npos);
 }
 
 TEST(Metrics, the_dashboard_and_the_alerts_use_only_metrics_that_exist) {

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -19,6 +20,7 @@
 #include "net/transport/server_options.h"
 #include "render/renderer.h"
 #include "room/rooms.h"
+#include "store/cluster/archive_keeper.h"
 #include "store/journal/journal_writer.h"
 #include "store/store.h"
 
@@ -47,6 +49,18 @@ std::optional<NodeGauges> node_gauges(const RouteContext& context) {
   };
 }
 
+double seconds_since_1970(const std::optional<std::chrono::system_clock::time_point>& time) {
+  return time ? std::chrono::duration<double>(time->time_since_epoch()).count() : 0;
+}
+
+std::optional<ArchiveGauges> archive_gauges(const RouteContext& context) {
+  if (!context.options.archive) return std::nullopt;
+  const auto status = context.options.archive->status();
+  return ArchiveGauges{seconds_since_1970(status.archiver.archived),
+                       seconds_since_1970(status.copied), status.archiver.failures,
+                       status.failed_copies};
+}
+
 Gauges gauges_of(const RouteContext& context) {
   const store::JournalWriter& journal = context.rooms.journal();
   Gauges gauges{context.rooms.edit_timings(), context.renderer.frame_times(),
@@ -69,6 +83,7 @@ Gauges gauges_of(const RouteContext& context) {
   gauges.gpu_ready = context.renderer.ready();
   gauges.jobs = context.jobs.counts();
   gauges.node = node_gauges(context);
+  gauges.archive = archive_gauges(context);
   return gauges;
 }
 
