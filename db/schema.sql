@@ -206,6 +206,7 @@ DECLARE
   origin text := audit_text(current_setting('strata.address', true), 100);
   tried_name text := audit_text(tried, 255);
   minute timestamptz := date_trunc('minute', clock_timestamp());
+  facts jsonb := jsonb_strip_nulls(jsonb_build_object('method', way, 'provider', nullif(current_setting('strata.provider', true), '')));
 BEGIN
   -- One transaction at a time for each address, so that two attempts do not make two rows.
   PERFORM pg_advisory_xact_lock(hashtextextended('strata.audit ' || origin, 0));
@@ -214,12 +215,12 @@ BEGIN
     tried_name := '';
   END IF;
   UPDATE audit_log l SET count = l.count + 1 WHERE l.id = (SELECT f.id FROM audit_log f WHERE f.action = 'sign_in_failed'
-    AND f.address = origin AND f.time >= minute AND f.actor = tried_name AND f.details ->> 'method' = way ORDER BY f.id LIMIT 1);
+    AND f.address = origin AND f.time >= minute AND f.actor = tried_name AND f.details = facts ORDER BY f.id LIMIT 1);
   IF NOT FOUND THEN
     INSERT INTO audit_log (actor_kind, actor, person_id, address, action, subject_kind, subject_id, subject, details)
     VALUES (CASE WHEN way = 'link' THEN 'link' ELSE 'person' END, tried_name,
       (SELECT u.id FROM users u WHERE lower(u.name) = lower(tried_name) AND u.deleted IS NULL), origin, 'sign_in_failed', 'session', NULL, '',
-      jsonb_build_object('method', way));
+      facts);
   END IF;
 END $$;
 
@@ -677,6 +678,15 @@ CREATE FUNCTION public.role_rank(role text) RETURNS integer
     LANGUAGE sql IMMUTABLE
     AS $$ SELECT array_position(ARRAY['guest', 'viewer', 'annotator', 'curator', 'administrator', 'owner'], role) $$;
 
+CREATE FUNCTION public.sign_on_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM audit('oidc_bound', 'person', NEW.user_id, (SELECT u.name FROM users u WHERE u.id = NEW.user_id), NULL,
+    jsonb_build_object('issuer', NEW.issuer, 'subject', NEW.subject));
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.table_edit_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -780,7 +790,7 @@ BEGIN
     INSERT INTO audit_log (actor_kind, actor, person_id, address, action, subject_kind, subject_id, subject, details)
     VALUES (CASE WHEN way IN ('link', 'invitation') THEN 'link' WHEN way = 'token' THEN 'token' ELSE 'person' END, NEW.user_name, person,
       audit_text(current_setting('strata.address', true), 100), 'sign_in', 'session', NEW.id, NEW.user_name,
-      jsonb_build_object('method', way));
+      jsonb_strip_nulls(jsonb_build_object('method', way, 'provider', nullif(current_setting('strata.provider', true), ''))));
   ELSIF NEW.kind = 'script' THEN
     PERFORM audit('token_created', 'token', NEW.id, label, NEW.project_id,
       jsonb_build_object('user', NEW.user_name, 'role', NEW.role, 'expires', NEW.expires));
@@ -1395,7 +1405,8 @@ CREATE TABLE public.detail_levels (
 
 CREATE TABLE public.group_people (
     group_id bigint NOT NULL,
-    user_id bigint NOT NULL
+    user_id bigint NOT NULL,
+    sign_on_id bigint
 );
 
 CREATE TABLE public.groups (
@@ -1545,6 +1556,22 @@ CREATE TABLE public.nodes (
     CONSTRAINT nodes_version_check CHECK ((char_length(version) <= 255))
 );
 
+CREATE TABLE public.pending_sign_ins (
+    state bytea NOT NULL,
+    browser bytea NOT NULL,
+    provider text NOT NULL,
+    nonce text NOT NULL,
+    code_verifier text NOT NULL,
+    return_to text NOT NULL,
+    expires timestamp with time zone NOT NULL,
+    CONSTRAINT pending_sign_ins_browser_check CHECK ((octet_length(browser) = 32)),
+    CONSTRAINT pending_sign_ins_code_verifier_check CHECK ((octet_length(code_verifier) <= 128)),
+    CONSTRAINT pending_sign_ins_nonce_check CHECK ((octet_length(nonce) <= 128)),
+    CONSTRAINT pending_sign_ins_provider_check CHECK ((octet_length(provider) <= 64)),
+    CONSTRAINT pending_sign_ins_return_to_check CHECK ((octet_length(return_to) <= 1024)),
+    CONSTRAINT pending_sign_ins_state_check CHECK ((octet_length(state) = 32))
+);
+
 CREATE TABLE public.personal_views (
     user_id bigint NOT NULL,
     model_id bigint NOT NULL,
@@ -1614,6 +1641,26 @@ CREATE TABLE public.schema_checksums (
 
 CREATE TABLE public.schema_migrations (
     version character varying(128) NOT NULL
+);
+
+CREATE TABLE public.sign_ons (
+    id bigint NOT NULL,
+    issuer text NOT NULL,
+    subject text NOT NULL,
+    user_id bigint NOT NULL,
+    first_used timestamp with time zone,
+    last_used timestamp with time zone,
+    CONSTRAINT sign_ons_issuer_check CHECK (((octet_length(issuer) >= 1) AND (octet_length(issuer) <= 255))),
+    CONSTRAINT sign_ons_subject_check CHECK (((octet_length(subject) >= 1) AND (octet_length(subject) <= 255)))
+);
+
+ALTER TABLE public.sign_ons ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.sign_ons_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
 );
 
 CREATE TABLE public.snapshots (
@@ -1870,6 +1917,9 @@ ALTER TABLE ONLY public.all_models
 ALTER TABLE ONLY public.nodes
     ADD CONSTRAINT nodes_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.pending_sign_ins
+    ADD CONSTRAINT pending_sign_ins_pkey PRIMARY KEY (state);
+
 ALTER TABLE ONLY public.personal_views
     ADD CONSTRAINT personal_views_pkey PRIMARY KEY (user_id, model_id);
 
@@ -1905,6 +1955,12 @@ ALTER TABLE ONLY public.schema_checksums
 
 ALTER TABLE ONLY public.schema_migrations
     ADD CONSTRAINT schema_migrations_pkey PRIMARY KEY (version);
+
+ALTER TABLE ONLY public.sign_ons
+    ADD CONSTRAINT sign_ons_issuer_subject_key UNIQUE (issuer, subject);
+
+ALTER TABLE ONLY public.sign_ons
+    ADD CONSTRAINT sign_ons_pkey PRIMARY KEY (id);
 
 ALTER TABLE ONLY public.snapshots
     ADD CONSTRAINT snapshots_model_id_slug_key UNIQUE (model_id, slug);
@@ -2003,6 +2059,8 @@ CREATE INDEX edits_timeline ON public.edits USING btree (model_id, "time") INCLU
 
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
 
+CREATE INDEX group_people_sign_on ON public.group_people USING btree (sign_on_id) WHERE (sign_on_id IS NOT NULL);
+
 CREATE INDEX group_people_user ON public.group_people USING btree (user_id);
 
 CREATE UNIQUE INDEX groups_name_in_any_case ON public.groups USING btree (lower(name));
@@ -2041,6 +2099,8 @@ CREATE INDEX models_project ON public.all_models USING btree (project_id);
 
 CREATE UNIQUE INDEX models_slug ON public.all_models USING btree (slug) WHERE (binned IS NULL);
 
+CREATE INDEX pending_sign_ins_expires ON public.pending_sign_ins USING btree (expires);
+
 CREATE INDEX personal_views_model ON public.personal_views USING btree (model_id);
 
 CREATE INDEX project_groups_project ON public.project_groups USING btree (project_id);
@@ -2052,6 +2112,8 @@ CREATE UNIQUE INDEX record_columns_slug ON public.record_columns USING btree (ta
 CREATE INDEX record_columns_target ON public.record_columns USING btree (target);
 
 CREATE INDEX record_tables_project ON public.record_tables USING btree (project_id);
+
+CREATE INDEX sign_ons_user ON public.sign_ons USING btree (user_id);
 
 CREATE INDEX table_changes_edit ON public.table_changes USING btree (table_id, sequence);
 
@@ -2153,6 +2215,8 @@ CREATE TRIGGER project_settings_are_audited AFTER UPDATE OF require_if_match ON 
 
 CREATE CONSTRAINT TRIGGER record_deletion_is_audited AFTER INSERT ON public.table_edits DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((new.op = ANY (ARRAY['delete'::text, 'detach'::text, 'restore'::text, 'undo'::text, 'redo'::text]))) EXECUTE FUNCTION public.record_deletion_is_audited();
 
+CREATE TRIGGER sign_on_is_audited AFTER INSERT ON public.sign_ons FOR EACH ROW EXECUTE FUNCTION public.sign_on_is_audited();
+
 CREATE TRIGGER snapshot_deletion_is_audited AFTER DELETE ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('snapshot');
 
 CREATE TRIGGER snapshot_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('snapshot');
@@ -2220,6 +2284,9 @@ ALTER TABLE ONLY public.edits
 
 ALTER TABLE ONLY public.group_people
     ADD CONSTRAINT group_people_group_id_fkey FOREIGN KEY (group_id) REFERENCES public.groups(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.group_people
+    ADD CONSTRAINT group_people_sign_on_id_fkey FOREIGN KEY (sign_on_id) REFERENCES public.sign_ons(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.group_people
     ADD CONSTRAINT group_people_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id);
@@ -2298,6 +2365,9 @@ ALTER TABLE ONLY public.record_tables
 
 ALTER TABLE ONLY public.record_views
     ADD CONSTRAINT record_views_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.sign_ons
+    ADD CONSTRAINT sign_ons_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id);
 
 ALTER TABLE ONLY public.snapshots
     ADD CONSTRAINT snapshots_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;

@@ -87,7 +87,7 @@ Result<Address> parse_listen(const std::string& text) { return parse_address(tex
 // it.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
   if (is_loopback(address.host)) return {};
-  const auto has_account = STRATA_TRY(store.accounts().administrator_has_password());
+  const auto has_account = STRATA_TRY(store.accounts().administrator_can_sign_in());
   if (has_account) {
     if (!has_tls)
       log::warning(

@@ -52,6 +52,7 @@ TourFiles& Store::tour_files() { return impl_->tour_files; }
 Groups& Store::groups() { return impl_->groups; }
 Trash& Store::trash() { return impl_->trash; }
 Audit& Store::audit() { return impl_->audit; }
+SignOns& Store::sign_ons() { return impl_->sign_ons; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {

@@ -31,6 +31,7 @@ class Nodes;
 class PersonalViews;
 class Projects;
 class Records;
+class SignOns;
 class Tables;
 class Tokens;
 class Tools;
@@ -92,7 +93,8 @@ class Store {
   TourFiles& tour_files();
   Groups& groups();
   Trash& trash();
-  Audit& audit();  // store/people/audit.h
+  Audit& audit();       // store/people/audit.h
+  SignOns& sign_ons();  // store/people/sign_ons.h
 
  private:
   Store();

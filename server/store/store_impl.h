@@ -25,6 +25,7 @@
 #include "store/people/kiosks.h"
 #include "store/people/members.h"
 #include "store/people/personal_views.h"
+#include "store/people/sign_ons.h"
 #include "store/people/tokens.h"
 #include "store/pg/pool.h"
 #include "store/pg/sql.h"
@@ -69,6 +70,10 @@ consteval auto mention_renamed(const auto& text, const auto& longest) {
 // Locks the user in the current transaction, so that facts that were read about the user stay true
 // until the commit.
 Result<Person> lock_person(PgConnection& connection, const std::string& name);
+// Opens a session for the user, who must be locked. At the limit, it replaces the oldest session.
+Result<NewToken> open_session(PgConnection& connection, const Person& person,
+                              std::optional<std::chrono::seconds> lifetime,
+                              const std::string& label);
 Result<void> lock_project(PgConnection& connection, ProjectId id);  // prevents its deletion
 Result<void> join_groups(PgConnection& connection, PersonId person_id,
                          const std::vector<GroupId>& groups);
@@ -115,6 +120,7 @@ struct Store::Impl {
   Jobs jobs{pool};
   Nodes nodes{pool};
   Groups groups{pool};
+  SignOns sign_ons{pool};
   Trash trash{pool};
   Audit audit{pool};
   Projects projects{pool};

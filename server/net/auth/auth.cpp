@@ -97,7 +97,7 @@ Result<Principal> Authenticator::owner_by_token() {
     changes = changes_;
     if (owner_token_now_.until > now) return principal(owner_token_now_.is_script);
   }
-  const auto has_password = STRATA_TRY(store_.accounts().administrator_has_password());
+  const auto has_password = STRATA_TRY(store_.accounts().administrator_can_sign_in());
   std::lock_guard lock(mutex_);
   if (changes == changes_) owner_token_now_ = {has_password, now + kRememberFor};
   return principal(has_password);

@@ -20,8 +20,10 @@ class Accounts {
  public:
   explicit Accounts(Pool& pool) : pool_(pool) {}
 
-  Result<std::vector<Person>> all();          // sorted by name
-  Result<bool> administrator_has_password();  // if so, a user can sign in and give access to others
+  Result<std::vector<Person>> all();  // sorted by name
+  // Returns whether an administrator has a password, or has signed in with OpenID Connect. If so, a
+  // user can give access to others.
+  Result<bool> administrator_can_sign_in();
   Result<Person> find(const std::string& name);
   // Returns the users with exactly these names, also disabled and deleted ones, in no particular
   // order.

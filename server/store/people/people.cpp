@@ -38,7 +38,8 @@ std::optional<TokenKind> parse_kind(const std::string& text) {
 constexpr auto kPersonColumns = sql(
     "id, name, full_name, role, password IS NOT NULL, disabled IS NOT NULL, created, last_seen, "
     "(SELECT coalesce(jsonb_agg(g.name ORDER BY lower(g.name)), '[]') FROM group_people p JOIN groups g "
-    "ON g.id = p.group_id WHERE p.user_id = users.id)");
+    "ON g.id = p.group_id WHERE p.user_id = users.id), "
+    "EXISTS (SELECT 1 FROM sign_ons s WHERE s.user_id = users.id AND s.first_used IS NOT NULL)");
 constexpr auto kGoodToken = sql("(revoked IS NULL AND (expires IS NULL OR expires > now()))");
 
 Person read_person(PgRow& row) {
@@ -52,6 +53,7 @@ Person read_person(PgRow& row) {
   person.created = row.time();
   person.last_seen = row.optional_time();
   person.groups = row.json().get<std::vector<std::string>>();
+  person.has_sign_on = row.boolean();
   return person;
 }
 
@@ -140,21 +142,6 @@ Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const st
   return made;
 }
 
-Result<NewToken> open_session(PgConnection& connection, const Person& person,
-                              std::optional<std::chrono::seconds> lifetime,
-                              const std::string& label) {
-  auto made =
-      insert_token(connection, TokenKind::session, person.name, person.role, lifetime, label);
-  if (!made) return made;
-  STRATA_TRY(run(
-      connection,
-      sql("UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
-          "kind = 'session' AND ",
-          kGoodToken, " ORDER BY id DESC OFFSET $2)"),
-      Params().text(person.name).integer(kMaxTokens)));
-  return made;
-}
-
 struct Found {
   Principal principal;
   bool is_fresh = false;  // its use was recorded in the last five minutes
@@ -207,6 +194,21 @@ Result<void> put_password(PgConnection& connection, const std::string& user,
 
 Result<Person> lock_person(PgConnection& connection, const std::string& name) {
   return load_person(connection, name, true);
+}
+
+Result<NewToken> open_session(PgConnection& connection, const Person& person,
+                              std::optional<std::chrono::seconds> lifetime,
+                              const std::string& label) {
+  auto made =
+      insert_token(connection, TokenKind::session, person.name, person.role, lifetime, label);
+  if (!made) return made;
+  STRATA_TRY(run(
+      connection,
+      sql("UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
+          "kind = 'session' AND ",
+          kGoodToken, " ORDER BY id DESC OFFSET $2)"),
+      Params().text(person.name).integer(kMaxTokens)));
+  return made;
 }
 
 Result<std::vector<Person>> Accounts::all() {
@@ -311,9 +313,10 @@ Result<void> Accounts::remove(const std::string& name) {
     auto ended =
         run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person.name));
     if (!ended) return ended;
-    for (const char* sql : {"DELETE FROM project_members WHERE user_id = $1",
-                            "DELETE FROM group_people WHERE user_id = $1",
-                            "DELETE FROM personal_views WHERE user_id = $1"})
+    for (const char* sql :
+         {"DELETE FROM project_members WHERE user_id = $1",
+          "DELETE FROM group_people WHERE user_id = $1", "DELETE FROM sign_ons WHERE user_id = $1",
+          "DELETE FROM personal_views WHERE user_id = $1"})
       STRATA_TRY(run(connection, sql, Params().id(person.id)));
     const std::string former = std::string(kFormer) + to_string(person.id);
     for (
@@ -402,10 +405,12 @@ Result<void> Members::remove(ProjectId project_id, const std::string& user, cons
   });
 }
 
-Result<bool> Accounts::administrator_has_password() {
+Result<bool> Accounts::administrator_can_sign_in() {
   return pool_.read([&](PgConnection& connection) -> Result<bool> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT 1 FROM users WHERE password IS NOT NULL AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1"));
+        "SELECT 1 FROM users WHERE (password IS NOT NULL OR "
+        "EXISTS (SELECT 1 FROM sign_ons s WHERE s.user_id = users.id AND s.first_used IS NOT NULL)) "
+        "AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1"));
     return rows.rows() > 0;
   });
 }

@@ -26,6 +26,7 @@ struct Person {
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> last_seen;  // to within some minutes
   std::vector<std::string> groups;                                 // sorted by name
+  bool has_sign_on = false;  // has signed in with OpenID Connect
 };
 
 // A change to a user. Properties without a value are not changed.

@@ -24,10 +24,12 @@ Result<Transaction> begin_as_actor(PgConnection& connection) {
   std::deque<PgConnection::Statement> statements;
   statements.push_back({"BEGIN", {}});
   Params params;
-  params.text(acting->kind).text(acting->name).text(acting->address).text(acting->sign_in);
+  params.text(acting->kind).text(acting->name).text(acting->address);
+  params.text(acting->sign_in).text(acting->provider);
   statements.push_back(
       {"SELECT set_config('strata.actor_kind', $1, true), set_config('strata.actor', $2, true), "
-       "set_config('strata.address', $3, true), set_config('strata.sign_in', $4, true)",
+       "set_config('strata.address', $3, true), set_config('strata.sign_in', $4, true), "
+       "set_config('strata.provider', $5, true)",
        std::move(params)});
   Transaction transaction = Transaction::adopt(connection);
   STRATA_TRY(connection.pipeline(statements));

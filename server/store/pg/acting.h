@@ -17,6 +17,7 @@ struct Actor {
   std::string address;  // of the client
   // the way of a sign-in: "password", "token", "link", "invitation" or "oidc"
   std::string sign_in;
+  std::string provider{};  // id of the provider of a sign-in with "oidc"
 };
 
 // Names the actor of all transactions that this thread begins during the lifetime of this object.

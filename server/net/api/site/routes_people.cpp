@@ -32,9 +32,9 @@ nlohmann::json to_json(const Person& person) {
                       {"user", person.name},
                       {"full_name", person.full_name},
                       {"role", std::string(name(person.role))},
-                      {"state", person.disabled       ? "disabled"
-                                : person.has_password ? "active"
-                                                      : "invited"},
+                      {"state", person.disabled                             ? "disabled"
+                                : person.has_password || person.has_sign_on ? "active"
+                                                                            : "invited"},
                       {"created", utc_text(person.created)},
                       {"groups", person.groups}};
   add_color(json, person);
