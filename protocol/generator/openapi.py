@@ -52,6 +52,7 @@ def add_common_answers(document) -> None:
 # stream of events. Other responses must not be stored. In the remaining cases, the ETag is the
 # version of a record for If-Match, but the response contains more than the record.
 WITHOUT_ANSWER_ETAG = (
+    "/sign-in/providers",
     "/login",
     "/live",
     "/events",

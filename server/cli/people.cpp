@@ -10,6 +10,7 @@
 #include "store/people/groups.h"
 #include "store/people/members.h"
 #include "store/people/password.h"
+#include "store/people/sign_ons.h"
 #include "store/people/tokens.h"
 
 namespace strata::cli {
@@ -20,6 +21,7 @@ using store::TokenKind;
 struct PeopleOptions {
   DataOptions data;
   std::string name, role, project, full_name, user, url = "http://127.0.0.1:8080";
+  std::string issuer, subject;
   std::int64_t token = 0;
   int days = 365;
   bool password_stdin = false;
@@ -82,9 +84,9 @@ Result<void> renew(store::Store& store, const PeopleOptions& options, const stor
 void print(const store::Person& person, Role role) {
   std::cout << std::left << std::setw(24) << person.name << std::setw(15) << name(role)
             << std::setw(10)
-            << (person.disabled       ? "disabled"
-                : person.has_password ? "active"
-                                      : "invited")
+            << (person.disabled                             ? "disabled"
+                : person.has_password || person.has_sign_on ? "active"
+                                                            : "invited")
             << "last seen " << std::setw(12) << day_of(person.last_seen) << person.full_name
             << "\n";
 }
@@ -157,6 +159,11 @@ Work<PeopleOptions> disabling(bool disabled) {
 Result<void> remove_person(store::Store& store, const PeopleOptions&, const store::Person& person) {
   STRATA_TRY(change(store, person, {.full_name = {}, .role = {}, .disabled = true}));
   return store.accounts().remove(person.name);
+}
+
+Result<void> bind_identity(store::Store& store, const PeopleOptions& options,
+                           const store::Person& person) {
+  return store.sign_ons().bind(person.name, options.issuer, options.subject);
 }
 
 // Returns the role of a user in a project. It is the highest of the user's roles on the site, in
@@ -244,6 +251,11 @@ Command add_user(CLI::App& app) {
   add_password(*add_named("password", "Print a link to choose a new password, or set a password",
                           changing(renew)),
                options);
+  auto* bind = add_named("bind", "Let a person at an OpenID Connect provider use an account",
+                         changing(bind_identity));
+  bind->add_option("--issuer", options->issuer, "Issuer of the provider, as in --oidc-config")
+      ->required();
+  bind->add_option("--subject", options->subject, "The person's `sub` at the provider")->required();
   add_named("disable", "Disable an account and end its sessions", disabling(true));
   add_named("enable", "Enable a disabled account", disabling(false));
   add_named(

@@ -21,6 +21,7 @@
 #include "render/renderer.h"
 #include "room/room.h"
 #include "room/rooms.h"
+#include "sign_on/config.h"
 #include "store/cluster/archive_keeper.h"
 #include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
@@ -41,7 +42,8 @@ struct ServeOptions {
   DataOptions data;
   std::string listen = "127.0.0.1:8080", sql_listen, node_url;
   std::vector<std::string> origins;
-  std::filesystem::path tls_cert, tls_key;
+  std::filesystem::path tls_cert, tls_key, oidc_config;
+  std::string local_accounts = "on";
   int archive_copy_days = 7, archive_copies = 4;
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
@@ -83,12 +85,13 @@ Result<Address> parse_address(const std::string& text, const std::string& option
 
 Result<Address> parse_listen(const std::string& text) { return parse_address(text, "--listen"); }
 
-// A server that is reachable from other machines needs an account, because only accounts protect
-// it.
-Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
+// A server that is reachable from other machines needs an account or a provider of accounts,
+// because only accounts protect it.
+Result<void> check_reach(store::Store& store, const Address& address, bool has_tls,
+                         bool has_provider) {
   if (is_loopback(address.host)) return {};
-  const auto has_account = STRATA_TRY(store.accounts().administrator_can_sign_in());
-  if (has_account) {
+  const auto has_administrator = STRATA_TRY(store.accounts().administrator_can_sign_in());
+  if (has_administrator || has_provider) {
     if (!has_tls)
       log::warning(
           "listening on " + address.host +
@@ -99,8 +102,18 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
       ErrorCode::forbidden, "Administrator account missing",
       "Other computers can reach " + address.host +
           ", but no administrator has a password. Create an account: strata user add NAME --role administrator "
-          "--password-stdin. Or listen on 127.0.0.1.",
+          "--password-stdin. Or let people sign in with --oidc-config. Or listen on 127.0.0.1.",
       "--listen");
+}
+
+// Reads the providers of OpenID Connect. Returns an empty list without a file.
+Result<std::vector<sign_on::Provider>> read_providers(const ServeOptions& options) {
+  if (!options.oidc_config.empty()) return sign_on::read_config(options.oidc_config);
+  if (options.local_accounts == "on") return std::vector<sign_on::Provider>();
+  return fail(ErrorCode::invalid, "Nobody could sign in",
+              "Without local accounts, the server needs a provider of accounts. Name its "
+              "configuration with --oidc-config.",
+              "--local-accounts");
 }
 
 Result<store::SqlListen> parse_sql_listen(const std::string& text) {
@@ -251,13 +264,16 @@ int run(ServeOptions options) {
     if (!url) return report(url.error());
     node = store::NewNode{random_uuid(), std::move(*url), std::string(version()), {}};
   }
+  auto providers = read_providers(options);
+  if (!providers) return report(providers.error());
   const sigset_t ending = block_signals();
 
   const InstallDirs dirs = install_dirs();
   auto database = open_database(options.data);
   if (!database) return report(database.error());
   store::Store& store = *(*database)->store;
-  if (auto safe = check_reach(store, *address, !options.tls_cert.empty()); !safe)
+  if (auto safe = check_reach(store, *address, !options.tls_cert.empty(), !providers->empty());
+      !safe)
     return report(safe.error());
   std::unique_ptr<store::ArchiveKeeper> archive;
   if (!options.data.cluster.archive.empty())
@@ -306,6 +322,8 @@ int run(ServeOptions options) {
   server_options.tls_chain = options.tls_cert;
   server_options.tls_key = options.tls_key;
   server_options.owner_token = owner_token();
+  server_options.sign_on_providers = std::move(*providers);
+  server_options.local_accounts = options.local_accounts == "on";
   server_options.trash_days = options.trash_days;
   server_options.audit_days = options.audit_days;
   server_options.timeouts = options.timeouts;
@@ -389,6 +407,17 @@ Command add_serve(CLI::App& app) {
                       ->envname("STRATA_TLS_KEY");
   tls_cert->needs(tls_key);
   tls_key->needs(tls_cert);
+  command
+      ->add_option("--oidc-config", options->oidc_config,
+                   "Let people sign in with the OpenID Connect providers in this JSON file "
+                   "(docs/how-to/sign-in-with-openid-connect.md)")
+      ->envname("STRATA_OIDC_CONFIG");
+  command
+      ->add_option("--local-accounts", options->local_accounts,
+                   "on: users can sign in with passwords; off: only with OpenID Connect")
+      ->envname("STRATA_LOCAL_ACCOUNTS")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
   command
       ->add_option(
           "--gpu-memory", options->gpu_memory,

@@ -113,6 +113,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
       questions_({.threads = options_.question_threads, .waiting = options_.max_waiting_requests}),
+      sign_ons_(options_.sign_on_providers),
       trash_purger_(store.trash(), std::chrono::days(options_.trash_days), store.audit(),
                     std::chrono::days(options_.audit_days)),
       table_events_(rooms, *shared_->sockets),
@@ -133,6 +134,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       demo_annotators_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
+  add_sign_on_routes(router_, context_, sign_ons_);
   add_people_routes(router_, context_);
   add_personal_view_routes(router_, context_);
   add_project_routes(router_, context_);
@@ -202,6 +204,7 @@ void Api::stop_workers() {
   demo_annotators_.stop();
   trash_purger_.stop();
   questions_.stop();
+  sign_ons_.stop();
   workers_.stop();
   shared_->queries->stop();
 }

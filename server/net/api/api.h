@@ -16,6 +16,7 @@
 #include "net/api/metrics.h"
 #include "net/api/route_context.h"
 #include "net/auth/auth.h"
+#include "net/auth/sign_on_desk.h"
 #include "net/http/edit_idempotency.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/question_desk.h"
@@ -101,6 +102,7 @@ class Api {
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;
   QuestionDesk questions_;
+  SignOnDesk sign_ons_;
   Router router_;
   Route page_;  // for all addresses outside the API
   Route live_;  // for the live connections; has no handler

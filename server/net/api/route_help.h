@@ -82,6 +82,8 @@ void roles_changed(const RouteContext& context, const std::vector<std::string>& 
 // Closes the live connections of the kiosks and clears their cached links.
 void end_kiosks(const RouteContext& context, const std::vector<KioskId>& kiosks,
                 const std::string& reason);
+// Returns 403 if the site has no local accounts, whose users sign in with passwords.
+Result<void> check_local_accounts(const RouteContext& context);
 // Returns the author's name if the caller may see it. A kiosk gets an empty name.
 std::string visible_name(const Request& request, const std::string& user);
 // Returns the browser's User-Agent, which helps users to recognize their sessions.

@@ -3,11 +3,13 @@
 namespace strata::net {
 
 class Router;
+class SignOnDesk;
 struct RouteContext;
 
 // Each function adds the routes of one type of resource.
 void add_system_routes(Router& router, const RouteContext& context);
 void add_auth_routes(Router& router, const RouteContext& context);
+void add_sign_on_routes(Router& router, const RouteContext& context, SignOnDesk& desk);
 void add_people_routes(Router& router, const RouteContext& context);
 void add_personal_view_routes(Router& router, const RouteContext& context);
 void add_project_routes(Router& router, const RouteContext& context);

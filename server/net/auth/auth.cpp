@@ -32,10 +32,11 @@ Principal principal_of(const store::Kiosk& kiosk) {
 }
 
 std::string cookie_of(std::string_view name, const std::string& value,
-                      std::chrono::seconds lifetime, bool secure) {
+                      std::chrono::seconds lifetime, bool secure,
+                      std::string_view same_site = "Strict") {
   return std::string(secure ? kHostPrefix : "") + std::string(name) + "=" + value +
-         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(lifetime.count()) +
-         (secure ? "; Secure" : "");
+         "; Path=/; HttpOnly; SameSite=" + std::string(same_site) +
+         "; Max-Age=" + std::to_string(lifetime.count()) + (secure ? "; Secure" : "");
 }
 
 }  // namespace
@@ -213,6 +214,19 @@ std::string Authenticator::clear_cookie(bool secure) {
 
 std::string Authenticator::set_kiosk_cookie(const std::string& link, bool secure) {
   return cookie_of(kKioskCookie, link, kKioskLifetime, secure);
+}
+
+std::string Authenticator::set_sign_in_cookie(const std::string& secret, bool secure) {
+  return cookie_of(kSignInCookie, secret, kSignInLifetime, secure, "Lax");
+}
+
+std::string Authenticator::clear_sign_in_cookie(bool secure) {
+  return cookie_of(kSignInCookie, {}, std::chrono::seconds(0), secure, "Lax");
+}
+
+std::string Authenticator::sign_in_secret_of(const Request& request, bool secure) {
+  return cookie_value(request.header("cookie"),
+                      std::string(secure ? kHostPrefix : "") + std::string(kSignInCookie));
 }
 
 }  // namespace strata::net

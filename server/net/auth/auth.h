@@ -15,6 +15,9 @@ namespace strata::net {
 // With HTTPS, the cookie names get the prefix `__Host-`. Browsers then accept these cookies only
 // from this host, over HTTPS and for all paths (RFC 6265bis).
 constexpr std::string_view kSessionCookie = "strata_session", kKioskCookie = "strata_kiosk";
+// Identifies the browser during a sign-in with OpenID Connect.
+constexpr std::string_view kSignInCookie = "strata_sign_in";
+constexpr std::chrono::minutes kSignInLifetime{10};
 constexpr std::chrono::hours kSessionLifetime{24 * 90};
 // The lifetime of the cookie. The link has its own expiry date.
 constexpr std::chrono::hours kKioskLifetime{24 * 365};
@@ -59,6 +62,10 @@ class Authenticator {
   static std::string set_cookie(const std::string& session_token, bool secure);
   static std::string clear_cookie(bool secure);
   static std::string set_kiosk_cookie(const std::string& link, bool secure);
+  // The cookie of a sign-in. The browser sends it when the provider redirects to this server.
+  static std::string set_sign_in_cookie(const std::string& secret, bool secure);
+  static std::string clear_sign_in_cookie(bool secure);
+  static std::string sign_in_secret_of(const Request& request, bool secure);
 
  private:
   Result<Principal> owner_by_token();

@@ -133,6 +133,16 @@ Result<void> check_upgrade_origin(const Request& request, const std::vector<std:
               "Origin");
 }
 
+std::string own_origin(const Request& request, const std::vector<std::string>& allowed) {
+  const std::string host = to_lower(request.header("host"));
+  for (const std::string& entry : allowed) {
+    std::string origin = to_lower(entry);
+    while (origin.ends_with('/')) origin.pop_back();
+    if (origin == "https://" + host || origin == "http://" + host) return origin;
+  }
+  return (came_by_https(request) ? "https://" : "http://") + host;
+}
+
 bool came_by_https(const Request& request) {
   return request.by_tls || request.header("x-forwarded-proto") == "https";
 }

@@ -38,6 +38,10 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
 // omit it.
 Result<void> check_upgrade_origin(const Request& request, const std::vector<std::string>& allowed);
 
+// Returns the origin by which the browser reaches this server, without a `/` at the end. It is the
+// allowed origin with the host in the Host header, or else has the scheme of the request.
+std::string own_origin(const Request& request, const std::vector<std::string>& allowed);
+
 // Returns whether the request used TLS to this server, or to a proxy that reports it in
 // X-Forwarded-Proto.
 bool came_by_https(const Request& request);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "net/live/live_limits.h"
+#include "sign_on/config.h"
 
 namespace strata::app {
 class NodeLease;
@@ -35,11 +36,13 @@ struct ServerOptions {
   std::filesystem::path upload_dir;          // unfinished uploads; deleted when the server starts
   std::filesystem::path tls_chain, tls_key;  // PEM files; empty: plain HTTP
   std::string owner_token;                   // STRATA_OWNER_TOKEN: empty or at least 32 characters
-  int http_threads = 2;                      // threads for sockets, which never block
-  int worker_threads = 8;                    // threads for work that blocks
-  int question_threads = 8;                  // threads for questions; each user gets only a few
-  int query_threads = 2;                     // threads for picks of live connections
-  std::size_t max_waiting_requests = 256;    // further requests get a 503
+  std::vector<sign_on::Provider> sign_on_providers;  // OpenID Connect
+  bool local_accounts = true;                        // users can sign in with passwords
+  int http_threads = 2;                              // threads for sockets, which never block
+  int worker_threads = 8;                            // threads for work that blocks
+  int question_threads = 8;                // threads for questions; each user gets only a few
+  int query_threads = 2;                   // threads for picks of live connections
+  std::size_t max_waiting_requests = 256;  // further requests get a 503
   std::size_t max_connections = 2048;
   std::uint64_t max_upload_bytes = 8ull << 30;
   std::uint64_t max_rasters_at_once = 2ull << 30;  // bytes of all rasters being read or written

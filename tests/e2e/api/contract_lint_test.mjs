@@ -7,11 +7,13 @@ import { kRoot, load_module } from "../support/js/modules.mjs";
 const { createConfig, lint } = load_module("@redocly/openapi-core");
 
 /**
- * Operations with another success status. The owner's link redirects to the page (303), and a live
- * connection becomes a WebSocket (101).
+ * Operations with another success status. The owner's link and the sign-in with a provider
+ * redirect (303), and a live connection becomes a WebSocket (101).
  */
 const kWithoutSuccess = [
   "#/paths/~1login/get/responses",
+  "#/paths/~1sign-in~1{provider}/get/responses",
+  "#/paths/~1sign-in~1{provider}~1callback/get/responses",
   "#/paths/~1api~1v1~1models~1{model}~1live/get/responses",
 ];
 

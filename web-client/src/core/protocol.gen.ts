@@ -1237,6 +1237,20 @@ export interface Login {
   token?: string;
 }
 
+/** OpenID Connect provider. */
+export interface SignInProvider {
+  /** Part of the address `/sign-in/{provider}`, which the browser opens. */
+  id: string;
+  name: string;
+}
+
+/** Ways to sign in. */
+export interface SignInWays {
+  providers: SignInProvider[];
+  /** Users can sign in with a user name and a password. */
+  local_accounts: boolean;
+}
+
 /** Signed-in user. */
 export interface Me {
   user: string;
@@ -1244,6 +1258,8 @@ export interface Me {
   color: PersonColor;
   role: Role;
   has_password: boolean;
+  /** The user has signed in with OpenID Connect. Missing if not. */
+  has_sign_on?: boolean;
 }
 
 /** New password. `current` is required if the user already has a password. The change ends all other sessions of the user. */
@@ -1314,7 +1330,7 @@ export interface ScriptTokenMade {
   token: ScriptToken;
 }
 
-/** State of a user account. `invited`: the user has not set a password yet. */
+/** State of a user account. `invited`: the user has not set a password yet, and has not signed in with OpenID Connect. */
 export type PersonState = "invited" | "active" | "disabled";
 
 /** Name of a group. The name must be unique and is not case-sensitive. */

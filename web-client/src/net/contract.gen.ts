@@ -1951,6 +1951,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/sign-in/providers": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List the ways to sign in */
+        get: operations["list_sign_in_providers"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/tables/{table}": {
         parameters: {
             query?: never;
@@ -2900,10 +2917,14 @@ export interface components {
         ServerVersion: wire.ServerVersion;
         /** Values that are computed from the shape of the model */
         ShapeRecipe: wire.ShapeRecipe;
+        /** OpenID Connect provider */
+        SignInProvider: wire.SignInProvider;
         /** Browser in which a user is signed in */
         SignInSession: wire.SignInSession;
         /** Sessions */
         SignInSessionList: wire.SignInSessionList;
+        /** Ways to sign in */
+        SignInWays: wire.SignInWays;
         /** Node of the site */
         SiteNode: wire.SiteNode;
         /** Nodes of the site */
@@ -3293,6 +3314,7 @@ export interface components {
         model: string;
         offset: number;
         project: string;
+        provider: string;
         separator: "comma" | "semicolon" | "tab";
         sheet_format: "json" | "csv" | "xlsx";
         snapshot: string;
@@ -7131,6 +7153,25 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["RecordsReport"];
+                };
+            };
+        };
+    };
+    list_sign_in_providers: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SignInWays"];
                 };
             };
         };

@@ -161,6 +161,8 @@ enum class Schema {
   ModuleLogLevel,
   LogLevels,
   Login,
+  SignInProvider,
+  SignInWays,
   Me,
   PasswordChange,
   MePatch,
@@ -364,7 +366,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 338;
+constexpr int kSchemaCount = 340;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1613,7 +1615,7 @@ nlohmann::json to_json(const ScriptTokenCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<ScriptTokenCreate> = Schema::ScriptTokenCreate;
 
-// State of a user account. `invited`: the user has not set a password yet.
+// State of a user account. `invited`: the user has not set a password yet, and has not signed in with OpenID Connect.
 enum class PersonState { invited, active, disabled };
 std::string_view name(PersonState value);
 void read(const nlohmann::json& json, PersonState& value);

@@ -141,6 +141,8 @@ std::string_view name(Schema schema) {
     case Schema::ModuleLogLevel: return "ModuleLogLevel";
     case Schema::LogLevels: return "LogLevels";
     case Schema::Login: return "Login";
+    case Schema::SignInProvider: return "SignInProvider";
+    case Schema::SignInWays: return "SignInWays";
     case Schema::Me: return "Me";
     case Schema::PasswordChange: return "PasswordChange";
     case Schema::MePatch: return "MePatch";
@@ -485,7 +487,9 @@ std::string_view schema_bundle() {
 "ModuleLogLevel":{"type":"object","additionalProperties":false,"required":["module","level"],"properties":{"module":{"$ref":"#/definitions/LogModule"},"level":{"$ref":"#/definitions/LogLevel"}}},
 "LogLevels":{"type":"object","additionalProperties":false,"required":["default","modules"],"properties":{"default":{"$ref":"#/definitions/LogLevel"},"modules":{"type":"array","minItems":0,"maxItems":18,"items":{"$ref":"#/definitions/ModuleLogLevel"}}}},
 "Login":{"type":"object","additionalProperties":false,"oneOf":[{"required":["user","password"],"not":{"anyOf":[{"required":["token"]}]}},{"required":["token"],"not":{"anyOf":[{"required":["user"]},{"required":["password"]}]}}],"properties":{"user":{"type":"string","minLength":1,"maxLength":200},"password":{"type":"string","minLength":1,"maxLength":1024},"token":{"type":"string","minLength":1,"maxLength":1000}}},
-"Me":{"type":"object","additionalProperties":false,"required":["user","full_name","role","has_password","color"],"properties":{"user":{"type":"string","minLength":1,"maxLength":200},"full_name":{"type":"string","minLength":0,"maxLength":200},"color":{"$ref":"#/definitions/PersonColor"},"role":{"$ref":"#/definitions/Role"},"has_password":{"type":"boolean"}}},
+"SignInProvider":{"type":"object","additionalProperties":false,"required":["id","name"],"properties":{"id":{"type":"string","minLength":1,"maxLength":32,"pattern":"^[a-z0-9-]+$"},"name":{"type":"string","minLength":1,"maxLength":100}}},
+"SignInWays":{"type":"object","additionalProperties":false,"required":["providers","local_accounts"],"properties":{"providers":{"type":"array","minItems":0,"maxItems":16,"items":{"$ref":"#/definitions/SignInProvider"}},"local_accounts":{"type":"boolean"}}},
+"Me":{"type":"object","additionalProperties":false,"required":["user","full_name","role","has_password","color"],"properties":{"user":{"type":"string","minLength":1,"maxLength":200},"full_name":{"type":"string","minLength":0,"maxLength":200},"color":{"$ref":"#/definitions/PersonColor"},"role":{"$ref":"#/definitions/Role"},"has_password":{"type":"boolean"},"has_sign_on":{"type":"boolean"}}},
 "PasswordChange":{"type":"object","additionalProperties":false,"required":["password"],"properties":{"current":{"type":"string","minLength":1,"maxLength":1024},"password":{"type":"string","minLength":1,"maxLength":1024}}},
 "MePatch":{"type":"object","additionalProperties":false,"required":["full_name"],"properties":{"full_name":{"type":"string","minLength":0,"maxLength":200}}},
 "SignInSession":{"type":"object","additionalProperties":false,"required":["id","created","expires","agent","current"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"created":{"type":"string","minLength":1,"maxLength":40},"expires":{"type":"string","minLength":1,"maxLength":40},"last_used":{"type":"string","minLength":1,"maxLength":40},"agent":{"type":"string","minLength":0,"maxLength":400},"current":{"type":"boolean"}}},

@@ -36,6 +36,7 @@ Result<Response> who_is_signed_in(const RouteContext& context, const std::string
                     {"full_name", person->full_name},
                     {"role", std::string(name(role))},
                     {"has_password", person->has_password}};
+  if (person->has_sign_on) me["has_sign_on"] = true;
   add_color(me, *person);
   return json_response(me);
 }
@@ -57,6 +58,14 @@ Result<void> check_no_script(const Request& request) {
   return fail(ErrorCode::forbidden, "Not allowed for scripts",
               "A token for scripts cannot change accounts. Sign in with your user name and "
               "password.");
+}
+
+Result<void> check_local_accounts(const RouteContext& context) {
+  if (context.options.local_accounts) return {};
+  return fail(ErrorCode::forbidden, "Passwords are switched off",
+              "This site does not use passwords. Sign in with one of the buttons on the sign-in "
+              "page.",
+              "password");
 }
 
 std::string visible_name(const Request& request, const std::string& user) {
@@ -96,6 +105,7 @@ Result<Response> sign_in_by_link(const RouteContext& context, LoginThrottle& gat
 
 Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::Login>(request));
+  if (!body.token) STRATA_TRY(check_local_accounts(context));
   const std::string user = body.user.value_or(""), address = address_of(request);
   STRATA_TRY(gate.pass(address, user));
   const std::string way = body.token ? "token" : "password";
@@ -130,6 +140,7 @@ Result<Response> change_me(const RouteContext& context, const Request& request) 
 Result<Response> change_password(const RouteContext& context, LoginThrottle& gate,
                                  const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::PasswordChange>(request));
+  STRATA_TRY(check_local_accounts(context));
   STRATA_TRY(store::check_password(body.password, request.user(), "password"));
   const auto hash = STRATA_TRY(context.store.accounts().password_of(request.user()));
   if (!hash.empty()) {

@@ -154,6 +154,7 @@ Result<Response> show_invitation(const RouteContext& context, const Request& req
 
 Result<Response> accept_invitation(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::InvitationAccept>(request));
+  STRATA_TRY(check_local_accounts(context));
   const auto invited = invited_by(context, body.invitation);
   if (!invited && invited.error().code == ErrorCode::unauthenticated) {
     const store::ActingAs acting(signing_in(request, "invitation"));

@@ -129,6 +129,7 @@ export const words = {
 
 export const path_words = {
   project: mostly("site", "default"),
+  provider: mostly("museum"),
   model: mostly("wall", "wall", "wall-2"),
   layer: mostly(...kLayers),
   look: mostly("infrared", "1"),
