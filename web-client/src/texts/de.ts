@@ -58,6 +58,22 @@ export const texts = {
     token_empty: "Fügen Sie zuerst einen Link oder ein Token ein.",
     token_wrong:
       "Unbekannter Link oder unbekanntes Token. Kopieren Sie alles vollständig und ohne Leerzeichen, und versuchen Sie es erneut.",
+    with_provider: (provider) => `Mit ${provider} anmelden`,
+    problems: {
+      unknown_provider: "Diese Anmeldung gibt es nicht mehr. Wählen Sie eine andere.",
+      denied:
+        "Die Anmeldung wurde abgebrochen. Versuchen Sie es erneut, oder wählen Sie eine andere Anmeldung.",
+      expired:
+        "Die Anmeldung hat zu lange gedauert, wurde schon verwendet oder in einem anderen Browser begonnen. Melden Sie sich erneut an.",
+      refused:
+        "Die Anmeldung ist fehlgeschlagen. Versuchen Sie es erneut. Wenn sie wieder fehlschlägt, fragen Sie die Administration dieses Servers.",
+      no_account:
+        "Sie haben auf diesem Server kein Konto. Bitten Sie die Administration dieses Servers um Zugang.",
+      disabled: "Ihr Konto ist deaktiviert. Fragen Sie die Administration dieses Servers.",
+      unreachable:
+        "Der Anmeldedienst ist nicht erreichbar. Versuchen Sie es in einigen Minuten erneut.",
+      busy: "Zurzeit melden sich zu viele Personen an. Versuchen Sie es in einigen Minuten erneut.",
+    },
   },
 
   password: {

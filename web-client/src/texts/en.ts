@@ -39,6 +39,20 @@ export const texts = {
     token_hint: "The link looks like",
     token_empty: "Paste a link or a token first.",
     token_wrong: "Unknown link or token. Copy it completely, without spaces, and try again.",
+    with_provider: (provider: string) => `Sign in with ${provider}`,
+    problems: {
+      unknown_provider: "This way to sign in no longer exists. Choose another one.",
+      denied: "The sign-in was canceled. Try again, or choose another way to sign in.",
+      expired:
+        "The sign-in took too long, was already used, or began in another browser. Sign in again.",
+      refused:
+        "The sign-in failed. Try again. If it fails again, ask an administrator of this site.",
+      no_account:
+        "You do not have an account on this site. Ask an administrator of this site for access.",
+      disabled: "Your account is disabled. Ask an administrator of this site.",
+      unreachable: "The sign-in service cannot be reached. Try again in a few minutes.",
+      busy: "Too many people are signing in. Try again in a few minutes.",
+    },
   },
 
   password: {

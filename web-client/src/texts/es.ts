@@ -57,6 +57,22 @@ export const texts = {
     token_hint: "El enlace tiene esta forma:",
     token_empty: "Pegue primero un enlace o un token.",
     token_wrong: "Enlace o token desconocido. Cópielo entero, sin espacios, e inténtelo de nuevo.",
+    with_provider: (provider) => `Iniciar sesión con ${provider}`,
+    problems: {
+      unknown_provider: "Esta forma de iniciar sesión ya no existe. Elija otra.",
+      denied:
+        "Se ha cancelado el inicio de sesión. Inténtelo de nuevo o elija otra forma de iniciar sesión.",
+      expired:
+        "El inicio de sesión ha tardado demasiado, ya se ha usado o empezó en otro navegador. Inicie sesión de nuevo.",
+      refused:
+        "No se ha podido iniciar sesión. Inténtelo de nuevo. Si vuelve a fallar, consulte a un administrador de este servidor.",
+      no_account:
+        "No tiene una cuenta en este servidor. Pida acceso a un administrador de este servidor.",
+      disabled: "Su cuenta está desactivada. Consulte a un administrador de este servidor.",
+      unreachable:
+        "No se puede conectar con el servicio de inicio de sesión. Inténtelo dentro de unos minutos.",
+      busy: "Demasiadas personas están iniciando sesión. Inténtelo dentro de unos minutos.",
+    },
   },
 
   password: {

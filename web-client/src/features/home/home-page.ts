@@ -162,7 +162,7 @@ export class StrataHomePage extends LitElement {
       </header>
       <main>
         ${
-          this.me.has_password
+          this.me.has_password || this.me.has_sign_on
             ? nothing
             : html`<p class="no-password">
               <button class="link" @click=${() => askAccount(this, "account")}>${texts.account.no_password}</button>
