@@ -33,6 +33,7 @@ const howTo = {
     "watch-the-server",
     "back-up-and-restore",
     "manage-people",
+    "sign-in-with-openid-connect",
     "limit-visibility",
   ],
 };
