@@ -96,7 +96,7 @@ unpack_beside() {
   say "Unpacking $package into build/deps: $why"
   mkdir -p "$deps"
   update_package_lists
-  (cd "$deps" && apt-get -qq download "$package" && dpkg -x "$package"_*.deb . && rm -f "$package"_*.deb) ||
+  (cd "$deps" && apt-get -qq -o APT::Sandbox::User=root download "$package" && dpkg -x "$package"_*.deb . && rm -f "$package"_*.deb) ||
     die "Could not download $package."
 }
 
@@ -117,6 +117,20 @@ setup_conflicting() {
 # 80.
 setup_nginx() {
   PATH=$PATH:/usr/sbin command -v nginx >/dev/null || unpack_beside nginx usr/sbin/nginx "installed, it would start a server of its own"
+}
+
+# The programs of examples/cluster. Installed, etcd and Patroni would start services of the machine.
+# Patroni needs some packages of Python, which are unpacked if they are not installed.
+python_of_patroni=(python3-cdiff python3-click python3-colorama python3-dateutil python3-dnspython python3-etcd python3-pkg-resources
+  python3-prettytable python3-psutil python3-psycopg2 python3-six python3-urllib3 python3-wcwidth python3-yaml)
+setup_cluster() {
+  local package why="installed, it would start a service"
+  setup_nginx
+  unpack_beside etcd-server usr/bin/etcd "$why"
+  unpack_beside patroni usr/bin/patroni "$why"
+  for package in $(missing_packages "${python_of_patroni[@]}"); do
+    unpack_beside "$package" "usr/share/doc/$package/copyright" "Patroni needs it"
+  done
 }
 
 require_node() {

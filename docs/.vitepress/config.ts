@@ -30,6 +30,7 @@ const howTo = {
     "install",
     "operate-a-site",
     "run-several-nodes",
+    "move-to-three-nodes",
     "watch-the-server",
     "back-up-and-restore",
     "manage-people",
