@@ -30,7 +30,7 @@ def check_services(name, services, base, known):
         assert (
             service in base or "image" in said
         ), f"{where} is neither in compose.yaml nor has an image"
-        if service == "strata":
+        if service == "strata" or said.get("image", "").startswith("strata:"):
             strange = {
                 key for key in said.get("environment", {}) if key.startswith("STRATA_")
             } - known
@@ -43,9 +43,10 @@ def check_services(name, services, base, known):
                 ), f"{where} mounts {source}, which is not there"
         if "build" in said:
             context = os.path.join(DOCKER, said["build"]["context"])
+            is_postgres = said["image"].startswith("strata-postgres:")
             assert os.path.samefile(
                 os.path.join(context, said["build"]["dockerfile"]),
-                os.path.join(DOCKER, "Dockerfile"),
+                os.path.join(DOCKER, "cluster" if is_postgres else "", "Dockerfile"),
             ), where
 
 
@@ -79,10 +80,41 @@ def check_compose():
     assert base["services"]["database"]["image"].startswith(f"postgres:{major}-"), major
 
 
-def check_image():
-    dockerfile, ignored = read("docker", "Dockerfile"), read(".dockerignore")
-    kept = re.findall(r"^!(.*)$", ignored, re.M)
-    assert ignored.splitlines()[1] == "*", "what is sent to the builder is named one by one"
+def check_cluster():
+    """compose.cluster.yaml starts the same cluster as examples/cluster."""
+    services = yaml.safe_load(read("docker", "compose.cluster.yaml"))["services"]
+    members = {name: said for name, said in services.items() if name.startswith("postgres-")}
+    nodes = {name: said for name, said in services.items() if name.startswith("node-")}
+    assert len(members) == len(nodes) == 3
+    for name, said in members.items():
+        given = said["environment"]
+        assert name == given["PATRONI_NAME"] == said["hostname"], name
+        assert given["PATRONI_RESTAPI_CONNECT_ADDRESS"] == f"{name}:8008", name
+        assert given["PATRONI_POSTGRESQL_CONNECT_ADDRESS"] == f"{name}:5432", name
+        assert f"{name}:/data" in said["volumes"], name
+    ports = [port.split(":")[1] for said in members.values() for port in said["ports"]]
+    site = read("examples", "nodes", "nginx.conf")
+    for name, said in nodes.items():
+        given = said["environment"]
+        assert f"port={','.join(ports)} target_session_attrs=read-write" in given["STRATA_DATABASE"]
+        letter, listen = name[-1], given["STRATA_LISTEN"]
+        assert given["STRATA_NODE_URL"].endswith(f"/node/{letter}"), name
+        assert f"location /node/{letter}/ {{ proxy_pass http://{listen}/; }}" in site, name
+        assert f"{name}:/data" in said["volumes"], name
+
+    patroni = yaml.safe_load(read("docker", "cluster", "patroni.yaml"))
+    sys.path.insert(0, os.path.join(ROOT, "examples", "cluster"))
+    from cluster import DCS, INITDB  # pylint: disable=import-outside-toplevel
+
+    dcs = patroni["bootstrap"]["dcs"]
+    assert patroni["bootstrap"]["initdb"] == INITDB
+    for name, value in DCS.items():
+        if name != "postgresql":
+            assert dcs[name] == value, name
+    assert dcs["postgresql"]["parameters"].items() >= DCS["postgresql"]["parameters"].items()
+
+
+def check_copies(dockerfile, kept):
     for line in re.findall(r"^COPY (?!--from)(.*)$", dockerfile, re.M):
         for source in line.split()[:-1]:
             assert os.path.exists(os.path.join(ROOT, source)), f"COPY {source}: not there"
@@ -90,6 +122,14 @@ def check_image():
                 source == path or source.startswith(path + "/") or path.startswith(source + "/")
                 for path in kept
             ), f".dockerignore leaves {source} out"
+
+
+def check_image():
+    dockerfile, ignored = read("docker", "Dockerfile"), read(".dockerignore")
+    kept = re.findall(r"^!(.*)$", ignored, re.M)
+    assert ignored.splitlines()[1] == "*", "what is sent to the builder is named one by one"
+    check_copies(dockerfile, kept)
+    check_copies(read("docker", "cluster", "Dockerfile"), kept)
     for path in kept:
         assert os.path.exists(os.path.join(ROOT, path)), f".dockerignore: {path} is not there"
 
@@ -100,12 +140,16 @@ def check_image():
         read("docker", "compose.https.yaml"),
     ):
         assert user in told, f"the image's user is {user}"
-    for script in ("check", "bin/strata-health", "bin/packages_of", "postgres/make_database.sh"):
+    for script in (
+        *("check", "bin/strata-health", "bin/packages_of", "postgres/make_database.sh"),
+        *("cluster/member", "cluster/make_site"),
+    ):
         assert os.access(os.path.join(DOCKER, script), os.X_OK), f"docker/{script} cannot be run"
 
 
 def main():
     check_compose()
+    check_cluster()
     check_image()
     print("the files of docker/ agree")
 
