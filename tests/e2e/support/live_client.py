@@ -45,7 +45,9 @@ class LiveClient:
         receive_buffer=None,
         subprotocol="strata.v1",
         query="",
+        base="",
     ):
+        """`base`: the path of a node behind a proxy, before /api."""
         port = server.port
         if port is None:
             raise ConnectionRefusedError("the server is down")
@@ -58,8 +60,9 @@ class LiveClient:
         if server.tls:
             self.socket = server.tls.wrap_socket(self.socket, server_hostname=server.host)
         self.buffer, self.bytes_received = b"", 0
+        self.moved = ""  # the address in the last message `moved`
         lines = [
-            f"GET /api/v1/models/{model}/live{query} HTTP/1.1",
+            f"GET {base}/api/v1/models/{model}/live{query} HTTP/1.1",
             f"Host: {server.host}:{port}",
             "Upgrade: websocket",
             "Connection: Upgrade",
@@ -163,7 +166,9 @@ class LiveClient:
             if not first & 0x80:
                 continue
             if kind == 1:
-                return json.loads(content)
+                message = json.loads(content)
+                self.moved = message.get("url", "") if message["op"] == "moved" else ""
+                return message
             header = FRAME_HEADER.unpack(content[: FRAME_HEADER.size])
             return {
                 "op": "frame",

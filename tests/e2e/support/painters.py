@@ -119,6 +119,11 @@ class LivePainter(Painter):
     """Paints a stroke of several batches. After a lost connection, begins the stroke again and
     sends the batches that were not saved."""
 
+    TRY_AGAIN = (503,)
+
+    def connect(self):
+        return LiveClient(self.server, self.model)
+
     def paint(self):
         layer, edit = self.stroke(2)
         stroke, begin = str(uuid.uuid4()), str(uuid.uuid4())
@@ -128,7 +133,7 @@ class LivePainter(Painter):
         saved = set()
         while len(saved) < len(batches):
             try:
-                with LiveClient(self.server, self.model) as live:
+                with self.connect() as live:
                     live.hello()
                     live.send(
                         {
@@ -154,7 +159,7 @@ class LivePainter(Painter):
                     if len(saved) == len(batches):
                         live.send({"op": "stroke.end", "id": str(uuid.uuid4()), "stroke": stroke})
             except Refused as refused:
-                if refused.status != 503:
+                if refused.status not in self.TRY_AGAIN:
                     raise
                 time.sleep(0.02)
             except AWAY:
