@@ -20,6 +20,7 @@ Result<std::optional<nlohmann::json>> Answers::find(const std::string& key) {
         "SELECT answer FROM answers WHERE key = $1 AND time > now() - interval '7 days'",
         Params().text(key)));
     if (row.rows() == 0) return std::optional<nlohmann::json>();
+    STRATA_TRY(connection.confirm_visible());
     return std::optional<nlohmann::json>(row.json(0, 0));
   });
 }

@@ -261,6 +261,7 @@ Result<std::vector<bool>> find_saved(PgConnection& connection,
       "SELECT v.n FROM unnest($1::bigint[], $2::bigint[], $3::uuid[]) WITH ORDINALITY AS v (model_id, sequence, id, n) "
       "JOIN edits e ON e.model_id = v.model_id AND e.sequence = v.sequence AND e.id = v.id",
       Params().array(models).array(sequences).array(ids)));
+  if (rows.rows() > 0) STRATA_TRY(connection.confirm_visible());
   std::vector<bool> saved(entries.size());
   for (int i = 0; i < rows.rows(); ++i)
     saved[static_cast<std::size_t>(rows.integer(i, 0)) - 1] = true;

@@ -25,12 +25,19 @@ bool starts_with_any(std::string_view sqlstate, std::initializer_list<std::strin
 constexpr const char* kConnectionLost = "08006";
 constexpr std::chrono::milliseconds kConnectFor{5000};
 
+// PostgreSQL only warns about a canceled wait, and the COMMIT succeeds. Warnings are translated, so
+// the function that sends this one identifies it.
+void note_canceled_wait(void* canceled, const PGresult* notice) {
+  const char* function = PQresultErrorField(notice, PG_DIAG_SOURCE_FUNCTION);
+  if (function && std::string_view(function) == "SyncRepWaitForLSN")
+    *static_cast<bool*>(canceled) = true;
+}
+
 Error unknown_outcome(Error lost) {
   lost.title = "Result unknown";
   lost.detail =
-      "The server lost the connection to the database, so it is not known whether "
-      "the change was saved. Check before you repeat it. A repeat with the same "
-      "Idempotency-Key is safe.";
+      "The database did not confirm the change, so it is not known whether it was saved. Check "
+      "before you repeat it. A repeat with the same Idempotency-Key is safe.";
   return lost;
 }
 
@@ -100,8 +107,7 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
   if (!raw) return tl::unexpected(unavailable("out of memory"));
   if (PQstatus(raw) != CONNECTION_OK || PQsetnonblocking(raw, 1) != 0)
     return tl::unexpected(unavailable(PQerrorMessage(raw)));
-  PQsetNoticeProcessor(
-      raw, [](void*, const char*) {}, nullptr);
+  PQsetNoticeReceiver(raw, note_canceled_wait, connection.wait_was_canceled_.get());
   connection.limits_ = {std::min(limits.answer, kConnectFor), {}, {}};
   auto set =
       connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
@@ -190,7 +196,14 @@ Result<PgResult> PgConnection::outcome() {
       last = failed(result);
   }
   if (!connection_) return failed(nullptr);
+  if (last) STRATA_TRY(standby_confirmed());
   return last;
+}
+
+Result<void> PgConnection::standby_confirmed() {
+  if (!std::exchange(*wait_was_canceled_, false)) return {};
+  sqlstate_ = kConnectionLost;
+  return tl::unexpected(unknown_outcome(unavailable("no standby confirmed the commit")));
 }
 
 tl::unexpected<Error> PgConnection::failed(const PGresult* result) {
@@ -262,6 +275,13 @@ Result<void> PgConnection::each_row(const char* sql, const Params& params,
   return outcome;
 }
 
+// A message in the WAL that no program reads. Only a transaction that writes WAL waits for
+// standbys.
+Result<void> PgConnection::confirm_visible() {
+  STRATA_TRY(query("SELECT pg_logical_emit_message(true, 'strata', '')"));
+  return {};
+}
+
 Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>& statements) {
   std::vector<std::string> names;
   for (const auto& statement : statements) {
@@ -301,6 +321,7 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
   }
   if (!PQexitPipelineMode(raw)) return failed(nullptr);
   if (!outcome) return tl::unexpected(outcome.error());
+  STRATA_TRY(standby_confirmed());
   return results;
 }
 

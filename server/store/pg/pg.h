@@ -141,7 +141,9 @@ class PgResult {
 
 // One connection, used by one thread at a time. Statements are prepared once per connection. A call
 // that waits longer than the limits closes the connection. It returns an `unavailable` error with
-// the sqlstate "08006", as if the server had closed the connection.
+// the sqlstate "08006", as if the server had closed the connection. A commit whose wait for a
+// synchronous standby was canceled returns the same error, because the change may be lost when the
+// primary fails.
 class PgConnection {
  public:
   // Makes one attempt of at most 5 seconds. Commits of the session are durable (synchronous_commit
@@ -175,6 +177,12 @@ class PgConnection {
   Result<void> each_row(const char* sql, const Params& params,
                         const std::function<Result<void>(const PgResult&)>& on_row);
 
+  // Makes the current transaction (or one of its own) wait, when it commits, until the synchronous
+  // standbys have all changes that this session can read. Call it before you report changes that
+  // another session has committed: that commit may still wait for a standby, or its wait may have
+  // been canceled.
+  Result<void> confirm_visible();
+
   // Sends statements without waiting between them. Returns the first failure; the server skips the
   // later statements.
   struct Statement {
@@ -198,6 +206,7 @@ class PgConnection {
   bool flush();
   PGresult* next_result();
   Result<PgResult> outcome();
+  Result<void> standby_confirmed();
   void close(std::string reason);
   struct Finish {
     void operator()(PGconn* connection) const { PQfinish(connection); }
@@ -205,6 +214,8 @@ class PgConnection {
   std::unique_ptr<PGconn, Finish> connection_;
   std::map<std::string, std::string, std::less<>> prepared_;
   PgLimits limits_;
+  // On the heap, because libpq keeps its address.
+  std::unique_ptr<bool> wait_was_canceled_ = std::make_unique<bool>(false);
   std::string closed_because_;
   std::string sqlstate_;
 };
