@@ -1640,7 +1640,11 @@ CREATE TABLE public.schema_checksums (
 );
 
 CREATE TABLE public.schema_migrations (
-    version character varying(128) NOT NULL
+    version character varying(128) NOT NULL,
+    readable_from bigint,
+    applied_by text,
+    CONSTRAINT schema_migrations_applied_by_check CHECK ((char_length(applied_by) <= 255)),
+    CONSTRAINT schema_migrations_readable_from_check CHECK ((readable_from > 0))
 );
 
 CREATE TABLE public.sign_ons (

@@ -94,11 +94,20 @@ nlohmann::json check_gpu(Report& report) {
 void check_schema(Report& report, const store::DatabaseState& state) {
   const std::string versions = "version " + std::to_string(state.schema_version) +
                                ", this program has " + std::to_string(state.known_version);
-  if (state.schema_version > state.known_version)
-    report.bad("Schema", versions,
-               "The database is newer: start the version of Strata that wrote it, or a later one.");
+  if (state.schema_version > state.known_version && state.readable_from > state.known_version)
+    report.bad("Schema", versions + ", and programs need " + std::to_string(state.readable_from),
+               "The database is newer. " + store::newer_version_advice(state.applied_by));
+  else if (state.schema_version > state.known_version)
+    report.warn("Schema", versions + ", which can use it",
+                "Another node has a newer version of Strata: install it for this node, too.");
+  else if (state.schema_version == 0)
+    report.good("Schema", "none: the first start creates it");
   else if (state.schema_version < state.known_version)
-    report.good("Schema", versions + ": the next start updates it");
+    report.good(
+        "Schema",
+        versions + ": the next start updates it; running nodes of the older version " +
+            (state.readable_after_update <= state.schema_version ? "can continue"
+                                                                 : "must be stopped before"));
   else
     report.good("Schema", "version " + std::to_string(state.schema_version));
 }

@@ -22,8 +22,9 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
     return fail(ErrorCode::internal, "Database cannot be used",
                 "The encoding of the database is " + encoding.text(0, 0) +
                     ". Create the database with ENCODING 'UTF8'.");
-  auto version = STRATA_TRY(migrate(*connection, migrations));
-  store->impl_->schema_version = version;
+  const auto schema = STRATA_TRY(migrate(*connection, migrations));
+  store->impl_->schema_version = schema.version();
+  store->impl_->readable_from = schema.readable_from();
   return store;
 }
 
@@ -58,7 +59,7 @@ Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {
     auto row = STRATA_TRY(connection.query(
         "SELECT current_setting('server_version'), pg_database_size(current_database())"));
-    return StoreInfo{row.text(0, 0), impl_->schema_version,
+    return StoreInfo{row.text(0, 0), impl_->schema_version, impl_->readable_from,
                      static_cast<std::uint64_t>(row.integer(0, 1))};
   });
 }

@@ -45,7 +45,9 @@ struct StoreOptions {
 
 struct StoreInfo {
   std::string server_version;
-  std::int64_t schema_version = 0;
+  std::int64_t schema_version = 0;  // the newest migration of the database
+  // Programs whose newest migration is this one, or a later one, can use the database.
+  std::int64_t readable_from = 0;
   std::uint64_t database_bytes = 0;
 };
 
@@ -57,7 +59,7 @@ struct StoreInfo {
 class Store {
  public:
   // Connects and applies the missing migrations in `migrations_dir`. Returns an error if the schema
-  // is newer than these migrations.
+  // is newer than these migrations and not readable for them (store/cluster/migrations.h).
   static Result<std::unique_ptr<Store>> open(StoreOptions options,
                                              const std::filesystem::path& migrations_dir);
   ~Store();

@@ -137,7 +137,7 @@ struct Store::Impl {
   PersonalViews personal_views{pool};
   Tools tools{pool};
   Answers answers{pool};
-  std::int64_t schema_version = 0;
+  std::int64_t schema_version = 0, readable_from = 0;
   NamedParts snapshots{pool, NamedParts::kSnapshots};
 
   template <class Answer, class Work>

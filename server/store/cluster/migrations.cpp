@@ -2,20 +2,48 @@
 
 #include <algorithm>
 #include <fstream>
-#include <map>
+#include <optional>
+#include <set>
 #include <sstream>
+#include <thread>
+#include <utility>
 
 #include "core/digest.h"
 #include "core/log.h"
+#include "core/text/ascii.h"
 #include "core/text/hex.h"
 #include "core/text/slug.h"
+#include "core/version.h"
+#include "store/cluster/inspect.h"
 
 namespace strata::store {
 namespace {
 
 // The advisory lock that every server takes when it starts. The number is arbitrary but fixed.
-constexpr const char* kLock = "SELECT pg_advisory_lock(7130915062201)";
+constexpr const char* kTryLock = "SELECT pg_try_advisory_lock(7130915062201)";
 constexpr const char* kUnlock = "SELECT pg_advisory_unlock(7130915062201)";
+constexpr std::chrono::milliseconds kLockPause{100};
+
+// The migration that added `schema_migrations.readable_from`. Older programs do not read the column
+// and refuse every newer database, so no migration is readable for them.
+constexpr std::int64_t kFirstReader = 44;
+
+// Returns whether a line is, or was probably meant to be, `-- readable-from: N`.
+bool is_about_readers(std::string_view line) {
+  const std::string words = to_lower(trimmed(line, " \t\r-"));
+  return words.starts_with("readable-from") || words.starts_with("readable_from:") ||
+         words.starts_with("readable from:");
+}
+
+// Returns N of the line `-- readable-from: N`, or nothing if the line is malformed.
+std::optional<std::int64_t> readers_of(std::string_view line, std::int64_t own_number) {
+  constexpr std::string_view kStart = "-- readable-from: ";
+  if (!line.starts_with(kStart)) return std::nullopt;
+  const std::string number(line.substr(kStart.size()));
+  if (!is_all_digits(number) || number.size() > 18) return std::nullopt;
+  const std::int64_t first = std::stoll(number);
+  return first >= kFirstReader && first < own_number ? std::optional(first) : std::nullopt;
+}
 
 Result<Migration> parse(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
@@ -30,6 +58,7 @@ Result<Migration> parse(const std::filesystem::path& file) {
   Migration migration{name.substr(0, name.find('_')), name, {}, to_hex(sha256(text))};
   if (!is_all_digits(migration.version) || migration.version.size() > 18)
     return bad("the name must start with digits and an underscore.");
+  migration.number = migration.readable_from = std::stoll(migration.version);
   bool up = false;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -38,12 +67,29 @@ Result<Migration> parse(const std::filesystem::path& file) {
       if (line.find("transaction:false") != std::string::npos)
         return bad("must run in a transaction.");
       up = true;
+    } else if (is_about_readers(line)) {
+      const auto first = readers_of(line, migration.number);
+      if (!first || migration.readable_from != migration.number)
+        return bad("`" + line + "` must be `-- readable-from: N`, where N is at least " +
+                   std::to_string(kFirstReader) +
+                   " and less than the number of the migration. The line may occur only once.");
+      migration.readable_from = *first;
     } else if (up) {
       migration.sql += line + "\n";
     }
   }
   if (!up) return bad("has no line `-- migrate:up`.");
   return migration;
+}
+
+// The columns exist from migration kFirstReader on.
+Result<void> store_readers(PgConnection& connection, const Migration& migration) {
+  std::optional<std::int64_t> first;
+  if (migration.readable_from < migration.number) first = migration.readable_from;
+  STRATA_TRY(connection.query(
+      "UPDATE schema_migrations SET readable_from = $2, applied_by = $3 WHERE version = $1",
+      Params().text(migration.version).optional_integer(first).text(version())));
+  return {};
 }
 
 Result<void> apply_one(PgConnection& connection, const Migration& migration) {
@@ -57,6 +103,7 @@ Result<void> apply_one(PgConnection& connection, const Migration& migration) {
     problem.detail = "Migration " + migration.name + " failed: " + problem.detail;
     return tl::unexpected(problem);
   }
+  if (migration.number >= kFirstReader) STRATA_TRY(store_readers(connection, migration));
   return transaction.commit();
 }
 
@@ -74,38 +121,95 @@ Result<void> make_tables(PgConnection& connection) {
       "sha256 text NOT NULL)");
 }
 
-Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<Migration>& known) {
+tl::unexpected<Error> newer_database(const Schema& schema, const std::string& migration,
+                                     std::int64_t newest_known) {
+  return fail(
+      ErrorCode::conflict, "Database is newer",
+      "The database has migration " + migration + ". Only programs with migration " +
+          std::to_string(schema.readable_from()) +
+          " or a later one can use the database, and the last migration of this program is " +
+          std::to_string(newest_known) + ". " + newer_version_advice(schema.applied_by));
+}
+
+tl::unexpected<Error> different_migrations(const Schema& schema, const std::string& why) {
+  return fail(ErrorCode::conflict, "Migrations differ",
+              why + " " + newer_version_advice(schema.applied_by));
+}
+
+Result<void> check_unchanged(PgConnection& connection, const Migration& ours,
+                             const std::string& applied_sum) {
+  if (applied_sum == ours.sha256) return {};
+  if (!applied_sum.empty())
+    return fail(ErrorCode::conflict, "Migration changed",
+                "Migration " + ours.name +
+                    " has changed since it was applied. Do not edit applied migrations: restore "
+                    "the file and put the change into a new migration.");
+  // dbmate applied the migration
+  STRATA_TRY(connection.query("INSERT INTO schema_checksums (version, sha256) VALUES ($1, $2)",
+                              Params().text(ours.version).text(ours.sha256)));
+  if (ours.number >= kFirstReader) STRATA_TRY(store_readers(connection, ours));
+  return {};
+}
+
+Result<Schema> migrate_locked(PgConnection& connection, const std::vector<Migration>& known) {
   STRATA_TRY(make_tables(connection));
+  auto schema = STRATA_TRY(read_schema(connection));
   auto rows = STRATA_TRY(connection.query(
       "SELECT m.version, c.sha256 FROM schema_migrations m "
       "LEFT JOIN schema_checksums c USING (version) ORDER BY length(m.version), m.version"));
-  std::map<std::string, std::string> applied;
-  for (int i = 0; i < rows.rows(); ++i)
-    applied[rows.text(i, 0)] = rows.null(i, 1) ? "" : rows.text(i, 1);
-
-  for (const auto& [version, sum] : applied) {
+  const std::int64_t newest_known = known.empty() ? 0 : known.back().number;
+  std::set<std::string> applied;
+  std::string newer;  // the last applied migration that this program does not have
+  for (int i = 0; i < rows.rows(); ++i) {
+    const std::string version = rows.text(i, 0);
+    applied.insert(version);
     const auto ours = std::ranges::find(known, version, &Migration::version);
-    if (ours == known.end())
-      return fail(ErrorCode::conflict, "Database is newer",
-                  "The database has migration " + version +
-                      ", which is newer than this version of Strata. Start the version that "
-                      "applied it, or a later version.");
-    if (!sum.empty() && sum != ours->sha256)
-      return fail(ErrorCode::conflict, "Migration changed",
-                  "Migration " + ours->name +
-                      " has changed since it was applied. Do not edit applied migrations: restore "
-                      "the file and put the change into a new migration.");
-    if (sum.empty()) {  // dbmate applied the migration
-      STRATA_TRY(connection.query("INSERT INTO schema_checksums (version, sha256) VALUES ($1, $2)",
-                                  Params().text(version).text(ours->sha256)));
+    if (ours != known.end()) {
+      STRATA_TRY(check_unchanged(connection, *ours, rows.null(i, 1) ? "" : rows.text(i, 1)));
+      continue;
     }
+    if (std::stoll(version) < newest_known)
+      return different_migrations(schema, "The database has migration " + version +
+                                              ", which this program does not have although it has "
+                                              "later ones.");
+    if (schema.readable_from() > newest_known) return newer_database(schema, version, newest_known);
+    newer = version;
   }
   for (const Migration& migration : known) {
     if (applied.contains(migration.version)) continue;
+    if (!newer.empty())
+      return different_migrations(schema, "The database has migration " + newer +
+                                              ", but it lacks the earlier migration " +
+                                              migration.name + " of this program.");
     STRATA_TRY(apply_one(connection, migration));
     log::info("database: applied migration " + migration.name);
   }
-  return known.empty() ? 0 : std::stoll(known.back().version);
+  if (!newer.empty()) {
+    log::info("database: has migration " + newer + ", which is newer than this program (" +
+              std::to_string(newest_known) + ") and which it can use");
+    return schema;
+  }
+  return read_schema(connection);
+}
+
+// Tries again and again instead of waiting in the database, so that the wait has a limit and the
+// log shows its reason.
+Result<void> take_lock(PgConnection& connection, std::chrono::milliseconds wait) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + wait;
+  const std::string limit =
+      std::to_string(std::chrono::duration_cast<std::chrono::seconds>(wait).count()) + " s";
+  for (bool logged = false;;) {
+    const auto taken = STRATA_TRY(connection.query(kTryLock));
+    if (taken.boolean(0, 0)) return {};
+    if (Clock::now() >= end)
+      return fail(ErrorCode::unavailable, "Database is being updated",
+                  "Another server has been updating the database for more than " + limit +
+                      ". Start this server again when the other one has finished.");
+    if (!std::exchange(logged, true))
+      log::info("database: waiting up to " + limit + " while another server updates it");
+    std::this_thread::sleep_for(kLockPause);
+  }
 }
 
 }  // namespace
@@ -133,8 +237,36 @@ Result<std::vector<Migration>> read_migrations(const std::filesystem::path& fold
   return migrations;
 }
 
-Result<std::int64_t> migrate(PgConnection& connection, const std::vector<Migration>& known) {
-  STRATA_TRY(connection.script(kLock));
+std::int64_t Schema::version() const {
+  return readable_from_by_number.empty() ? 0 : readable_from_by_number.rbegin()->first;
+}
+
+std::int64_t Schema::readable_from() const {
+  std::int64_t first = 0;
+  for (auto newest = readable_from_by_number.rbegin(); newest != readable_from_by_number.rend();
+       ++newest) {
+    if (newest->first <= first) break;
+    first = std::max(first, newest->second);
+  }
+  return first;
+}
+
+// to_jsonb, because databases of older programs do not have the columns.
+Result<Schema> read_schema(PgConnection& connection) {
+  auto rows = STRATA_TRY(connection.query(
+      "SELECT version::bigint, coalesce((to_jsonb(m) ->> 'readable_from')::bigint, version::bigint), "
+      "coalesce(to_jsonb(m) ->> 'applied_by', '') FROM schema_migrations m ORDER BY 1"));
+  Schema schema;
+  for (int i = 0; i < rows.rows(); ++i) {
+    schema.readable_from_by_number[rows.integer(i, 0)] = rows.integer(i, 1);
+    schema.applied_by = rows.text(i, 2);
+  }
+  return schema;
+}
+
+Result<Schema> migrate(PgConnection& connection, const std::vector<Migration>& known,
+                       std::chrono::milliseconds wait) {
+  STRATA_TRY(take_lock(connection, wait));
   auto outcome = migrate_locked(connection, known);
   (void)connection.script(kUnlock);  // a broken connection has already released its lock
   return outcome;
