@@ -126,10 +126,13 @@ class SharedPostgres:
 
 
 class Node(StrataServer):
-    """A server process of a site. It keeps its address when it starts again."""
+    """A server process of a site. It keeps its address when it starts again. `database` has a
+    `dsn`."""
 
     def __init__(self, database, token, url=None, options=()):
         super().__init__()
+        self.database = database
+        self.share = None  # STRATA_SHARE at the next start
         self.own_port = free_port()
         self.listen = f"127.0.0.1:{self.own_port}"
         self.node_url = url or f"http://127.0.0.1:{self.own_port}"
@@ -142,6 +145,16 @@ class Node(StrataServer):
 
     def _fill(self):
         """The data are in the shared PostgreSQL. The folder contains only uploads."""
+
+    def environment(self):
+        own = {"STRATA_SHARE": self.share} if self.share else {}
+        return {**super().environment(), **own}
+
+    def is_ready(self):
+        try:
+            return self.get("//readyz").status == 200
+        except AWAY:
+            return False
 
     def kill(self):
         self.frozen = False

@@ -97,6 +97,15 @@ class PaintedModel:
         assert sorted(found) == list(range(1, len(found) + 1)), "the sequences have gaps"
         return found
 
+    def check_saved_once(self):
+        """Checks that the history contains the edits that were reported as saved, each once, and no
+        others. Returns it. Call after `end_painting`."""
+        found = self.check_history()
+        ids = [row["id"] for _, row in found.values()]
+        assert len(set(ids)) == len(ids), "an edit is in the history twice"
+        assert sorted(found) == sorted(self.book.edits), "the history has an edit that nobody sent"
+        return found
+
     def compare_with_replay(self, newest):
         """Paints all edits again in order, on new layers and without faults. Checks that the texels
         are equal."""
