@@ -14,6 +14,7 @@ import threading
 import time
 import urllib.parse
 
+from support.database_link import DatabaseLink
 from support.live_client import AWAY
 from support.missing import missing
 from support.nginx import free_port
@@ -60,6 +61,11 @@ class SharedPostgres:
                 check=True,
                 capture_output=True,
             )
+        self._launch()
+        wait_for(self.answers, "PostgreSQL to answer")
+        return self
+
+    def _launch(self):
         cluster = os.path.join(self.folder, "pgdata")
         with open(os.path.join(cluster, "PG_VERSION"), encoding="ascii") as file:
             version = file.read().strip()
@@ -94,8 +100,22 @@ class SharedPostgres:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        wait_for(self.answers, "PostgreSQL to answer")
-        return self
+
+    def kill(self):
+        """Sends kill -9. PostgreSQL's other processes end by themselves soon after."""
+        self.process.kill()
+        self.process.wait()
+
+    def restart(self):
+        """Starts PostgreSQL after `kill`, and returns when it answers. It refuses to start while
+        processes of the killed one remain."""
+
+        def answers():
+            if self.process.poll() is not None:
+                self._launch()
+            return self.psql("SELECT 1").returncode == 0
+
+        wait_for(answers, "PostgreSQL to answer again")
 
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)  # a fast shutdown
@@ -179,15 +199,17 @@ class Node(StrataServer):
 
 class Site(Requests):
     """The nodes of a site. Use it in a `with` block. Calls of `ok`, `get` and `post` go to a random
-    running node and follow redirections, so a site can replace a server in the helpers of tests."""
+    running node and follow redirections, so a site can replace a server in the helpers of tests.
+    With `links`, each node has its own DatabaseLink (`node.database`)."""
 
-    def __init__(self, count, seed=1, urls=None, options=(), demo=False):
+    def __init__(self, count, seed=1, urls=None, options=(), demo=False, links=False):
         self.postgres = SharedPostgres(demo)
         self.random = random.Random(seed)
         self.lock = threading.Lock()
         self.token = secrets.token_hex(24)
         self.host, self.tls = "127.0.0.1", None
         self.count, self.urls, self.options = count, urls, options
+        self.with_links, self.links = links, []
         self.nodes = []
 
     def __enter__(self):
@@ -195,7 +217,10 @@ class Site(Requests):
         try:
             for number in range(self.count):
                 url = self.urls[number] if self.urls else None
-                node = Node(self.postgres, self.token, url, self.options)
+                if self.with_links:
+                    self.links.append(DatabaseLink(self.postgres))
+                database = self.links[-1] if self.links else self.postgres
+                node = Node(database, self.token, url, self.options)
                 self.nodes.append(node)
                 node.__enter__()
         except BaseException:
@@ -207,6 +232,8 @@ class Site(Requests):
         for node in self.nodes:
             if node in StrataServer.running:
                 node.__exit__(*failure)
+        for link in self.links:
+            link.close()
         self.postgres.__exit__()
 
     def running(self):
