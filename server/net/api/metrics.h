@@ -39,7 +39,7 @@ struct NodeGauges {
 };
 
 // Of a server with an archive (store/cluster/archive_keeper.h). Times are in seconds since 1970,
-// and 0 if there was none yet.
+// and 0 before the first one.
 struct ArchiveGauges {
   double archived_s = 0, copied_s = 0;
   std::uint64_t failed_segments = 0, failed_copies = 0;

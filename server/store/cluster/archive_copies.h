@@ -17,8 +17,8 @@ class Cluster;
 Result<ArchiveFolder::Copy> make_copy(const ArchiveFolder& archive, const Cluster& cluster,
                                       const std::function<bool()>& goes_on);
 
-// Returns whether the archive needs a new copy: there is none, the newest is older than `every`, or
-// WAL since the newest copy is missing, because PostgreSQL ran without the archive.
+// Returns whether the archive needs a new copy: it has no copy, the newest is older than `every`,
+// or WAL since the newest copy is missing, because PostgreSQL ran without the archive.
 Result<bool> needs_copy(const ArchiveFolder& archive, const Cluster& cluster,
                         std::chrono::hours every);
 
