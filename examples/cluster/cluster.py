@@ -506,7 +506,8 @@ class Cluster:
         for kind, limit_s in ((signal.SIGTERM, 60), (signal.SIGKILL, 60)):
             end = time.monotonic() + limit_s
             for part in parts:
-                for pid in [self.pid(part)] if self.pid(part) else self.pids(part):
+                own = self.pid(part)
+                for pid in [own] if own and kind == signal.SIGTERM else self.pids(part):
                     send(pid, kind)
             while any(self.pids(part) for part in parts) and time.monotonic() < end:
                 time.sleep(0.05)

@@ -88,9 +88,10 @@ Result<Address> parse_listen(const std::string& text) { return parse_address(tex
 // A server that is reachable from other machines needs an account or a provider of accounts,
 // because only accounts protect it.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls,
-                         bool has_provider) {
+                         bool has_passwords, bool has_provider) {
   if (is_loopback(address.host)) return {};
-  const auto has_administrator = STRATA_TRY(store.accounts().administrator_can_sign_in());
+  const auto has_administrator =
+      STRATA_TRY(store.accounts().administrator_can_sign_in(has_passwords));
   if (has_administrator || has_provider) {
     if (!has_tls)
       log::warning(
@@ -272,7 +273,9 @@ int run(ServeOptions options) {
   auto database = open_database(options.data);
   if (!database) return report(database.error());
   store::Store& store = *(*database)->store;
-  if (auto safe = check_reach(store, *address, !options.tls_cert.empty(), !providers->empty());
+  const bool has_passwords = options.local_accounts == "on";
+  if (auto safe = check_reach(store, *address, !options.tls_cert.empty(), has_passwords,
+                              !providers->empty());
       !safe)
     return report(safe.error());
   std::unique_ptr<store::ArchiveKeeper> archive;
@@ -323,7 +326,7 @@ int run(ServeOptions options) {
   server_options.tls_key = options.tls_key;
   server_options.owner_token = owner_token();
   server_options.sign_on_providers = std::move(*providers);
-  server_options.local_accounts = options.local_accounts == "on";
+  server_options.local_accounts = has_passwords;
   server_options.trash_days = options.trash_days;
   server_options.audit_days = options.audit_days;
   server_options.timeouts = options.timeouts;
@@ -344,7 +347,7 @@ int run(ServeOptions options) {
               << ": database strata, user strata_reader, password in "
               << (options.data.data / "sql-password").string() << std::endl;
   // An owner with a password does not need a link, which would appear in logs.
-  if (owner->has_password) {
+  if (owner->has_password && has_passwords) {
     std::cout << "sign in at: " << url << "/" << std::endl;
   } else {
     auto link = store.tokens().create_link(store::TokenKind::owner_link, owner->name,

@@ -121,11 +121,15 @@ Result<KeySet> Client::keys_for(const std::string& token, const std::string& add
   const std::lock_guard lock(mutex_);
   const Time now = clock_();
   const bool is_known = keys_.has(header.algorithm, header.kid);
-  if (now < keys_loaded_ + (is_known ? std::chrono::seconds(kRemember) : kReloadKeys)) return keys_;
+  if (now < keys_loaded_ + (is_known ? std::chrono::seconds(kRemember) : kReloadKeys)) {
+    if (!is_known && keys_failure_) return tl::unexpected(*keys_failure_);
+    return keys_;
+  }
   keys_loaded_ = now;  // also after a failure, so that forged tokens cause few requests
   const auto reply = fetch_({.url = address});
   auto loaded =
       object_in(reply, address).and_then([&](const json&) { return KeySet::parse(reply->body); });
+  keys_failure_ = loaded ? std::nullopt : std::optional(loaded.error());
   if (loaded)
     keys_ = std::move(*loaded);
   else if (!is_known)

@@ -74,6 +74,7 @@ class Client {
   std::optional<Error> failure_;  // of the last attempt to load the discovery document
   KeySet keys_;
   Time keys_loaded_{};
+  std::optional<Error> keys_failure_;  // of the last attempt to load the keys
 };
 
 }  // namespace strata::sign_on

@@ -104,7 +104,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       own_names_(own_names(options_.host, options_.allowed_origins)),
       store_(store),
       rooms_(rooms),
-      auth_(store, options_.owner_token),
+      auth_(store, options_.owner_token, options_.local_accounts),
       answers_(store),
       edit_book_(store),
       files_(options_.static_dir),

@@ -44,8 +44,8 @@ std::string cookie_of(std::string_view name, const std::string& value,
 std::string kiosk_name(KioskId id) { return std::string(kKioskPrefix) + to_string(id); }
 bool is_kiosk_name(const std::string& user) { return user.starts_with(kKioskPrefix); }
 
-Authenticator::Authenticator(store::Store& store, std::string owner_token)
-    : store_(store), owner_token_(std::move(owner_token)) {}
+Authenticator::Authenticator(store::Store& store, std::string owner_token, bool local_accounts)
+    : store_(store), owner_token_(std::move(owner_token)), local_accounts_(local_accounts) {}
 
 Result<std::optional<Principal>> Authenticator::identify_token(const std::string& token) {
   if (token.empty() || token.size() > kMaxTokenLength) return std::nullopt;
@@ -98,10 +98,10 @@ Result<Principal> Authenticator::owner_by_token() {
     changes = changes_;
     if (owner_token_now_.until > now) return principal(owner_token_now_.is_script);
   }
-  const auto has_password = STRATA_TRY(store_.accounts().administrator_can_sign_in());
+  const auto can_sign_in = STRATA_TRY(store_.accounts().administrator_can_sign_in(local_accounts_));
   std::lock_guard lock(mutex_);
-  if (changes == changes_) owner_token_now_ = {has_password, now + kRememberFor};
-  return principal(has_password);
+  if (changes == changes_) owner_token_now_ = {can_sign_in, now + kRememberFor};
+  return principal(can_sign_in);
 }
 
 std::string Authenticator::secret_of(const Request& request) {

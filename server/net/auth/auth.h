@@ -35,9 +35,9 @@ bool is_kiosk_name(const std::string& user);
 class Authenticator {
  public:
   // `owner_token` is the value of STRATA_OWNER_TOKEN and may be empty. The token has the owner role
-  // until an administrator has a password. Afterwards it is a token for scripts with the
-  // administrator role.
-  Authenticator(store::Store& store, std::string owner_token);
+  // until an administrator can sign in. Afterwards it is a token for scripts with the administrator
+  // role. `local_accounts`: people can sign in with passwords.
+  Authenticator(store::Store& store, std::string owner_token, bool local_accounts);
 
   // Returns nothing if the request has no secret. Returns 401 if the secret is unknown, expired or
   // revoked, and 503 if the database is unreachable.
@@ -76,6 +76,7 @@ class Authenticator {
   };
   store::Store& store_;
   const std::string owner_token_;
+  const bool local_accounts_;
   std::mutex mutex_;
   std::unordered_map<std::string, Remembered> remembered_;
   std::uint64_t changes_ = 0;  // the number of calls to `forget`

@@ -21,17 +21,23 @@ int major_version(const fs::path& pgdata) {
 
 // Deletes a folder of the archive. Another name first, so that an interruption does not leave an
 // incomplete copy that looks complete.
-void delete_copy(const fs::path& folder) {
+// Returns false if the folder still looks like a complete copy.
+bool delete_copy(const fs::path& folder) {
   std::error_code error;
   fs::path part = folder;
   if (folder.extension() != kUnfinished) {
     part += kUnfinished;
     fs::rename(folder, part, error);
+    if (error) {
+      log::warning("archive: cannot delete " + folder.string() + ": " + error.message() + ".");
+      return false;
+    }
   }
   fs::remove_all(part, error);
   if (error)
     log::warning("archive: cannot delete " + part.string() + ": " + error.message() +
                  ". Delete it yourself.");
+  return true;
 }
 
 // Returns the segments that PostgreSQL still has to archive.
@@ -91,7 +97,9 @@ Result<ArchiveFolder::Copy> make_copy(const ArchiveFolder& archive, const Cluste
 Result<bool> needs_copy(const ArchiveFolder& archive, const Cluster& cluster,
                         std::chrono::hours every) {
   const auto copies = archive.copies();
-  if (copies.empty() || std::chrono::system_clock::now() - copies.back().made >= every) return true;
+  if (copies.empty()) return true;
+  const auto age = std::chrono::system_clock::now() - copies.back().made;
+  if (age >= every || age < age.zero()) return true;  // the clock was wrong if a copy is too new
   auto connection = STRATA_TRY(PgConnection::connect(cluster.dsn("postgres")));
   auto row = STRATA_TRY(connection.query("SELECT pg_walfile_name(pg_current_wal_lsn())"));
   const auto current = parse_wal_name(row.text(0, 0));
@@ -116,7 +124,7 @@ void drop_unfinished(const ArchiveFolder& archive) {
 void drop_old(const ArchiveFolder& archive, int keep) {
   auto copies = archive.copies();
   while (copies.size() > static_cast<std::size_t>(std::max(1, keep))) {
-    delete_copy(copies.front().folder);
+    if (!delete_copy(copies.front().folder)) break;  // its WAL stays, too
     copies.erase(copies.begin());
   }
   if (copies.empty()) return;

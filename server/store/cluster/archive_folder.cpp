@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "core/text/timestamp.h"
 #include "core/uuid.h"
@@ -159,7 +160,10 @@ std::vector<ArchiveFolder::Copy> ArchiveFolder::copies() const {
   for (const auto& entry : fs::directory_iterator(copies_folder(), error))
     if (auto copy = read_copy(entry.path())) found.push_back(std::move(*copy));
   std::sort(found.begin(), found.end(),
-            [](const Copy& a, const Copy& b) { return a.made < b.made; });
+            // not by time alone, because a clock may have been wrong
+            [](const Copy& a, const Copy& b) {
+              return std::tie(a.first, a.made) < std::tie(b.first, b.made);
+            });
   return found;
 }
 
@@ -195,7 +199,8 @@ std::vector<std::string> ArchiveFolder::recovery_settings(
       "archive_mode=off",
       // so that clients can connect only after the recovery
       "hot_standby=off",
-      "restore_command=test -e " + file + " || exit 1; gzip -dc " + file + " > \"%p\" || exit 200",
+      "restore_command=test -d " + in_command(wal()) + " || exit 200; test -e " + file +
+          " || exit 1; gzip -dc " + file + " > \"%p\" || exit 200",
       // the archive contains no other history of the site
       "recovery_target_timeline=current", "recovery_target_action=promote"};
   if (moment) settings.push_back("recovery_target_time=" + utc_text(*moment));

@@ -66,6 +66,22 @@ Error explained(const ArchiveFolder& archive, const RestorePlan& plan, const fs:
           "--at"};
 }
 
+// PostgreSQL ends the recovery without an error at the first segment that it cannot use, for
+// example if the disk of the archive has disappeared.
+Result<void> check_replayed(const Cluster& cluster, const RestorePlan& plan) {
+  if (plan.moment || !plan.newest || plan.newest->timeline != plan.copy.first.timeline) return {};
+  auto connection = STRATA_TRY(PgConnection::connect(cluster.dsn()));
+  auto row =
+      STRATA_TRY(connection.query("SELECT coalesce(pg_last_wal_replay_lsn() - '0/0', 0)::bigint"));
+  if (static_cast<std::uint64_t>(row.integer(0, 0)) > plan.newest->number * kWalSegmentBytes)
+    return {};
+  return fail(ErrorCode::invalid, "Archive damaged",
+              "The recovery ended before the last archived segment, " + wal_name(*plan.newest) +
+                  ". A segment is damaged, or the archive was not readable for a moment. Try "
+                  "again, or restore an earlier moment with --at.",
+              "--archive");
+}
+
 Result<RestoredSite> read_site(const Cluster& cluster, const RestorePlan& plan) {
   auto connection = STRATA_TRY(PgConnection::connect(cluster.dsn()));
   auto row = STRATA_TRY(
@@ -101,7 +117,8 @@ Result<RestorePlan> plan_restore(
                 "The archive begins at " + utc_text(copies.front().made) +
                     ". Enter this moment or a later one.",
                 "--at");
-  RestorePlan plan{copies.front(), moment};
+  RestorePlan plan{copies.front(), moment, {}};
+  if (const auto segments = archive.segments(); !segments.empty()) plan.newest = *segments.rbegin();
   for (const auto& copy : copies)
     if (!moment || copy.made <= *moment) plan.copy = copy;
   // Without a moment, PostgreSQL would take a missing segment as the end of the archive.
@@ -145,6 +162,7 @@ Result<RestoredSite> restore_archive(const ArchiveFolder& archive, const Restore
   options.patience = std::chrono::seconds(0);
   auto cluster = Cluster::start(data_dir, options);
   if (!cluster) return tl::unexpected(explained(archive, plan, log, cluster.error()));
+  STRATA_TRY(check_replayed(**cluster, plan));
   return read_site(**cluster, plan);
 }
 

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/progress.h"
 #include "store/cluster/archive_folder.h"
+#include "store/cluster/archive_wal.h"
 
 namespace strata::store {
 
@@ -15,6 +16,7 @@ namespace strata::store {
 struct RestorePlan {
   ArchiveFolder::Copy copy;
   std::optional<std::chrono::system_clock::time_point> moment;  // empty: the last archived change
+  std::optional<WalSegment> newest;  // the last archived segment; empty: none since the copy
 };
 // Chooses the newest copy before the moment. Returns `not_found` if the archive has no copy that is
 // old enough or no copy at all, and `invalid` for a moment in the future or if a WAL segment that
@@ -31,7 +33,8 @@ struct RestoredSite {
 };
 // Recovers the moment into `data_dir`/postgres, which must not exist, and stops PostgreSQL again.
 // The copy is checked against its manifest. Returns `invalid` if the moment is after the last
-// archived change, or if the archive is damaged. After an error, the folder is incomplete.
+// archived change, or if the archive is damaged. Without a moment, all archived segments must have
+// been replayed. After an error, the folder is incomplete.
 Result<RestoredSite> restore_archive(const ArchiveFolder& archive, const RestorePlan& plan,
                                      const std::filesystem::path& data_dir, Progress& progress);
 

@@ -7,7 +7,7 @@ namespace strata::store {
 namespace {
 
 constexpr std::size_t kWalNameLength = 24;
-constexpr std::uint64_t kSegmentsPerLog = 256;  // of 16 MB in the 4 GB that a log number covers
+constexpr std::uint64_t kSegmentsPerLog = (std::uint64_t{4} << 30) / kWalSegmentBytes;
 
 // PostgreSQL writes capital letters only.
 std::optional<std::uint32_t> eight_digits(std::string_view text) {

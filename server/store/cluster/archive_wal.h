@@ -11,6 +11,8 @@
 // segment has 16 MB, the size that `initdb` chooses.
 namespace strata::store {
 
+constexpr std::uint64_t kWalSegmentBytes = 16u << 20;
+
 struct WalSegment {
   std::uint32_t timeline = 0;
   std::uint64_t number = 0;  // consecutive within the timeline

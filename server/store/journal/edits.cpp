@@ -70,6 +70,7 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
         connection.query(sql("SELECT ", kEditColumns, "WHERE e.model_id = $1 AND e.id = any($2)"),
                          Params().id(model_id).array(requested));
     if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() > 0) STRATA_TRY(connection.confirm_visible());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
     return state;
   });

@@ -21,9 +21,9 @@ class Accounts {
   explicit Accounts(Pool& pool) : pool_(pool) {}
 
   Result<std::vector<Person>> all();  // sorted by name
-  // Returns whether an administrator has a password, or has signed in with OpenID Connect. If so, a
-  // user can give access to others.
-  Result<bool> administrator_can_sign_in();
+  // Returns whether an administrator has a password that `local_accounts` allows to use, or has
+  // signed in with OpenID Connect. If so, a user can give access to others.
+  Result<bool> administrator_can_sign_in(bool local_accounts);
   Result<Person> find(const std::string& name);
   // Returns the users with exactly these names, also disabled and deleted ones, in no particular
   // order.

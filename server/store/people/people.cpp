@@ -405,12 +405,13 @@ Result<void> Members::remove(ProjectId project_id, const std::string& user, cons
   });
 }
 
-Result<bool> Accounts::administrator_can_sign_in() {
+Result<bool> Accounts::administrator_can_sign_in(bool local_accounts) {
   return pool_.read([&](PgConnection& connection) -> Result<bool> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT 1 FROM users WHERE (password IS NOT NULL OR "
+        "SELECT 1 FROM users WHERE ($1 AND password IS NOT NULL OR "
         "EXISTS (SELECT 1 FROM sign_ons s WHERE s.user_id = users.id AND s.first_used IS NOT NULL)) "
-        "AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1"));
+        "AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1",
+        Params().boolean(local_accounts)));
     return rows.rows() > 0;
   });
 }

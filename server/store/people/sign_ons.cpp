@@ -178,7 +178,12 @@ Result<void> SignOns::begin(const std::string& state, const std::string& browser
                             const PendingSignIn& pending, std::chrono::seconds lifetime) {
   STRATA_TRY(check_texts({{&pending.return_to, "return_to"}}));
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    STRATA_TRY(connection.query("DELETE FROM pending_sign_ins WHERE expires <= now()"));
+    // If very many sign-ins wait, somebody may have begun them to disturb others. The oldest ones
+    // are then removed.
+    STRATA_TRY(
+        connection.query("DELETE FROM pending_sign_ins WHERE expires <= now() OR state IN "
+                         "(SELECT state FROM pending_sign_ins ORDER BY expires DESC OFFSET $1)",
+                         Params().integer(kMaxPending - 1)));
     const Sha256 state_hash = sha256(state), browser_hash = sha256(browser);
     const auto made = STRATA_TRY(connection.query(
         "INSERT INTO pending_sign_ins (state, browser, provider, nonce, code_verifier, return_to, expires) "
@@ -235,6 +240,12 @@ Result<SignedOn> SignOns::sign_in(const SignOn& sign_on, std::chrono::seconds li
     const auto groups =
         STRATA_TRY(lock_groups(connection, binding->id, sign_on.groups, result.skipped_groups));
     auto person = STRATA_TRY(lock_person(connection, binding->user));
+    // Meanwhile, an administrator may have deleted the account and created another one of this
+    // name.
+    const auto again = STRATA_TRY(find_binding(connection, sign_on.issuer, sign_on.subject));
+    if (!again || again->id != binding->id || again->user != person.name)
+      return fail(ErrorCode::busy, "Account was changed",
+                  "The account was changed during the sign-in. Sign in again.");
     if (person.disabled) {
       result.outcome = SignedOn::Outcome::disabled;
       return result;

@@ -109,8 +109,9 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
     return tl::unexpected(unavailable(PQerrorMessage(raw)));
   PQsetNoticeReceiver(raw, note_canceled_wait, connection.wait_was_canceled_.get());
   connection.limits_ = {std::min(limits.answer, kConnectFor), {}, {}};
-  auto set =
-      connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
+  auto set = connection.script(
+      "SET synchronous_commit = on; SET client_min_messages = warning; "
+      "SET client_encoding = 'UTF8'; SET jit = off");
   if (!set) return tl::unexpected(set.error());
   // This setting ends a session, and releases its locks, when its client has disconnected. Not
   // every system supports it.

@@ -142,6 +142,8 @@ export const texts = {
     full_name: "Vollständiger Name",
     full_name_saved: "Ihr Name wurde gespeichert.",
     password: "Passwort",
+    by_provider:
+      "Sie melden sich bei einem Anbieter an. Wenn Sie zusätzlich ein Passwort wählen möchten, bitten Sie eine Administratorin oder einen Administrator um einen Link.",
     password_set:
       "Sie haben noch kein Passwort. Ohne Passwort können Sie sich nur mit einem Link anmelden.",
     current: "Aktuelles Passwort",

@@ -121,6 +121,8 @@ export const texts = {
     full_name: "Full name",
     full_name_saved: "Your name is saved.",
     password: "Password",
+    by_provider:
+      "You sign in with a provider. To choose a password, too, ask an administrator for a link.",
     password_set: "You have no password yet. Without one, you can sign in only with a link.",
     current: "Current password",
     current_missing: "Enter your current password.",

@@ -141,6 +141,8 @@ export const texts = {
     full_name: "Nombre completo",
     full_name_saved: "Su nombre se ha guardado.",
     password: "Contraseña",
+    by_provider:
+      "Inicia sesión con un proveedor. Si también quiere elegir una contraseña, pida un enlace a un administrador.",
     password_set: "Todavía no tiene contraseña. Sin ella solo puede iniciar sesión con un enlace.",
     current: "Contraseña actual",
     current_missing: "Introduzca su contraseña actual.",

@@ -143,7 +143,15 @@ Result<Response> change_password(const RouteContext& context, LoginThrottle& gat
   STRATA_TRY(check_local_accounts(context));
   STRATA_TRY(store::check_password(body.password, request.user(), "password"));
   const auto hash = STRATA_TRY(context.store.accounts().password_of(request.user()));
-  if (!hash.empty()) {
+  if (hash.empty()) {
+    // Without a password, nothing proves here that the person of the account is at this browser.
+    const auto me = STRATA_TRY(context.store.accounts().find(request.user()));
+    if (me.has_sign_on)
+      return fail(ErrorCode::forbidden, "Account without a password",
+                  "You sign in with a provider. To choose a password, too, ask an administrator "
+                  "for a link.",
+                  "password");
+  } else {
     // Applies the limit for sign-ins, because a person at another user's browser could also guess
     // the password.
     STRATA_TRY(gate.pass(address_of(request), request.user()));

@@ -136,7 +136,7 @@ export class StrataAccountDialog extends LitElement {
       </section>
       <section aria-labelledby="password_heading">
         <h3 id="password_heading">${words.password}</h3>
-        ${this.passwordForm(me)} ${this.note("password")}
+        ${me.has_sign_on && !me.has_password ? html`<p class="hint">${words.by_provider}</p>` : this.passwordForm(me)} ${this.note("password")}
       </section>
       <section aria-labelledby="sessions">
         <h3 id="sessions">${words.sessions}</h3>

@@ -130,7 +130,7 @@ export class StrataSignIn extends LitElement {
 
   private providers({ providers }: SignInWays): unknown {
     if (providers.length === 0) return nothing;
-    const here = location.pathname + location.search;
+    const here = location.pathname + location.search + location.hash;
     return html`<div class="ways">
       ${providers.map(
         ({ id, name }) =>
