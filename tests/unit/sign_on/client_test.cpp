@@ -43,7 +43,9 @@ class FakeProvider {
     return Client(
         provider, [this](const HttpCall& call) { return answer(call); }, [this] { return now; });
   }
-  void publish(const TokenKey& published) { keys = {{"keys", {published.public_jwk()}}}; }
+  void publish(const TokenKey& published) {
+    keys = {{"keys", json::array({published.public_jwk()})}};
+  }
   json claims() const {
     const auto time = system_clock::to_time_t(now);
     return {{"iss", kIssuer}, {"aud", "strata"},   {"sub", "s1"},

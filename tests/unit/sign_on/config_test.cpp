@@ -35,12 +35,12 @@ Result<std::vector<Provider>> parse(const json& providers) {
 std::string mistake(const std::string& member, const json& value) {
   json provider = good();
   provider[member] = value;
-  const auto parsed = parse({provider});
+  const auto parsed = parse(json::array({provider}));
   return parsed ? "valid" : parsed.error().detail;
 }
 
 TEST(SignOnConfig, a_whole_provider_is_read) {
-  const auto providers = parse({good()});
+  const auto providers = parse(json::array({good()}));
   ASSERT_TRUE(providers) << providers.error().detail;
   const Provider& provider = providers->front();
   EXPECT_EQ(provider.name, "Museum");
@@ -79,8 +79,9 @@ TEST(SignOnConfig, mistakes_name_their_place) {
               StartsWith(here + "groups/map/a: "));
   json incomplete = good();
   incomplete.erase("accounts");
-  EXPECT_THAT(parse({incomplete}).error().detail, StartsWith(here + "accounts: Missing"));
-  EXPECT_THAT(parse({good(), good()}).error().detail, StartsWith("/providers/1/id: "));
+  EXPECT_THAT(parse(json::array({incomplete})).error().detail,
+              StartsWith(here + "accounts: Missing"));
+  EXPECT_THAT(parse(json::array({good(), good()})).error().detail, StartsWith("/providers/1/id: "));
   EXPECT_THAT(parse(json::array()).error().detail, StartsWith("/providers: "));
   EXPECT_THAT(parse_config("{", "/").error().detail, StartsWith("The file: "));
   EXPECT_THAT(parse_config(R"({"providers": [], "more": 1})", "/").error().detail,
@@ -94,7 +95,7 @@ TEST(SignOnConfig, the_secret_is_in_another_file) {
   std::ofstream(folder / "secret") << " the secret\n";
   json provider = good();
   provider["client_secret_file"] = "secret";
-  std::ofstream(folder / "oidc.json") << json{{"providers", {provider}}};
+  std::ofstream(folder / "oidc.json") << json{{"providers", json::array({provider})}};
   const auto read = read_config(folder / "oidc.json");
   ASSERT_TRUE(read) << read.error().detail;
   EXPECT_EQ(read->front().client_secret, "the secret");
@@ -108,7 +109,7 @@ TEST(SignOnConfig, the_secret_is_in_another_file) {
 }
 
 TEST(Claims, they_give_roles_groups_and_accounts) {
-  const Provider provider = parse({good()})->front();
+  const Provider provider = parse(json::array({good()}))->front();
   const json claims{
       {"groups", {"/excavation", "/other", "strata", 7}},
       {"realm_access", {{"roles", {"strata-staff", "strata-admin", "another"}}}},
@@ -120,7 +121,7 @@ TEST(Claims, they_give_roles_groups_and_accounts) {
 }
 
 TEST(Claims, missing_and_strange_claims_give_nothing) {
-  const Provider provider = parse({good()})->front();
+  const Provider provider = parse(json::array({good()}))->front();
   for (const json& claims :
        {json::object(), json{{"groups", 7}, {"realm_access", {"roles"}}},
         json{{"groups", {{"strata", true}}}, {"realm_access", {{"roles", nullptr}}}}}) {
@@ -135,7 +136,7 @@ TEST(Claims, a_provider_without_rules_gives_no_role) {
   json value = good();
   value.erase("roles");
   value["accounts"] = "everybody";
-  const Rights rights = rights_of(parse({value})->front(), json::object());
+  const Rights rights = rights_of(parse(json::array({value}))->front(), json::object());
   EXPECT_TRUE(rights.may_create);
   EXPECT_FALSE(rights.role);
 }
