@@ -496,7 +496,20 @@ COLUMN_VALUE = {
         ("keys", 10, 1, "3; 1 2"),
     )
 }
+# The first byte selects the reader of fuzz_sign_on.cpp. The token is that of RFC 7515, A.3.
+SIGN_ON = {
+    "token": b"\0eyJhbGciOiJFUzI1NiJ9.eyJpc3MiOiJqb2UiLA0KICJleHAiOjEzMDA4MTkzODAsDQogImh0dHA6Ly9leGFt"
+    b"cGxlLmNvbS9pc19yb290Ijp0cnVlfQ.DtEhU3ljbEg8L38VWAfUAqOyKAM6-Xx-F4GawxaepmXFCgfTjDxw5djxLa8IS"
+    b"lSApmWQxfKTUJqPP3-Kg6NU1Q",
+    "keys": b'\1{"keys":[{"kty":"RSA","kid":"a","use":"sig","alg":"RS256","n":"AQAB","e":"AQAB"},'
+    b'{"kty":"EC","crv":"P-256","x":"f83OJ3D2xF1Bg8vub9tLe1gHMzV76e8Tus9uPHvRVEU",'
+    b'"y":"x_FEzRu9m36HLN_tue659LNpXW6pCyStikYjKIWI5a0"}]}',
+    "configuration": b'\2{"providers":[{"id":"museum","name":"Museum","issuer":"https://a.example",'
+    b'"client_id":"strata","accounts":{"claim":"/a/b","values":["c"]},"roles":{"claim":"r","map":'
+    b'{"s":"curator"}},"groups":{"claim":"g","map":{"h":"Students"}}}]}',
+}
 for folder, seeds in (
+    ("sign_on", SIGN_ON),
     ("stl", STL),
     ("gltf", GLTF),
     ("mtl", MTL),
