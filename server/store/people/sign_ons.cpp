@@ -240,8 +240,8 @@ Result<SignedOn> SignOns::sign_in(const SignOn& sign_on, std::chrono::seconds li
     const auto groups =
         STRATA_TRY(lock_groups(connection, binding->id, sign_on.groups, result.skipped_groups));
     auto person = STRATA_TRY(lock_person(connection, binding->user));
-    // Meanwhile, an administrator may have deleted the account and created another one of this
-    // name.
+    // While this transaction waited, an administrator may have deleted the account and created
+    // another one of this name.
     const auto again = STRATA_TRY(find_binding(connection, sign_on.issuer, sign_on.subject));
     if (!again || again->id != binding->id || again->user != person.name)
       return fail(ErrorCode::busy, "Account was changed",
