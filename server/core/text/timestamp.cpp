@@ -1,5 +1,6 @@
 #include "core/text/timestamp.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 
@@ -109,7 +110,14 @@ std::optional<std::chrono::system_clock::time_point> parse_time(std::string_view
   const bool has_zone = text.size() > 10 && text.find_first_of("Zz+-", 10) != text.npos;
   const std::time_t seconds =
       has_zone || unzoned == UnzonedTime::utc ? timegm(&civil) : std::mktime(&civil);
-  return std::chrono::system_clock::from_time_t(seconds) + std::chrono::milliseconds(milliseconds);
+  using Clock = std::chrono::system_clock;
+  // The clock counts nanoseconds, and cannot represent times before 1678 and after 2261. The
+  // nearest time takes their place.
+  constexpr auto kLast = std::chrono::floor<std::chrono::seconds>(Clock::time_point::max());
+  constexpr auto kFirst = std::chrono::ceil<std::chrono::seconds>(Clock::time_point::min());
+  const auto time = std::clamp(std::chrono::sys_seconds(std::chrono::seconds(seconds)), kFirst,
+                               kLast - std::chrono::seconds(1));
+  return time + std::chrono::milliseconds(milliseconds);
 }
 
 std::string utc_text(std::chrono::system_clock::time_point time) {

@@ -123,7 +123,7 @@ Result<ArchiveFolder> ArchiveFolder::claim(const fs::path& place, const fs::path
     STRATA_TRY(write_id_file(folder, {{"format", kArchiveFormat}, {"id", (*own)["id"]}}));
   }
   auto archive = STRATA_TRY(open(folder));
-  if (archive.id_ != (*own)["id"])
+  if (archive.id_ != (*own)["id"].get<std::string>())
     return fail(ErrorCode::conflict, "Archive of another site",
                 folder.string() +
                     " is the archive of another data folder. A restored site needs a new archive, "
@@ -203,7 +203,12 @@ std::vector<std::string> ArchiveFolder::recovery_settings(
           " || exit 1; gzip -dc " + file + " > \"%p\" || exit 200",
       // the archive contains no other history of the site
       "recovery_target_timeline=current", "recovery_target_action=promote"};
-  if (moment) settings.push_back("recovery_target_time=" + utc_text(*moment));
+  if (moment) {
+    std::string time = utc_text(*moment);
+    // PostgreSQL reads its settings before the names of time zones, such as Z.
+    time.replace(time.size() - 1, 1, "+00");
+    settings.push_back("recovery_target_time=" + time);
+  }
   return settings;
 }
 

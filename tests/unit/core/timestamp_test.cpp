@@ -52,6 +52,11 @@ TEST(ParseTime, a_time_without_a_zone_is_in_the_chosen_zone) {
   EXPECT_EQ(parsed("2026-11-21", UnzonedTime::local), "2026-11-20T21:00:00.000Z");
 }
 
+TEST(ParseTime, times_that_the_clock_cannot_represent_are_the_nearest_ones) {
+  EXPECT_EQ(parsed("2999-01-01T00:00:00Z", UnzonedTime::utc).substr(0, 4), "2262");
+  EXPECT_EQ(parsed("0001-01-01T00:00:00Z", UnzonedTime::utc).substr(0, 4), "1677");
+}
+
 TEST(ParseTime, other_texts_are_refused) {
   for (const char* text : {"", "14:32", "2026-02-30T10:00", "2026-11-21T25:00", "yesterday"})
     EXPECT_FALSE(parse_time(text)) << text;
