@@ -157,6 +157,10 @@ struct JournalWriter::Impl {
     connection.reset();
     auto fresh = PgConnection::connect(dsn, options.limits);
     if (!fresh) return tl::unexpected(CommitFailure{fresh.error(), true});
+    // The writer never pauses within a transaction. If this node is cut off, another one can soon
+    // claim the models, whose rows the transaction locks.
+    if (auto set = fresh->script("SET idle_in_transaction_session_timeout = '3s'"); !set)
+      return tl::unexpected(CommitFailure{set.error(), true});
     connection.emplace(std::move(*fresh));
     return &*connection;
   }
