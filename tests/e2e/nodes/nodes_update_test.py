@@ -140,4 +140,5 @@ def test_every_saved_edit_is_in_the_history_once_and_no_other(painted, painters)
 def test_the_nodes_end_with_clean_logs(site):
     for node in site.running():
         assert node.stop() == 0, "SIGTERM did not end the node well"
-        node.assert_clean_log(FAULT_WORDS)
+        # While a node drains, another one may claim a model before the room has closed.
+        node.assert_clean_log([*FAULT_WORDS, "has claimed model"])

@@ -177,6 +177,7 @@ def sweep(server, secret, tour, files, thread):
         "kiosk": "1",
         "group": "1",
         "entry": "layer-1",
+        "provider": "museum",
     }
     refused = answered = 0
     for path, operations in server.contract.document["paths"].items():

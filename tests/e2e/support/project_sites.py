@@ -8,7 +8,7 @@ from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
 
 IN_PROJECTS = ("project", "model", "table", "attachment", "comment", "job", "kiosk")
-OF_THE_SITE = ("user", "group", "session", "token", "tool")
+OF_THE_SITE = ("user", "group", "session", "token", "tool", "provider")
 
 
 class Someone(Browser):

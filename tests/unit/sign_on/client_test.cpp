@@ -175,9 +175,9 @@ TEST(SignOnClient, new_keys_are_loaded_but_not_for_each_unknown_key) {
 }
 
 TEST(SignOnClient, failures_of_the_exchange_have_their_codes) {
-  const auto code_of = [](HttpReply reply) {
+  const auto code_of = [](const HttpReply& reply) {
     FakeProvider provider;
-    provider.token_reply = std::move(reply);
+    provider.token_reply = reply;
     Client client = provider.client();
     const auto claims = client.claims({"c", {}}, kRedirect, kHandshake);
     return claims ? std::string("none") : std::string(name(claims.error().code));
