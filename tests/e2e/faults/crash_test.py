@@ -13,7 +13,7 @@ from support.painters import HttpPainter, LivePainter
 from support.strata_server import wait_for
 
 SEED = int(os.environ.get("STRATA_SEED", "1"))
-KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # the number of kills of each kind
+KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "8"))  # the number of kills of each kind
 # Messages that the log may contain while PostgreSQL is killed.
 FAULT_WORDS = [
     "PostgreSQL stopped",

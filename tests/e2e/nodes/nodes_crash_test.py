@@ -10,7 +10,7 @@ from support.painters import LivePainter
 from support.strata_server import wait_for
 
 SEED = int(os.environ.get("STRATA_SEED", "1"))
-KILLS = int(os.environ.get("STRATA_NODE_KILLS", "10"))
+KILLS = int(os.environ.get("STRATA_NODE_KILLS", "5"))
 
 
 @pytest.fixture(scope="module")
