@@ -323,8 +323,10 @@ test("an address leads to its comment, also to a reply", async () => {
   await bea.page.goto(`${server.url}/models/${id}#comment=${reply.id}`);
   await article(bea, "has grown").waitFor();
   await pin(bea, first.id).waitFor();
-  await bea.page.goto(`${server.url}/models/${id}#comment=999999`);
-  await bea.page.getByText(words.comments.missing).waitFor();
+  await Promise.all([
+    bea.page.getByText(words.comments.missing).waitFor(),
+    bea.page.goto(`${server.url}/models/${id}#comment=999999`),
+  ]);
 });
 
 test("a first comment that is deleted leaves its place while there are replies", async () => {

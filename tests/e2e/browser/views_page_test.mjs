@@ -172,13 +172,12 @@ test("its link leads there in somebody else's browser", async () => {
   link = await ada.page.evaluate(() => navigator.clipboard.readText());
   assert.equal(link, `${server.url}/models/${id}#view=west-wall`);
   await bea.page.goto(`${server.url}/`);
-  await bea.page.goto(link);
+  // the notice leaves after some seconds, so it is awaited from the beginning
+  const told = notice(bea, words.kept_views.shown("West wall")).getByText("The breaks of the rim");
+  await Promise.all([told.waitFor(), bea.page.goto(link)]);
   await bea.drawn();
   await is_current(bea, "West wall");
   await becomes(bea, kept, "the same pixels there");
-  await notice(bea, words.kept_views.shown("West wall"))
-    .getByText("The breaks of the rim")
-    .waitFor();
   await shot(bea, "link");
   assert.deepEqual(
     [await is_chosen(bea, words.view.lights.raking), await is_chosen(bea, words.view.sections.x)],
@@ -299,8 +298,7 @@ test("deleted it is gone for everybody, and its link says so", async () => {
   await ada.page.locator("strata-dialog").getByRole("button", { name: words.delete }).click();
   for (const who of [ada, bea, phone]) await gone(go(who, "North wall"));
   await bea.page.goto(`${server.url}/`);
-  await bea.page.goto(link);
-  await notice(bea, words.kept_views.missing).waitFor();
+  await Promise.all([notice(bea, words.kept_views.missing).waitFor(), bea.page.goto(link)]);
 });
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {

@@ -118,6 +118,7 @@ export class StrataModelPage extends LitElement {
   private _tool: ToolName | null = null; // the tool whose options are visible
   private _role: Role | null = null; // role in the last welcome
   private _card: number | "new" | null = null; // the open comment
+  private _hash = ""; // the part of the address that this page last read or wrote
   private _wantedComment: number | null = null; // comment in the address
   private _wantedView: string | null = null;
 
@@ -268,14 +269,12 @@ export class StrataModelPage extends LitElement {
     this.requestUpdate();
   }
 
-  private readonly onHash = (event: HashChangeEvent): void => {
-    // the user stayed on the page, and its address was restored
-    if (event.newURL !== location.href) return;
-    this.readAddress();
+  private readonly onHash = (): void => {
     if (this._session) this.followAddress(this._session);
   };
 
   private readAddress(): void {
+    this._hash = location.hash;
     this._wantedComment = commentOf(location.hash);
     this._wantedView = viewOf(location.hash);
   }
@@ -287,6 +286,8 @@ export class StrataModelPage extends LitElement {
   private followAddress(session: OpenModelSession): void {
     const { comments, view, views } = session;
     if (view.framesDrawn === 0) return;
+    // The browser sends its event only after it has changed the address.
+    if (location.hash !== this._hash) this.readAddress();
     const [comment, kept] = [this._wantedComment, this._wantedView];
     if (comment !== null && comments.loaded) {
       this._wantedComment = null;
@@ -308,6 +309,7 @@ export class StrataModelPage extends LitElement {
           ? hashOfView(seen.slug)
           : "",
     );
+    this._hash = location.hash;
   }
 
   override render(): TemplateResult {
