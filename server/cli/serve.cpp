@@ -264,6 +264,7 @@ int run(ServeOptions options) {
     auto url = store::check_node_url(options.node_url);
     if (!url) return report(url.error());
     node = store::NewNode{random_uuid(), std::move(*url), std::string(version()), {}};
+    options.data.database = store::with_sessions_of(node->id, options.data.database);
   }
   auto providers = read_providers(options);
   if (!providers) return report(providers.error());

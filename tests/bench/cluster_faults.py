@@ -15,13 +15,13 @@ doubled    strokes in the history that are there twice, or whose save was never 
 A round takes one to two minutes. `./test` unpacks the programs that this needs.
 """
 import argparse
-import math
 import os
 import sys
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
 from support.cluster_site import ClusterSite, paint_at, seconds_until_all_paint
+from support.latencies import percentile
 from support.strata_server import wait_for
 
 
@@ -62,12 +62,6 @@ def measure(site, event, seed):
     return seconds, gap, len(painted.book.edits), lost, doubled
 
 
-def rank(values, share):
-    """Returns a percentile by nearest rank."""
-    ordered = sorted(values)
-    return ordered[math.ceil(share * len(ordered)) - 1]
-
-
 def table(results):
     lines = [
         "| event | rounds | seconds, p50 | p95 | viewer, p50 | p95 | saved strokes | lost | doubled |",
@@ -76,7 +70,7 @@ def table(results):
     for event, rows in results.items():
         seconds, gaps, saved, lost, doubled = zip(*rows)
         times = [
-            f"{rank(values, share):.1f}" for values in (seconds, gaps) for share in (0.5, 0.95)
+            f"{percentile(values, share):.1f}" for values in (seconds, gaps) for share in (0.5, 0.95)
         ]
         counts = [str(sum(values)) for values in (saved, lost, doubled)]
         lines.append(f"| {' | '.join([event, str(len(rows)), *times, *counts])} |")

@@ -27,7 +27,6 @@ with pytest, because it uses the helpers of the end-to-end tests.
 import argparse
 import http.client
 import json
-import math
 import os
 import random
 import signal
@@ -38,6 +37,7 @@ import uuid
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
 from support.cameras import camera_from
+from support.latencies import percentile
 from support.live_client import AWAY
 from support.machine import gl_renderer, machine
 from support.meshes import folded_grid
@@ -269,12 +269,6 @@ def one_round(site, model, journal, name, seed):
     return {**found, **journal.check(strokes), "strokes": len(strokes)}
 
 
-def rank(values, share):
-    """Returns a percentile by nearest rank."""
-    ordered = sorted(values)
-    return ordered[max(0, math.ceil(share * len(ordered)) - 1)]
-
-
 def table(found):
     lines = [
         "| fault | promise | painting continues after, p50 | p95 | other times, p50 / p95 | acknowledged | lost | doubled | late |",
@@ -283,7 +277,7 @@ def table(found):
     for name, rounds in found.items():
         column = lambda key: [each[key] for each in rounds if key in each]
         others = [
-            f"{title} {rank(column(key), 0.5):.1f} / {rank(column(key), 0.95):.1f} s"
+            f"{title} {percentile(column(key), 0.5):.1f} / {percentile(column(key), 0.95):.1f} s"
             for key, title in (
                 ("ended_s", "node ended"),
                 ("ready_again_s", "node ready again"),
@@ -296,7 +290,7 @@ def table(found):
         late = str(sum(column("late"))) if column("late") else "—"
         sums = " | ".join(str(sum(column(key))) for key in ("strokes", "lost", "doubled"))
         lines.append(
-            f"| {name} | {promise} | {rank(times, 0.5):.2f} s | {rank(times, 0.95):.2f} s "
+            f"| {name} | {promise} | {percentile(times, 0.5):.2f} s | {percentile(times, 0.95):.2f} s "
             f"| {', '.join(others) or '—'} | {sums} | {late} |"
         )
     return "\n".join(lines)

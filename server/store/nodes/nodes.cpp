@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include "core/log.h"
 #include "core/no_such.h"
 #include "store/pg/pg_row.h"
 #include "store/store_impl.h"
@@ -34,10 +35,20 @@ Node read_node(const PgResult& rows, int i) {
   return node;
 }
 
+// A claim waits this long for the row of the model before it ends the sessions of a dead owner.
+constexpr PgLimits kClaimLimits = [] {
+  PgLimits limits = kRequestLimits;
+  limits.lock = std::chrono::milliseconds(1000);
+  return limits;
+}();
+
 Result<std::optional<Node>> first_node(const Result<PgResult>& rows) {
   if (!rows) return tl::unexpected(rows.error());
   return rows->rows() == 0 ? std::nullopt : std::optional(read_node(*rows, 0));
 }
+
+// The name of a node's sessions in PostgreSQL, before the id of the node.
+constexpr const char* kSessionPrefix = "strata-";
 
 // A null node is a server that is alone.
 Params& optional_node(Params& params, const std::optional<Uuid>& node) {
@@ -68,6 +79,12 @@ Result<Error> claim_problem(PgConnection& connection, ModelId model,
 }
 
 }  // namespace
+
+std::string with_sessions_of(const Uuid& node, const std::string& dsn) {
+  const bool is_url = dsn.starts_with("postgresql://") || dsn.starts_with("postgres://");
+  const char* separator = !is_url ? " " : dsn.find('?') == std::string::npos ? "?" : "&";
+  return dsn + separator + "application_name=" + kSessionPrefix + to_string(node);
+}
 
 struct Nodes::LeaseConnection {
   std::mutex mutex;
@@ -137,10 +154,17 @@ Result<void> Nodes::forget_ended() {
   return {};
 }
 
+Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self) {
+  auto claimed = try_claim(model, self);
+  if (claimed || claimed.error().code != ErrorCode::busy) return claimed;
+  STRATA_TRY(end_sessions_of_owner(model));
+  return try_claim(model, self);
+}
+
 // After a wait for a concurrent claim, the condition is checked again, so only one of two claims
 // for the same reason succeeds.
-Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self) {
-  return pool_.write([&](PgConnection& connection) -> Result<std::int64_t> {
+Result<std::int64_t> Nodes::try_claim(ModelId model, const std::optional<Uuid>& self) {
+  return pool_.write_within(kClaimLimits, [&](PgConnection& connection) -> Result<std::int64_t> {
     Params params;
     params.id(model);
     auto claimed = STRATA_TRY(connection.query(
@@ -154,6 +178,20 @@ Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self
     auto problem = STRATA_TRY(claim_problem(connection, model, self));
     return tl::unexpected(std::move(problem));
   });
+}
+
+Result<void> Nodes::end_sessions_of_owner(ModelId model) {
+  auto ended = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+    return connection.query(
+        "SELECT count(pg_terminate_backend(a.pid)) FROM models m JOIN nodes n ON n.id = m.owner_node "
+        "JOIN pg_stat_activity a ON a.application_name = $2 || n.id::text AND a.datname = current_database() "
+        "WHERE m.id = $1 AND n.lease_until <= clock_timestamp() AND a.backend_xid IS NOT NULL",
+        Params().id(model).text(kSessionPrefix));
+  }));
+  if (ended.integer(0, 0) > 0)
+    log::warning("nodes: a node whose lease is over kept model " + to_string(model) +
+                 " locked; ended its sessions in PostgreSQL");
+  return {};
 }
 
 Result<std::int64_t> Nodes::begin_epoch(ModelId model) {

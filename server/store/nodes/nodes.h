@@ -56,6 +56,10 @@ struct Ownership {
 // slashes at the end. Other text is `malformed`, also a URL with a user, a query or a fragment.
 Result<std::string> check_node_url(const std::string& url);
 
+// Returns the connection string (libpq) with which a node must open its Store. Its sessions in
+// PostgreSQL then have the name of the node, so that a claim can end them.
+std::string with_sessions_of(const Uuid& node, const std::string& dsn);
+
 // The nodes of a site, and the models that each of them has. A model has one owner and an epoch, a
 // number that grows with each claim. A commit of the journal names the epoch in which its room was
 // opened (JournalEntry::epoch), so a node that lost a model can never change it.
@@ -90,7 +94,8 @@ class Nodes {
   // Makes `self` the owner of a model, and returns the new epoch. The model must have no owner, or
   // the owner must be `self`, be draining, or have a lease that is over. Otherwise returns `moved`,
   // with the address of the owner. Returns `unavailable` if the lease of `self` is over or `self`
-  // is draining.
+  // is draining. A node that hangs can keep the row of the model locked, because PostgreSQL waits
+  // for the rest of its transaction. If its lease is over, this ends its sessions that write.
   Result<std::int64_t> claim(ModelId model, const std::optional<Uuid>& self);
   // Returns a new epoch without an owner, even if a node has claimed the model. For code that
   // writes the journal without a room: a room that is open on any server is closed when it next
@@ -114,6 +119,9 @@ class Nodes {
   Result<std::optional<Node>> another(const Uuid& self);
 
  private:
+  Result<std::int64_t> try_claim(ModelId model, const std::optional<Uuid>& self);
+  // Ends the sessions of the owner that write, if its lease is over.
+  Result<void> end_sessions_of_owner(ModelId model);
   // Runs a statement on the connection of the lease. Returns the number of affected rows.
   Result<std::int64_t> run(const char* sql, const Params& params);
 

@@ -109,14 +109,12 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
     return tl::unexpected(unavailable(PQerrorMessage(raw)));
   PQsetNoticeReceiver(raw, note_canceled_wait, connection.wait_was_canceled_.get());
   connection.limits_ = {std::min(limits.answer, kConnectFor), {}, {}};
-  auto set = connection.script(
-      "SET synchronous_commit = on; SET client_min_messages = warning; "
-      "SET client_encoding = 'UTF8'; SET jit = off");
-  if (!set) return tl::unexpected(set.error());
-  // These settings end the session of a client whose machine or network has failed, and release its
-  // locks. Otherwise they would last until the network of PostgreSQL gives the connection up, which
-  // takes hours.
+  // The last five settings end the session of a client whose machine or network has failed, and
+  // release its locks. Otherwise they would last until the network of PostgreSQL gives the
+  // connection up, which takes hours.
   STRATA_TRY(connection.script(
+      "SET synchronous_commit = on; SET client_min_messages = warning; "
+      "SET client_encoding = 'UTF8'; SET jit = off; "
       "SET idle_in_transaction_session_timeout = '60s'; SET tcp_keepalives_idle = 3; "
       "SET tcp_keepalives_interval = 1; SET tcp_keepalives_count = 3; SET tcp_user_timeout = '6s'"));
   // This setting ends a session, and releases its locks, when its client has disconnected. Not

@@ -110,6 +110,45 @@ TEST_F(OwnershipOfModels, a_model_is_free_after_the_lease_of_its_owner) {
   EXPECT_EQ(nodes_.claim(model_.id, b_.id).value(), 2);
 }
 
+// A node that is stopped in the middle of a batch leaves its transaction open.
+TEST_F(OwnershipOfModels, a_claim_ends_the_transaction_of_an_owner_that_hangs) {
+  ASSERT_TRUE(join(a_));
+  ASSERT_TRUE(join(b_));
+  ASSERT_TRUE(nodes_.claim(model_.id, a_.id));
+  auto hanging = std::move(PgConnection::connect(with_sessions_of(a_.id, dsn_)).value());
+  ASSERT_TRUE(hanging.script("BEGIN; UPDATE models SET sequence = sequence"));
+  EXPECT_EQ(nodes_.claim(model_.id, b_.id).error().code, ErrorCode::moved);
+  EXPECT_TRUE(hanging.script("SELECT 1")) << "the lease of this owner is not over";
+  end_lease(a_.id);
+  EXPECT_EQ(nodes_.claim(model_.id, b_.id).value(), 2);
+  EXPECT_FALSE(hanging.script("COMMIT"));
+}
+
+TEST_F(OwnershipOfModels, a_claim_ends_no_session_of_others) {
+  ASSERT_TRUE(join(a_));
+  ASSERT_TRUE(join(b_));
+  ASSERT_TRUE(nodes_.claim(model_.id, a_.id));
+  end_lease(a_.id);
+  auto reading = std::move(PgConnection::connect(with_sessions_of(a_.id, dsn_)).value());
+  ASSERT_TRUE(reading.script("BEGIN; SELECT FROM models"));
+  auto other = std::move(PgConnection::connect(dsn_).value());
+  ASSERT_TRUE(other.script("BEGIN; UPDATE models SET sequence = sequence"));
+  EXPECT_EQ(nodes_.claim(model_.id, b_.id).error().code, ErrorCode::busy);
+  EXPECT_TRUE(other.script("COMMIT"));
+  EXPECT_TRUE(reading.script("COMMIT"));
+  EXPECT_EQ(nodes_.claim(model_.id, b_.id).value(), 2);
+}
+
+TEST(WithSessionsOf, names_the_sessions_of_both_kinds_of_connection_strings) {
+  const Uuid node = *parse_uuid("00000000-0000-4000-8000-00000000000a");
+  const std::string named = "application_name=strata-00000000-0000-4000-8000-00000000000a";
+  EXPECT_EQ(with_sessions_of(node, "host=db application_name=x"),
+            "host=db application_name=x " + named);
+  EXPECT_EQ(with_sessions_of(node, "postgresql://db/strata"), "postgresql://db/strata?" + named);
+  EXPECT_EQ(with_sessions_of(node, "postgres://db/strata?sslmode=require"),
+            "postgres://db/strata?sslmode=require&" + named);
+}
+
 TEST_F(OwnershipOfModels, a_model_of_a_draining_node_is_free_at_once) {
   ASSERT_TRUE(join(a_));
   ASSERT_TRUE(join(b_));

@@ -1,20 +1,26 @@
 """Times from sending a stroke's message to its visible effects, from the records of a `Ledger` and
 of the annotators' connections."""
 import bisect
+import math
+
+
+def percentile(values, share):
+    """Returns a percentile by nearest rank."""
+    ordered = sorted(values)
+    return ordered[max(0, math.ceil(share * len(ordered)) - 1)]
 
 
 def summary(seconds):
     """Returns percentiles by nearest rank, in milliseconds."""
-    ordered = sorted(seconds)
-    if not ordered:
+    if not seconds:
         return {"count": 0}
-    rank = lambda share: round(1000 * ordered[min(len(ordered) - 1, int(share * len(ordered)))], 1)
+    rank = lambda share: round(1000 * percentile(seconds, share), 1)
     return {
-        "count": len(ordered),
+        "count": len(seconds),
         "ms_p50": rank(0.5),
         "ms_p95": rank(0.95),
         "ms_p99": rank(0.99),
-        "ms_max": round(1000 * ordered[-1], 1),
+        "ms_max": rank(1),
     }
 
 
