@@ -1,7 +1,8 @@
 // fast-check sends thousands of valid and invalid requests of the contract to a real server. No
 // response may be an internal error. The contract must describe each response. The server must not
 // execute requests that the contract forbids. STRATA_SEED repeats the requests of an earlier run.
-// STRATA_OPERATION (an operationId) selects one operation.
+// STRATA_OPERATION (an operationId) selects one operation. STRATA_CALLS is the number of requests to
+// each operation in each of five rounds (10).
 import http from "node:http";
 import { fc } from "../support/js/arbitraries.mjs";
 import { calls_of } from "../support/js/calls.mjs";
@@ -13,7 +14,7 @@ import { kSpare } from "../support/js/vocabulary.mjs";
 // each operation runs early and late, and after different operations; many more rounds would fill
 // lists that have a limit (looks of a model)
 const kRounds = 5;
-const kCallsInRound = 10; // per operation
+const kCallsInRound = Number(process.env.STRATA_CALLS ?? 10); // per operation
 const kAtOnce = 4; // the limit of concurrent downloads; the server would refuse a fifth (503)
 // The server reads the body of a refused request up to this size. Requests with a larger body wait
 // for permission, because the server may end the connection.
