@@ -80,7 +80,7 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
                 data.string() + " already contains a site. Specify a new folder with --data.",
                 "--data");
   fs::remove_all(beside, error);  // left by an interrupted restore
-  const auto restored = [&]() -> Result<void> {
+  auto restored = [&]() -> Result<void> {
     auto cluster = STRATA_TRY(store::Cluster::start(beside));
     return store::restore_backup(options.folder, facts, cluster->dsn(), progress);
   }();
