@@ -47,6 +47,12 @@ const Error kStopping{ErrorCode::unavailable,
                       "Server is stopping",
                       "The server is stopping. Try again when it is running again.",
                       {}};
+const Error kNotSaving{
+    ErrorCode::unavailable,
+    "Not saved",
+    "This node has lost its connection to the database, so it cannot save edits. "
+    "You can still view the model. Try again in a moment.",
+    {}};
 const Error kNoLease{ErrorCode::unavailable,
                      "Node not available",
                      "This node has lost its connection to the database, so it cannot open models. "
@@ -116,6 +122,13 @@ struct Rooms::Impl {
 
   Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
 
+  // After a suspension, another node may have newer edits until the room was compared with the
+  // journal.
+  static Result<std::shared_ptr<OpenRoom>> current(std::shared_ptr<OpenRoom> room) {
+    if (!room->is_current()) return tl::unexpected(kNoLease);
+    return room;
+  }
+
   // Closes a room whose model another server has claimed.
   void drop(const std::shared_ptr<OpenRoom>& room, const Error& why) {
     {
@@ -128,15 +141,22 @@ struct Rooms::Impl {
     room->close(why);
   }
 
+  // Without a lease, the database is probably unreachable, and the claims end with the lease.
+  bool is_suspended() {
+    std::lock_guard lock(mutex);
+    return suspended;
+  }
+
   // Gives up a room whose edits are durable, so that another node can open its model at once.
   void pass_on(const std::shared_ptr<OpenRoom>& room, const Error& why) {
-    room->release();
+    if (!is_suspended()) room->release();
     room->move_away(why);
     drop(room, why);
   }
 
   // Returns the error for the listeners of a node that drains.
   Error moved_elsewhere() {
+    if (is_suspended()) return moved_to({});
     const auto other = services.store.nodes().another(*services.options.node);
     return moved_to(other && *other ? (*other)->url : std::string());
   }
@@ -194,6 +214,7 @@ struct Rooms::Impl {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {
       std::lock_guard lock(mutex);
+      if (suspended) return false;  // a room that is closed must be released in the database
       for (auto found = rooms.begin(); found != rooms.end();) {
         if (found->second.use_count() == 1 && may_close(*found->second)) {
           leaving.push_back(std::move(found->second));
@@ -231,8 +252,8 @@ struct Rooms::Impl {
   std::set<ModelId> opening, deleted_meanwhile;
   std::atomic<int> context_losses{0};
   std::atomic<std::uint64_t> models_moved{0};
-  int surrenders = 0;
-  bool surrendered = false;
+  int suspensions = 0;
+  bool suspended = false;
   bool stopping = false;
   bool draining = false;
   std::thread sweeper;
@@ -250,27 +271,24 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role see
 }
 
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
+  if (is_suspended()) return tl::unexpected(kNoLease);
   // Finds an open room without the database, so viewing continues while the database is
   // unreachable.
-  if (auto room = find(model_ref)) return room;
-  {
-    std::lock_guard lock(mutex);
-    if (surrendered) return tl::unexpected(kNoLease);
-  }
+  if (auto room = find(model_ref)) return current(std::move(room));
   auto model = STRATA_TRY(services.store.models().find(model_ref));
   const int losses_before = context_losses;
-  int surrenders_before = 0;
+  int suspensions_before = 0;
   {
     std::unique_lock lock(mutex);
     // One caller at a time loads a model. The others wait for it.
-    changed.wait(
-        lock, [&] { return stopping || draining || surrendered || !opening.contains(model.id); });
+    changed.wait(lock,
+                 [&] { return stopping || draining || suspended || !opening.contains(model.id); });
     if (stopping || draining) return tl::unexpected(kStopping);
-    if (surrendered) return tl::unexpected(kNoLease);
-    surrenders_before = surrenders;
+    if (suspended) return tl::unexpected(kNoLease);
+    suspensions_before = suspensions;
     if (auto found = rooms.find(model.id); found != rooms.end()) {
       found->second->touch();
-      return found->second;
+      return current(found->second);
     }
     opening.insert(model.id);
   }
@@ -282,7 +300,7 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
   changed.notify_all();
   const bool deleted = deleted_meanwhile.erase(model.id) > 0;
   if (!room) return tl::unexpected(room.error());
-  if (surrenders != surrenders_before) {
+  if (suspensions != suspensions_before) {
     lock.unlock();
     (*room)->close(kNoLease);
     return tl::unexpected(kNoLease);
@@ -350,7 +368,7 @@ Result<std::optional<std::string>> Rooms::elsewhere(const std::string& model_ref
   bool leaves = false;
   {
     std::lock_guard lock(impl_->mutex);
-    if (impl_->surrendered) return std::nullopt;
+    if (impl_->suspended) return std::nullopt;
     leaves = impl_->draining;
   }
   auto& nodes = impl_->services.store.nodes();
@@ -360,28 +378,27 @@ Result<std::optional<std::string>> Rooms::elsewhere(const std::string& model_ref
   return owner->url;
 }
 
-void Rooms::surrender() {
-  std::map<ModelId, std::shared_ptr<OpenRoom>> rooms;
+void Rooms::suspend() {
   {
     std::lock_guard lock(impl_->mutex);
-    ++impl_->surrenders;
-    impl_->surrendered = true;
-    rooms.swap(impl_->rooms);
-    impl_->models_moved += rooms.size();
+    ++impl_->suspensions;
+    impl_->suspended = true;
     impl_->changed.notify_all();
   }
-  const Error why = moved_to({});
-  for (const auto& [id, room] : rooms) room->move_away(why);
-  for (const auto& [id, room] : rooms) room->close(why);
+  const auto rooms = impl_->open_ones();
+  for (const auto& room : rooms) room->stop_saving(kNotSaving);
   if (!rooms.empty())
-    log::warning("closed " + std::to_string(rooms.size()) +
-                 " models, because this node may have lost them to other nodes");
+    log::warning(std::to_string(rooms.size()) +
+                 " models are read-only, because this node may have lost them to other nodes");
 }
 
 void Rooms::resume() {
-  std::lock_guard lock(impl_->mutex);
-  impl_->surrendered = false;
-  impl_->changed.notify_all();
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->suspended = false;
+    impl_->changed.notify_all();
+  }
+  for (const auto& room : impl_->open_ones()) room->continue_saving();
 }
 
 std::uint64_t Rooms::models_moved() const { return impl_->models_moved; }

@@ -76,11 +76,14 @@ class Rooms {
   // may open it. Does not ask the database if the model is open, or if this server is alone. While
   // this node drains, another node is proposed for a model that no node has.
   Result<std::optional<std::string>> elsewhere(const std::string& model_ref);
-  // The lease of this node is lost. Closes all rooms at once, without the database: their edits are
-  // refused with `moved`, their listeners are notified, and their pictures stop. `open` returns an
-  // `unavailable` error until `resume` is called.
-  void surrender();
-  void resume();  // the node has a lease again
+  // The lease of this node is lost. The open rooms draw for their participants, but refuse edits,
+  // and no edit is acknowledged until `resume` is called. Their listeners are notified
+  // (Listener::database_reachable). `open` returns an `unavailable` error, also for an open model,
+  // so that new users come to a node that has a lease. Does not wait for the database.
+  void suspend();
+  // The node has a lease again. Each room is compared with the journal before it accepts edits, and
+  // is closed if another node has claimed its model (Listener::moved).
+  void resume();
   std::size_t open_rooms() const;
   std::size_t participants() const;  // connections to all rooms
   // The number of open models that this server gave to other servers or lost to them.

@@ -58,7 +58,7 @@ bool NodeLease::is_held(Clock::time_point now) const {
 
 bool NodeLease::holds() const {
   const std::lock_guard lock(mutex_);
-  return !surrendered_ && is_held(Clock::now());
+  return !suspended_ && is_held(Clock::now());
 }
 
 std::chrono::milliseconds NodeLease::left() const {
@@ -127,11 +127,12 @@ void NodeLease::renew(Clock::time_point sent) {
   if (renewed.error().code == ErrorCode::gone) join_again();
 }
 
-// Other nodes may have claimed the models since the lease ended, so the rooms are closed first.
+// Other nodes may have claimed the models since the lease ended. So the rooms are suspended first,
+// and each is compared with the database when it resumes.
 void NodeLease::join_again() {
   {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return stopping_ || surrendered_; });
+    changed_.wait(lock, [this] { return stopping_ || suspended_; });
     if (stopping_ || draining_) return;
   }
   const auto sent = Clock::now();
@@ -146,12 +147,12 @@ void NodeLease::join_again() {
   log::info("this node has joined the site again");
 }
 
-// Closes and opens the rooms on one thread, so that both happen in order.
+// Suspends and resumes the rooms on one thread, so that both happen in order.
 void NodeLease::watch_until_stopped() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     const bool held = is_held(Clock::now());
-    if (held == !surrendered_) {
+    if (held == !suspended_) {
       if (held)
         changed_.wait_until(lock, sent_ + options_.trusted_for);
       else
@@ -162,9 +163,9 @@ void NodeLease::watch_until_stopped() {
     if (held)
       rooms_.resume();
     else
-      rooms_.surrender();
+      rooms_.suspend();
     lock.lock();
-    surrendered_ = !held;
+    suspended_ = !held;
     changed_.notify_all();
   }
 }

@@ -21,9 +21,9 @@ namespace strata::app {
 
 // Keeps the lease of this process while the site has several nodes (store/nodes/nodes.h). If no
 // renewal that was sent within the last `trusted_for` has succeeded, the process may no longer be
-// the owner of its models. It then surrenders its rooms, and joins the site again when the database
-// answers. `trusted_for` is shorter than the lease, so the rooms are closed before another node can
-// claim their models.
+// the owner of its models. It then suspends its rooms (Rooms::suspend), and joins the site again
+// when the database answers. `trusted_for` is shorter than the lease, so the rooms acknowledge no
+// edits before another node can claim their models.
 //
 // One thread renews, and may hang in the database. Another thread watches the monotonic clock, and
 // never waits for the database. Thread-safe.
@@ -71,9 +71,9 @@ class NodeLease {
   std::atomic<bool> draining_{false};
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  Clock::time_point sent_;    // when the last successful renewal was sent
-  bool is_over_ = false;      // over in the database; the rooms must be closed before a new lease
-  bool surrendered_ = false;  // the rooms are closed
+  Clock::time_point sent_;  // when the last successful renewal was sent
+  bool is_over_ = false;    // over in the database; the rooms must be suspended before a new lease
+  bool suspended_ = false;  // the rooms acknowledge no edits
   bool stopping_ = false;
   // Used by the renewing thread: when the load was last measured, and the processor time until
   // then.

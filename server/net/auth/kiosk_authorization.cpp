@@ -152,6 +152,7 @@ std::optional<protocol::ServerMessage> filtered_for_kiosk(const protocol::Server
       without_user(std::get_if<ViewEvent>(&filtered)) ||
       std::holds_alternative<Welcome>(filtered) || std::holds_alternative<LookEvent>(filtered) ||
       std::holds_alternative<ModelEvent>(filtered) || std::holds_alternative<Picked>(filtered) ||
+      std::holds_alternative<DatabaseState>(filtered) ||
       std::holds_alternative<ProblemMessage>(filtered))
     return filtered;
   return std::nullopt;

@@ -578,6 +578,12 @@ void LiveSession::moved(const std::string& url) {
   }
 }
 
+void LiveSession::database_reachable(bool reachable) {
+  protocol::DatabaseState state;
+  state.reachable = reachable;
+  send(state);
+}
+
 void LiveSession::presence_changed() {
   auto socket = socket_.lock();
   if (!socket || principal_.kiosk) return;

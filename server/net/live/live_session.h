@@ -102,6 +102,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void surface_image_changed(LayerChange change, const SurfaceImage& image) override;
   void model_deleted() override;
   void moved(const std::string& url) override;
+  void database_reachable(bool reachable) override;
   void presence_changed() override;
   void view_refused(std::uint32_t view_id, const Error& why) override;
 

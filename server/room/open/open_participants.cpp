@@ -20,16 +20,21 @@ std::unique_ptr<Participant> OpenRoom::ParticipantsPart::join(Author who, Portra
   }
   room_.touch();
   announce_presence();
-  tell_if_moved(joined->session());
+  tell_state(joined->session());
   return joined;
 }
 
-void OpenRoom::ParticipantsPart::tell_if_moved(const Uuid& session) {
+void OpenRoom::ParticipantsPart::tell_state(const Uuid& session) {
   boost::asio::post(room_.strand_, [room = room_.shared_from_this(), this, session] {
-    if (!room->moved_) return;
+    if (!room->moved_ && room->is_current_) return;
     std::lock_guard lock(mutex_);
-    for (OpenParticipant* each : here_)
-      if (each->session() == session) each->tell_moved(room->moved_->location);
+    for (OpenParticipant* each : here_) {
+      if (each->session() != session) continue;
+      if (room->moved_)
+        each->tell_moved(room->moved_->location);
+      else if (each->listener())
+        each->listener()->database_reachable(false);
+    }
   });
 }
 

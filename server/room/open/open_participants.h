@@ -28,8 +28,9 @@ class OpenRoom::ParticipantsPart final : public Participants {
   // --- for each participant
   void leave(OpenParticipant* participant);
   void announce_presence();
-  // Notifies a participant who joined after the others had been notified that the model moved.
-  void tell_if_moved(const Uuid& session);
+  // Notifies a participant who joined after the others had been notified that the model moved, or
+  // that the node has no database.
+  void tell_state(const Uuid& session);
   // Replaces the former leader. nullopt: the follower has no leader. Returns the error `not_found`
   // if no participant has that session, and the same errors as Followers.
   Result<void> follow(const Uuid& follower, const std::optional<Uuid>& leader);

@@ -299,6 +299,27 @@ void OpenRoom::move_away(const Error& why) {
   run_on(strand_, [&] { tell_moved(why); });
 }
 
+void OpenRoom::stop_saving(const Error& why) {
+  run_on(strand_, [&] {
+    if (moved_) return;
+    // Comes before the refusals, so clients keep the refused edits until the database answers.
+    if (is_current_.exchange(false))
+      participants_part_->tell([](Listener& l) { l.database_reachable(false); });
+    pipeline_->stop_saving(why);
+  });
+}
+
+void OpenRoom::continue_saving() {
+  run_on(strand_, [&] {
+    if (!moved_) pipeline_->continue_saving();
+  });
+}
+
+void OpenRoom::saving_continued() {
+  is_current_ = true;
+  participants_part_->tell([](Listener& l) { l.database_reachable(true); });
+}
+
 void OpenRoom::deposed(const Error& why) {
   if (moved_) return;
   log::warning("another server has claimed model " + to_string(model_id_) +

@@ -90,6 +90,7 @@ class OpenRoom final : public Room,
   void journal_differs() override;
   void deposed(const Error& why) override;
   void paused() override;
+  void saving_continued() override;
 
   // --- for participants
   class ParticipantsPart;
@@ -125,6 +126,15 @@ class OpenRoom final : public Room,
   // Refuses edits with `moved`, and notifies listeners that the model has moved, which is their
   // last event. Does not wait for the database. Call `close` later.
   void move_away(const Error& why);
+  // Refuses edits with `why` and notifies listeners, until `continue_saving`. Views are still
+  // drawn. Does not wait for the database.
+  void stop_saving(const Error& why);
+  // Compares the room with the journal. Then accepts edits and notifies listeners, or if another
+  // server has claimed the model, notifies them that it has moved.
+  void continue_saving();
+  // Returns whether the room is known to have all edits of the model. False from `stop_saving`
+  // until the comparison has succeeded.
+  bool is_current() const { return is_current_; }
   // Gives up the claim, so that another node can open the model. Blocks. Does nothing if this
   // server is alone, because its claims have no owner.
   void release();
@@ -195,6 +205,7 @@ class OpenRoom final : public Room,
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
   std::atomic<std::size_t> unanswered_{0};  // edits, and changes to layers that wait for edits
   std::atomic<bool> takes_edits_{true};
+  std::atomic<bool> is_current_{true};  // changed on the strand
 
   struct Recovery {  // used on the strand
     static constexpr std::chrono::milliseconds kFirstRetry{250}, kLastRetry{8000};

@@ -20,6 +20,7 @@ namespace {
 constexpr int kStrokesInFlight = 8;
 constexpr int kKeyTileEvery = 64;  // revisions of a tile between two key tiles
 constexpr auto kRepairPause = std::chrono::milliseconds(500);
+constexpr auto kComparePause = std::chrono::seconds(1);
 
 const char* op_name(const EditRequest& request) {
   return std::visit(
@@ -97,7 +98,8 @@ EditPipeline::EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_se
       host_(&host),
       sequence_(last_sequence),
       durable_(last_sequence),
-      repair_timer_(parts_.strand) {}
+      repair_timer_(parts_.strand),
+      compare_timer_(parts_.strand) {}
 
 template <class Handler>
 auto EditPipeline::then(Handler handler) {
@@ -112,6 +114,7 @@ auto EditPipeline::then(Handler handler) {
 
 void EditPipeline::edit(EditRequest request, Applied applied, Saved saved) {
   if (closed_) return saved(tl::unexpected(*closed_));
+  if (not_saving_) return saved(tl::unexpected(*not_saving_));
   if (auto found = running_.find(request.id); found != running_.end()) {
     if (found->second.user != request.author.user) return saved(tl::unexpected(taken_id()));
     return found->second.followers.push_back(std::move(saved));
@@ -134,6 +137,7 @@ void EditPipeline::edit(EditRequest request, Applied applied, Saved saved) {
 
 void EditPipeline::when_idle(Work work) {
   if (closed_) return work(tl::unexpected(*closed_));
+  if (not_saving_) return work(tl::unexpected(*not_saving_));
   waiting_.push_back(
       {.request = {{}, {{}, Role::viewer}}, .applied = {}, .saved = {}, .work = std::move(work)});
   step();
@@ -145,7 +149,7 @@ void EditPipeline::when_idle(Work work) {
 // the room also compares the end of the journal with the sequence that it expects. If the last
 // look-up failed, a comparison starts only when an edit waits for it.
 void EditPipeline::ask_journal() {
-  if (asking_) return;
+  if (asking_ || not_saving_) return;
   const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
   const bool verifying = verify_ && settled && !(journal_away_ && waiting_.empty());
   if (verify_ && !verifying) return;
@@ -176,7 +180,7 @@ void EditPipeline::ask_journal() {
 
 void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>& state) {
   asking_ = false;
-  if (closed_) return;
+  if (closed_ || std::exchange(lookup_outdated_, false)) return;
   journal_away_ = !state;
   if (!state) {
     // Refuses all edits that wait for the journal, not only those in the look-up, because the edits
@@ -188,6 +192,7 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
       else
         refuse(item, state.error());
     }
+    if (compares_) compare_later();
     return;
   }
   if (state->epoch != parts_.epoch) return host_->deposed(moved_to({}));
@@ -198,7 +203,10 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   if (verifying && state->last_sequence == durable_) verify_ = false;
   const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
   if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;
-  if (!verify_) return on_known(state->known);
+  if (!verify_) {
+    report_compared();
+    return on_known(state->known);
+  }
   for (Waiting& item : waiting_)
     if (item.lookup == Waiting::Lookup::requested) item.lookup = Waiting::Lookup::none;
   if (verifying && state->last_sequence != durable_) host_->journal_differs();
@@ -237,7 +245,7 @@ void EditPipeline::step() {
     return;
   }
   if (busy_ || failure_) return;
-  if (repair() || verify_) return;
+  if (repair() || verify_ || not_saving_) return;
   while (!waiting_.empty() && !busy_ && !waits_for_map_)
     if (!start_front()) return;
 }
@@ -509,6 +517,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
 
   pending_.push_back({event, std::move(computed.changes), std::move(provisional_before),
                       sequence_before, std::move(item.saved), item.trace, false});
+  if (not_saving_) refuse_pending(*not_saving_);
   if (failure_) {
     pending_.back().answered = true;
     return;
@@ -525,6 +534,11 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
                      {}};
     pending_.back().answered = true;
   }
+}
+
+void EditPipeline::refuse_pending(const Error& why) {
+  for (Pending& pending : pending_)
+    answer(pending.event.id, std::exchange(pending.saved, {}), tl::unexpected(why));
 }
 
 void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence) {
@@ -702,6 +716,39 @@ void EditPipeline::answer(const Uuid& id, const Saved& saved, const Result<EditA
 
 // --- pause and close
 
+void EditPipeline::stop_saving(const Error& why) {
+  if (closed_ || not_saving_) return;
+  not_saving_ = why;
+  verify_ = true;
+  compares_ = false;
+  lookup_outdated_ = asking_;
+  reading_outdated_ = paused_;
+  refuse_waiting(why);
+  refuse_pending(why);
+}
+
+void EditPipeline::continue_saving() {
+  if (closed_ || !not_saving_) return;
+  not_saving_.reset();
+  compares_ = true;
+  journal_away_ = false;  // the comparison starts at once
+  step();
+}
+
+void EditPipeline::report_compared() {
+  if (std::exchange(compares_, false)) host_->saving_continued();
+}
+
+void EditPipeline::compare_later() {
+  compare_timer_.expires_after(kComparePause);
+  compare_timer_.async_wait(
+      [self = shared_from_this()](const boost::system::error_code& cancelled) {
+        if (cancelled || !self->compares_) return;
+        self->journal_away_ = false;
+        self->step();
+      });
+}
+
 void EditPipeline::pause() {
   paused_ = tell_paused_ = true;
   step();
@@ -710,7 +757,7 @@ void EditPipeline::pause() {
 void EditPipeline::journal_read(std::int64_t last_sequence) {
   // No edit is pending, because the last rollback removed all pending edits.
   sequence_ = durable_ = last_sequence;
-  verify_ = false;
+  verify_ = std::exchange(reading_outdated_, false);
   since_key_tile_.clear();
 }
 
@@ -720,6 +767,7 @@ void EditPipeline::gpu_lacks(LayerId layer_id, const std::vector<TileAddress>& t
 
 void EditPipeline::resume() {
   paused_ = false;
+  if (!verify_) report_compared();
   step();
 }
 
@@ -728,6 +776,7 @@ void EditPipeline::close(const Error& why) {
   closed_ = why;
   host_ = nullptr;
   repair_timer_.cancel();
+  compare_timer_.cancel();
   refuse_waiting(why);
   if (why.code == ErrorCode::moved) {
     failure_.reset();

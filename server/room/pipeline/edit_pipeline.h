@@ -55,6 +55,8 @@ class PipelineHost {
   virtual void deposed(const Error& why) = 0;
   // Called after a request to pause, when nothing is in progress.
   virtual void paused() = 0;
+  // Called after `continue_saving`, when the room has the content of the journal.
+  virtual void saving_continued() = 0;
 };
 
 // Orders the edits of one room. First, the pipeline looks up an edit in the journal, which may
@@ -120,6 +122,13 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void gpu_lacks(LayerId layer_id, const std::vector<TileAddress>& tiles);
   void resume();
 
+  // Refuses waiting, pending and later edits with `why`, until `continue_saving`. A pending edit
+  // may be in the journal nevertheless. Its author sends it again and then gets its first answer.
+  void stop_saving(const Error& why);
+  // Accepts edits again. They start after the room was compared with the journal, because another
+  // server may have claimed the model meanwhile. Then PipelineHost::saving_continued is called.
+  void continue_saving();
+
   void refuse_waiting(const Error& why);
   // Call before the host is destroyed. Refuses waiting and later edits. If the reason is that the
   // model moved, also refuses at once the edits that wait for their commit: this server must not
@@ -155,6 +164,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void ask_journal();
   void on_journal(bool verifying, const Result<store::JournalState>& state);
   void on_known(const std::vector<store::JournalRow>& known);
+  void compare_later();
+  void report_compared();
   // --- start of edits
   void step();
   bool start_front();  // returns false if the edit has to wait
@@ -166,6 +177,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void upload_computed(const std::shared_ptr<Waiting>& item, Result<ComputedEdit> computed);
   void computed_uploaded(Waiting& item, ComputedEdit computed, const Result<void>& uploaded);
   // --- saving and rollback
+  void refuse_pending(const Error& why);
   void commit(Waiting& item, LayerState& layer, ComputedEdit computed,
               const std::optional<render::FrameRequest::Box>& box);
   // A null tile means that no texel of the tile waits for review.
@@ -195,10 +207,16 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   bool busy_ = false;  // a computed edit, `when_idle` work or a repair is in progress
   bool waits_for_map_ = false;
   bool paused_ = false;
-  bool tell_paused_ = false;     // the host waits for a call of `paused`
-  std::optional<Error> closed_;  // the error for later edits
+  bool tell_paused_ = false;         // the host waits for a call of `paused`
+  std::optional<Error> closed_;      // the error for later edits
+  std::optional<Error> not_saving_;  // the error for edits until `continue_saving`
   // No work starts before the room was compared with the journal, which may contain more edits.
   bool verify_ = false;
+  // The look-up or the reading in progress began before `stop_saving`, so it proves nothing.
+  bool lookup_outdated_ = false, reading_outdated_ = false;
+  // From `continue_saving` until the room was compared with the journal. A failed comparison is
+  // repeated even if no edit waits for it, because viewers must notice that the model moved.
+  bool compares_ = false;
   // The reason why commits failed. All pending edits are rolled back when every commit has ended.
   std::optional<Error> failure_;
   std::deque<Pending> pending_;  // in the order of sequences
@@ -207,7 +225,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // Like `stale_`, for texels that wait for review. The upload is repeated together with the next
   // one of the layer, and does not delay edits.
   std::map<LayerId, std::set<TileAddress>> stale_marks_;
-  boost::asio::steady_timer repair_timer_;
+  boost::asio::steady_timer repair_timer_, compare_timer_;
   bool repair_waits_ = false;  // waiting for the timer
   // By layer: the number of revisions since the last key tile was stored, in this room.
   std::map<LayerId, std::unordered_map<TileAddress, int>> since_key_tile_;

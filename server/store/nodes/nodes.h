@@ -82,8 +82,8 @@ class Nodes {
   // neither wait for a busy pool nor for a long statement.
   // Inserts the node, or renews its lease if the database has it already.
   Result<void> join(const NewNode& node);
-  // Returns `gone` if the lease is over or the node was removed. Then the node must close its rooms
-  // and join again.
+  // Returns `gone` if the lease is over or the node was removed. Then the node must suspend its
+  // rooms and join again.
   Result<void> renew(const Uuid& node, const NodeLoad& load);
   // Other nodes may then claim the models of the node at once, and the node may claim no model.
   Result<void> begin_drain(const Uuid& node);

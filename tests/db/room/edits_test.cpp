@@ -175,6 +175,7 @@ struct UnsavedEars : room::Listener {
   void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override {}
   void moved(const std::string&) override {}
+  void database_reachable(bool) override {}
   void presence_changed() override {}
   void view_refused(std::uint32_t, const Error&) override {}
 };

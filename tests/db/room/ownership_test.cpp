@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "protocol/frame_header.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -26,7 +27,7 @@ using Answer = Result<room::EditAnswer>;
 
 constexpr auto kLong = std::chrono::minutes(5);
 
-// A listener that records where the model moved.
+// A listener that records where the model moved, and whether the node has its database.
 class Follower : public room::Listener {
  public:
   void edit_applied(const Edit&) override {}
@@ -42,11 +43,22 @@ class Follower : public room::Listener {
     urls_.push_back(url);
     changed_.notify_all();
   }
+  void database_reachable(bool reachable) override {
+    std::lock_guard lock(mutex_);
+    reachable_.push_back(reachable);
+    changed_.notify_all();
+  }
 
   std::vector<std::string> wait() {
     std::unique_lock lock(mutex_);
     EXPECT_TRUE(changed_.wait_for(lock, kLong, [&] { return !urls_.empty(); }));
     return urls_;
+  }
+  // Returns the notifications about the database, when there are `count` of them.
+  std::vector<bool> wait_for_reachable(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    EXPECT_TRUE(changed_.wait_for(lock, kLong, [&] { return reachable_.size() >= count; }));
+    return reachable_;
   }
   std::vector<std::string> urls() {
     std::lock_guard lock(mutex_);
@@ -57,6 +69,40 @@ class Follower : public room::Listener {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::string> urls_;
+  std::vector<bool> reachable_;
+};
+
+// A viewer that turns the model.
+class Viewer {
+ public:
+  Viewer(room::Room& room, room::Listener& listener)
+      : participant_(room.participants().join(
+            {"anna", Role::owner}, {}, &listener,
+            [this](const stream::FrameMessages& frame) { take(frame); })) {}
+  // Waits for a frame of this camera.
+  bool turn_to(const Camera& camera) {
+    participant_->camera(0, ++sent_, camera, false);
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kLong, [&] { return drawn_ == sent_; });
+  }
+
+ private:
+  void take(const stream::FrameMessages& frame) {
+    std::lock_guard lock(mutex_);
+    for (const auto& message : frame) {
+      const auto header = protocol::decode_frame_header(*message);
+      ASSERT_TRUE(header);
+      if (!header->last) continue;
+      drawn_ = header->camera_seq;
+      participant_->ack(header->view_id, header->frame);
+    }
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::uint64_t sent_ = 0, drawn_ = 0;
+  std::unique_ptr<room::Participant> participant_;  // the first to end, because it sends frames
 };
 
 class TwoNodes : public RoomTest {
@@ -211,13 +257,13 @@ TEST_F(TwoNodes, a_change_of_layers_notices_that_the_model_moved) {
   EXPECT_FALSE(other_rooms_->open("pot", Role::owner).value()->layers().find("late"));
 }
 
-TEST_F(TwoNodes, a_node_without_a_lease_gives_up_its_models_at_once) {
+TEST_F(TwoNodes, a_node_without_a_lease_draws_and_saves_nothing_until_it_has_one_again) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   Follower follower;
   const auto open_on_a = room();
-  auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
-                                                    [](const stream::FrameMessages&) {});
+  Viewer viewer(*open_on_a, follower);
+  ASSERT_TRUE(viewer.turn_to(camera()));
   // The commit hangs, so the edit is neither saved nor refused.
   auto holder = store::PgConnection::connect(dsn_);
   ASSERT_TRUE(holder);
@@ -231,35 +277,117 @@ TEST_F(TwoNodes, a_node_without_a_lease_gives_up_its_models_at_once) {
       [&](Answer answer) { answered.set_value(std::move(answer)); });
   visible.get_future().wait();
 
-  rooms_->surrender();
-  EXPECT_THAT(follower.urls(), ::testing::ElementsAre(""));
+  rooms_->suspend();
+  EXPECT_THAT(follower.wait_for_reachable(1), ::testing::ElementsAre(false));
   const auto answer = answered.get_future().get();
   ASSERT_FALSE(answer) << "an edit is not acknowledged without a lease";
-  EXPECT_EQ(answer.error().code, ErrorCode::moved);
-  EXPECT_EQ(rooms_->open_rooms(), 0u);
+  EXPECT_EQ(answer.error().code, ErrorCode::unavailable);
+  std::promise<Answer> late;
+  open_on_a->edits().submit(stroke(layer, 7, {{340, 240}}, 20), {},
+                            [&](Answer result) { late.set_value(std::move(result)); });
+  EXPECT_EQ(late.get_future().get().error().code, ErrorCode::unavailable);
   const auto refused = rooms_->open("pot", Role::owner);
-  ASSERT_FALSE(refused);
+  ASSERT_FALSE(refused) << "new users must come to a node with a lease";
   EXPECT_EQ(refused.error().code, ErrorCode::unavailable);
   EXPECT_EQ(rooms_->elsewhere("pot").value(), std::nullopt);
+  EXPECT_TRUE(viewer.turn_to(camera({0.3, -1, 0.4}))) << "viewers can turn the model";
 
   // The commit succeeds after all. The repeated edit gets the same result.
   ASSERT_TRUE(holder->script("COMMIT"));
   rooms_->resume();
+  EXPECT_THAT(follower.wait_for_reachable(2), ::testing::ElementsAre(false, true));
   const auto repeated = send_until_taken(edit);
   ASSERT_TRUE(repeated) << repeated.error().detail;
   EXPECT_EQ(repeated->sequence, 2);
+  EXPECT_TRUE(repeated->repeated);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2);
   expect_room_equals_journal(layer);
+  EXPECT_EQ(room().get(), open_on_a.get()) << "the room was not closed";
+  EXPECT_THAT(follower.urls(), ::testing::IsEmpty());
+  EXPECT_EQ(rooms_->models_moved(), 0u);
+  EXPECT_EQ(send(stroke(layer, 8, {{340, 240}}, 20))->sequence, 3);
+}
+
+TEST_F(TwoNodes, a_model_that_another_node_claimed_meanwhile_is_not_saved_here_again) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  Follower follower;
+  const auto open_on_a = room();
+  auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
+                                                    [](const stream::FrameMessages&) {});
+  rooms_->suspend();
+  end_lease(a_);
+  const auto there = send_to_b(stroke(layer, 9, {{320, 240}}, 20));
+  ASSERT_TRUE(there) << there.error().detail;
+
+  join(a_);
+  rooms_->resume();
+  EXPECT_THAT(follower.wait(), ::testing::SizeIs(1));
+  EXPECT_THAT(follower.wait_for_reachable(1), ::testing::ElementsAre(false));
+  std::promise<Answer> late;
+  open_on_a->edits().submit(stroke(layer, 7, {{340, 240}}, 20), {},
+                            [&](Answer result) { late.set_value(std::move(result)); });
+  EXPECT_EQ(late.get_future().get().error().code, ErrorCode::moved);
+  wait_until_closed(*rooms_);
+  EXPECT_EQ(rooms_->models_moved(), 1u);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), there->sequence);
+  participant.reset();
+}
+
+TEST_F(TwoNodes, a_journal_with_more_edits_is_read_before_the_model_is_saved_again) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  Follower follower;
+  const auto open_on_a = room();
+  auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
+                                                    [](const stream::FrameMessages&) {});
+  rooms_->suspend();
+  // The effect of a commit whose response was lost: the journal has an edit that the room lacks.
+  script("BEGIN; UPDATE models SET sequence = 2 WHERE id = " + to_string(model_.id) +
+         "; UPDATE layers SET sequence = 2 WHERE id = " + to_string(layer.id) +
+         "; INSERT INTO edits (model_id, sequence, id, layer_id, stroke, user_name, op, record, "
+         "answer, time) SELECT model_id, 2, gen_random_uuid(), layer_id, gen_random_uuid(), "
+         "user_name, op, record, answer, time FROM edits WHERE model_id = " +
+         to_string(model_.id) + "; COMMIT");
+  rooms_->resume();
+  EXPECT_THAT(follower.wait_for_reachable(2), ::testing::ElementsAre(false, true));
+  EXPECT_EQ(open_on_a->edits().durable_sequence(), 2);
+  EXPECT_EQ(send(stroke(layer, 6, {{320, 240}}, 20))->sequence, 3);
+  expect_room_equals_journal(layer);
+  EXPECT_THAT(follower.urls(), ::testing::IsEmpty());
+  participant.reset();
+}
+
+TEST_F(TwoNodes, a_node_without_a_lease_stops_without_the_database) {
+  make_layer(ValueType::u8);
+  Follower follower;
+  const auto open_on_a = room();
+  auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
+                                                    [](const stream::FrameMessages&) {});
+  rooms_->suspend();
+  rooms_->drain();
+  EXPECT_THAT(follower.urls(), ::testing::ElementsAre(""));
+  EXPECT_EQ(rooms_->open_rooms(), 0u);
+  EXPECT_TRUE(store_->nodes().owner_of("pot").value()) << "the claim ends with the lease";
   participant.reset();
 }
 
 TEST_F(TwoNodes, a_participant_who_joins_late_is_notified_as_well) {
   make_layer(ValueType::u8);
   const auto open_on_a = room();
-  rooms_->surrender();
+  rooms_->suspend();
   Follower follower;
   auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
                                                     [](const stream::FrameMessages&) {});
-  EXPECT_THAT(follower.wait(), ::testing::ElementsAre(""));
+  EXPECT_THAT(follower.wait_for_reachable(1), ::testing::ElementsAre(false));
+  end_lease(a_);
+  ASSERT_TRUE(other_rooms_->open("pot", Role::owner));
+  rooms_->resume();
+  EXPECT_THAT(follower.wait(), ::testing::SizeIs(1));
+  Follower later;
+  auto second = open_on_a->participants().join({"ben", Role::owner}, {}, &later,
+                                               [](const stream::FrameMessages&) {});
+  EXPECT_THAT(later.wait(), ::testing::SizeIs(1));
 }
 
 TEST_F(TwoNodes, a_node_that_stops_passes_its_models_on) {

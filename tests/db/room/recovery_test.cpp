@@ -44,6 +44,7 @@ class Ears : public room::Listener {
   void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override { count(deleted_); }
   void moved(const std::string&) override {}
+  void database_reachable(bool) override {}
   void presence_changed() override { count(presence_); }
   void view_refused(std::uint32_t, const Error&) override {}
 

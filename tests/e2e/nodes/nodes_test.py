@@ -1,6 +1,6 @@
 """Several nodes over one PostgreSQL: requests reach the node that has a model, and a model moves to
-another node when its node is killed, frozen or stopped. Times are printed, because the machine of a
-test may be slow."""
+another node when its node is killed, frozen or stopped. A node without the database still draws for
+its viewers. Times are printed, because the machine of a test may be slow."""
 import http.client
 import json
 import signal
@@ -11,7 +11,7 @@ import uuid
 
 import pytest
 from support.cameras import camera_from
-from support.live_client import Closed, LiveClient, Refused
+from support.live_client import LAST_RECTANGLE, Closed, LiveClient, Refused
 from support.meshes import folded_grid
 from support.nodes import FAULT_WORDS, Site
 from support.strata_server import LONG_S, StrataServer, wait_for
@@ -71,6 +71,22 @@ def saved(live, edit_id):
         assert message["op"] == "saved", message
         if message.get("id") == edit_id:
             return message
+
+
+def until_database(live, reachable):
+    """Waits until the node reports that it has lost its database, or has it again."""
+    while live.receive_until("database")["reachable"] is not reachable:
+        pass
+
+
+def turn(live, model, seq):
+    """Turns the view, and returns when a frame shows it."""
+    camera = camera_from(model, (seq / 20, -0.2, 1), 320, 240)
+    live.send({"op": "camera", "seq": seq, "moving": False, **camera})
+    while True:
+        frame = live.receive_until("frame")
+        if frame["camera_seq"] == seq and frame["flags"] & LAST_RECTANGLE:
+            return
 
 
 def until_moved(live):
@@ -362,6 +378,79 @@ def test_one_of_two_nodes_takes_over():
         for node in three.running():
             assert node.stop() == 0
             node.assert_clean_log(FAULT_WORDS)
+
+
+@pytest.fixture(name="linked", scope="module")
+def linked_site():
+    """A site whose nodes can be cut off from the database."""
+    with Site(2, seed=3, links=True) as started:
+        started.model = started.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
+        started.ok("POST", f"/models/{started.model['id']}/layers", {"name": "marks", "type": "u8"})
+        yield started
+
+
+def test_viewers_turn_the_model_while_there_is_no_database(linked):
+    model = linked.model
+    owner, _ = owner_and_other(linked, model)
+    epoch = linked.epoch(model["id"])
+    with LiveClient(owner, model["id"]) as live, LiveClient(owner, model["id"]) as viewer:
+        live.hello()
+        viewer.hello(accept=["jpeg"])
+        turn(viewer, model, 1)
+        linked.postgres.kill()
+        until_database(live, False)
+        until_database(viewer, False)
+        for seq in (2, 3, 4):
+            turn(viewer, model, seq)
+        waiting = live_edit(live, model)
+        refused = live.receive_until("saved", "unsaved", "problem")
+        assert (refused["op"], refused.get("status")) == ("problem", 503), refused
+        assert refused["ref"] == waiting, refused
+        assert owner.get("//readyz").status == 503
+
+        linked.postgres.restart()
+        until_database(live, True)
+        until_database(viewer, True)
+        for _ in range(2):
+            live.send({"op": "edit", "id": waiting, "layer": "marks", "edit": stroke(model)})
+            saved(live, waiting)
+        turn(viewer, model, 5)
+    assert history_ids(linked, model).count(waiting) == 1
+    assert linked.epoch(model["id"]) == epoch, "the model was opened again"
+
+
+def test_a_node_that_is_cut_off_draws_but_acknowledges_nothing(linked):
+    model = linked.model
+    owner, other = owner_and_other(linked, model)
+    with LiveClient(owner, model["id"]) as live, LiveClient(owner, model["id"]) as viewer:
+        live.hello()
+        viewer.hello(accept=["jpeg"])
+        saved(live, live_edit(live, model))
+        owner.database.cut()
+        begun = time.monotonic()
+        until_database(live, False)
+        until_database(viewer, False)
+        late = [live_edit(live, model, value) for value in (1, 2, 3)]
+        for seq in (1, 2):
+            turn(viewer, model, seq)
+        # The other node claims the model, and saves.
+        key = str(uuid.uuid4())
+        wait_for(lambda: edit_at(other, model, key).status == 200, "the other node to save")
+        print(f"cut off: painting went on after {time.monotonic() - begun:.2f} s")
+        turn(viewer, model, 3)
+        owner.database.mend()
+        messages = until_moved(live)
+        until_moved(viewer)
+        refused = {message.get("ref") for message in messages if message["op"] == "problem"}
+        assert not [message for message in messages if message["op"] == "saved"], messages
+        assert refused == set(late), messages
+    with LiveClient(other, model["id"]) as live:
+        live.hello()
+        for edit_id, value in zip(late, (1, 2, 3)):
+            live.send({"op": "edit", "id": edit_id, "layer": "marks", "edit": stroke(model, value)})
+            saved(live, edit_id)
+    ids = history_ids(linked, model)
+    assert all(ids.count(edit_id) == 1 for edit_id in late), (late, ids)
 
 
 def test_a_server_alone_has_no_nodes():

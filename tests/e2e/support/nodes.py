@@ -26,6 +26,7 @@ FAULT_WORDS = [
     "could not be renewed",
     "could not join the site again",
     "may have lost them to other nodes",
+    "has claimed model",
     "a commit failed and is tried again",
     "undid",
 ]

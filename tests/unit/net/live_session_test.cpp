@@ -170,6 +170,16 @@ TEST_F(Live, a_model_that_moved_nobody_knows_where_has_no_address) {
   EXPECT_EQ(socket->close_code, kCloseMoved);
 }
 
+TEST_F(Live, a_database_that_is_lost_and_back_is_told_and_the_connection_stays) {
+  hello();
+  session->database_reachable(false);
+  session->database_reachable(true);
+  ASSERT_EQ(socket->of("database").size(), 2u);
+  EXPECT_EQ(socket->of("database")[0]["reachable"], false);
+  EXPECT_EQ(socket->of("database")[1]["reachable"], true);
+  EXPECT_EQ(socket->close_code, 0);
+}
+
 TEST_F(Live, an_edit_that_another_node_must_do_is_unsaved_and_not_refused) {
   hello();
   say(begin(stroke));

@@ -1099,6 +1099,13 @@ export interface Moved {
   url?: string;
 }
 
+/** The node lost its connection to the database, or has it again. The server sends this message only if the site has several nodes. Without the database, the node draws the model but saves no edits. The client should keep its edits, and send those that are not durable again when the database is reachable. Meanwhile, another node may have taken over the model, so the frames may be out of date. The client can open a second connection at the address of the site. If that connection gets `welcome`, the client should use it and close the first one. */
+export interface DatabaseState {
+  op: "database";
+  /** false: the server refuses edits (503). */
+  reachable: boolean;
+}
+
 /** Point where a pointer is on the surface. Position in world coordinates. */
 export interface PresencePointer {
   position: Point3;
@@ -3387,6 +3394,7 @@ export type ServerMessage =
   | ViewEvent
   | SnapshotEvent
   | Moved
+  | DatabaseState
   | Presence
   | Picked
   | ProblemMessage;
@@ -3409,6 +3417,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "view",
   "snapshot",
   "moved",
+  "database",
   "presence",
   "picked",
   "problem",

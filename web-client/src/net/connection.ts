@@ -8,6 +8,7 @@ import { decodeFrame, FrameError, type FrameMessage } from "./frame-header";
 import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";
 import { CameraSender } from "./camera-sender";
 import { addressAtNode } from "./node-address";
+import { NodeSearch } from "./node-search";
 import { kFirstRetryMs, kLastRetryMs, Resender } from "./resender";
 import { kOpenSocket, type SocketLike } from "./socket";
 import { SilenceWatch } from "./silence-watch";
@@ -21,6 +22,7 @@ import {
   type Background,
   type ClientMessage,
   type CommentEvent,
+  type DatabaseState,
   type LayerEvent,
   type LayerOverride,
   type Light,
@@ -48,7 +50,7 @@ export type ConnectionState = "connecting" | "open" | "lost" | "closed";
 
 export interface SavingState {
   waiting: number; // number of changes that are not durable yet
-  failing: boolean; // the server could not save some changes; they are sent again
+  failing: boolean; // the server cannot save some changes at present; they are sent again
 }
 
 export interface ConnectionCallbacks {
@@ -114,6 +116,7 @@ export class Connection {
   private _state: ConnectionState = "connecting";
   private _attempts = 0;
   private _moved = false;
+  private _databaseLost = false;
   private _address: string; // of the next connection: at the site, or at one of its nodes
   private _retryTimer: ReturnType<typeof setTimeout> | null = null;
   private readonly _silence = new SilenceWatch({
@@ -123,6 +126,15 @@ export class Connection {
   private _failing = false;
   private _pathPoints = 4096;
   private readonly _resender = new Resender((message) => this.send(message));
+  private readonly _search = new NodeSearch(
+    {
+      connect: () => this.makeSocket(this._options.url),
+      hello: (socket) => this.sayHello(socket),
+      found: (socket, welcome) => this.onNodeFound(socket, welcome),
+      random: () => (this._options.random ?? Math.random)(),
+    },
+    kOpeningMs,
+  );
 
   private _queue: ChangeQueue | null = null;
   private readonly _outbox = new Outbox((ids) => this._queue?.remove(ids));
@@ -157,6 +169,13 @@ export class Connection {
   get moved(): boolean {
     return this._moved;
   }
+  /**
+   * Whether the node has lost its database. It still draws the model, but saves nothing, and the
+   * picture may be out of date.
+   */
+  get databaseLost(): boolean {
+    return this._databaseLost;
+  }
   get waiting(): number {
     return this._outbox.waiting;
   }
@@ -171,20 +190,22 @@ export class Connection {
 
   open(): void {
     this.setState("connecting");
+    this.use(this.makeSocket(this._address));
+    this._silence.limit(kOpeningMs);
+  }
+
+  private makeSocket(address: string): SocketLike {
     const make =
       this._options.makeSocket ??
       ((url, protocol) => new WebSocket(url, protocol) as unknown as SocketLike);
-    const socket = make(this._address, SUBPROTOCOL);
+    return make(address, SUBPROTOCOL);
+  }
+
+  private use(socket: SocketLike): void {
     socket.binaryType = "arraybuffer";
     this._socket = socket;
     socket.onopen = () => {
-      if (socket !== this._socket) return;
-      this.send({
-        op: "hello",
-        client: this._options.client,
-        dpr: this._options.devicePixelRatio,
-        accept: ["jpeg", "png"],
-      });
+      if (socket === this._socket) this.sayHello(socket);
     };
     socket.onmessage = (event) => {
       if (socket === this._socket) this.onMessage(event.data);
@@ -193,12 +214,22 @@ export class Connection {
       if (socket === this._socket) this.onLost();
     };
     socket.onerror = () => {}; // the browser then sends a close event
-    this._silence.limit(kOpeningMs);
+  }
+
+  private sayHello(socket: SocketLike): void {
+    const hello: ClientMessage = {
+      op: "hello",
+      client: this._options.client,
+      dpr: this._options.devicePixelRatio,
+      accept: ["jpeg", "png"],
+    };
+    socket.send(JSON.stringify(hello));
   }
 
   /** Closes the connection permanently. Unsaved changes stay in the queue. */
   close(): void {
     this.forgetTimers();
+    this._search.stop();
     const socket = this._socket;
     this._socket = null;
     this.setState("closed");
@@ -303,7 +334,9 @@ export class Connection {
   private change(message: ChangeMessage): void {
     this._queue?.put(message);
     this._outbox.add(message);
-    if (!this._resender.queue(message) && this._state === "open") this.send(message);
+    // Without its database, the node refuses changes. They are sent when it has it again.
+    if (!this._databaseLost && !this._resender.queue(message) && this._state === "open")
+      this.send(message);
     this.expectAnswer();
     this.reportSaving();
   }
@@ -357,6 +390,8 @@ export class Connection {
         return this.reportSaving();
       case "moved":
         return this.onMoved(message);
+      case "database":
+        return this.onDatabase(message);
       case "problem":
         return this.onProblem(message);
       case "layer":
@@ -444,7 +479,7 @@ export class Connection {
       const first = !this._failing;
       this.resendLater();
       this.reportSaving();
-      if (first) this._callbacks.problem(problem);
+      if (first && !this._databaseLost) this._callbacks.problem(problem);
       return;
     }
     for (const id of this._outbox.giveUp(message.ref))
@@ -459,6 +494,7 @@ export class Connection {
   }
 
   private resend(): void {
+    if (this._databaseLost) return;
     const messages = this._outbox.messages();
     if (messages.length > 0) this.expectAnswer();
     this._resender.start(messages);
@@ -494,11 +530,40 @@ export class Connection {
     else this.open();
   }
 
+  private onDatabase({ reachable }: DatabaseState): void {
+    if (this._databaseLost !== reachable) return;
+    this._databaseLost = !reachable;
+    this._resender.stop();
+    if (reachable) {
+      this._search.stop();
+      this._resender.succeeded();
+      this.resend();
+    } else {
+      this._search.start();
+    }
+    this.reportSaving();
+  }
+
+  /** Continues at another node, which has taken over the model and has sent this welcome. */
+  private onNodeFound(socket: SocketLike, welcome: string): void {
+    const before = this._socket;
+    this._moved = true;
+    this._address = this._options.url;
+    const continues = this.dropSocket();
+    before?.close(1000, "moved");
+    if (!continues) return socket.close(1000, "left");
+    this.setState("connecting");
+    this.use(socket);
+    this.onMessage(welcome);
+  }
+
   /** Returns whether this object should connect again. */
   private dropSocket(): boolean {
     this.forgetTimers();
     this._silenced.clear();
     this._socket = null;
+    this._search.stop();
+    this._databaseLost = false; // as far as known: the next connection may be to another node
     this.setState("lost");
     this.reportSaving();
     // A listener may have closed the connection or requested another attempt.
@@ -553,7 +618,9 @@ export class Connection {
 
   private reportSaving(): void {
     if (this._outbox.waiting === 0) this._failing = false;
-    this._callbacks.saving({ waiting: this._outbox.waiting, failing: this._failing });
+    const { waiting } = this._outbox;
+    const failing = this._failing || (this._databaseLost && waiting > 0);
+    this._callbacks.saving({ waiting, failing });
   }
 }
 

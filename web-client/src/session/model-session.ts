@@ -80,6 +80,7 @@ export interface ModelSession {
   readonly session: string;
   readonly connectionState: ConnectionState;
   readonly moved: boolean; // another node of the site has the model; the page connects to it
+  readonly databaseLost: boolean; // the node has lost its database, and still draws the model
   readonly saving: SavingState;
   readonly view: ViewControl;
   readonly lit: LitArea;

@@ -1,5 +1,5 @@
 // The connection status on the model page. It shows whether all changes are saved, and a banner
-// while the server is unreachable.
+// while the server or its database is unreachable.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { ModelSession } from "../session/model-session";
@@ -26,6 +26,7 @@ export function savingStatus({ saving, connectionState }: ModelSession): Templat
 }
 
 export function lostBanner(session: ModelSession): TemplateResult | typeof nothing {
+  if (session.databaseLost) return databaseBanner(session);
   const reconnects = session.connectionState === "connecting" && session.view.framesDrawn > 0;
   if (session.connectionState !== "lost" && !reconnects) return nothing;
   const { waiting } = session.saving;
@@ -34,5 +35,14 @@ export function lostBanner(session: ModelSession): TemplateResult | typeof nothi
     ${icon("warning")}
     <span class="grow">${words} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
     <button @click=${() => session.checkConnection()}>${texts.connection.retry}</button>
+  </div>`;
+}
+
+/** The view still works, and the page connects to another node by itself, so there is no button. */
+function databaseBanner({ saving: { waiting } }: ModelSession): TemplateResult {
+  const words = texts.connection;
+  return html`<div class="banner" role="alert">
+    ${icon("warning")}
+    <span class="grow">${words.database_lost} ${waiting > 0 ? words.kept(waiting) : ""}</span>
   </div>`;
 }

@@ -73,6 +73,7 @@ export class OpenModelSession implements ModelSession {
   session = "";
   connectionState: ConnectionState = "connecting";
   moved = false; // another node of the site has the model; the page connects to it
+  databaseLost = false; // the node has lost its database, and still draws the model
   saving: SavingState = { waiting: 0, failing: false };
 
   readonly view: ViewControl;
@@ -614,6 +615,10 @@ export class OpenModelSession implements ModelSession {
 
   private onSaving(state: SavingState): void {
     this.saving = state;
+    if (this.databaseLost !== this._connection.databaseLost) {
+      this.databaseLost = this._connection.databaseLost;
+      this.changed();
+    }
     if (this._closed && state.waiting === 0) {
       if (this._toldLeft) notices.show("success", texts.saving.left_saved(this.name));
       this.discard();

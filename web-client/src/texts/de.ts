@@ -476,6 +476,8 @@ export const texts = {
     reload: "Neu laden",
     lost: "Verbindung unterbrochen. Neuer Versuch …",
     moved: "Das Modell ist auf einem anderen Knoten. Verbindung wird hergestellt …",
+    database_lost:
+      "Der Server hat die Verbindung zur Datenbank verloren. Sie können das Modell betrachten, aber das Bild ist möglicherweise veraltet, und Änderungen können nicht gespeichert werden. Neuer Versuch …",
     kept: (n) =>
       `${count(n, "Änderung ist", "Änderungen sind")} hier gespeichert und ${plural(n, "wird", "werden")} noch gesendet.`,
     retry: "Jetzt versuchen",

@@ -449,6 +449,8 @@ export const texts = {
     reload: "Reload",
     lost: "Connection lost. Trying again…",
     moved: "The model moved to another node. Reconnecting…",
+    database_lost:
+      "The server has lost its connection to the database. You can view the model, but the picture may be out of date, and changes cannot be saved. Trying again…",
     kept: (n: number) =>
       `${count(n, "change is", "changes are")} stored in this browser and will be sent.`,
     retry: "Retry now",

@@ -469,6 +469,8 @@ export const texts = {
     reload: "Recargar",
     lost: "Conexión perdida. Reintentando…",
     moved: "El modelo está en otro nodo. Reconectando…",
+    database_lost:
+      "El servidor ha perdido la conexión con la base de datos. Puede ver el modelo, pero la imagen puede no estar actualizada y los cambios no se pueden guardar. Reintentando…",
     kept: (n) =>
       `${changes(n)} ${plural(n, "se conserva aquí y se enviará", "se conservan aquí y se enviarán")}.`,
     retry: "Reintentar ahora",

@@ -2076,6 +2076,17 @@ nlohmann::json to_json(const Moved& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, DatabaseState& value) {
+  read_member(json, "reachable", value.reachable);
+}
+
+nlohmann::json to_json(const DatabaseState& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "database";
+  write_member(json, "reachable", value.reachable);
+  return json;
+}
+
 void read(const nlohmann::json& json, PresencePointer& value) {
   read_member(json, "position", value.position);
   read_optional_member(json, "radius", value.radius);
@@ -4104,6 +4115,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == ViewEvent::kOp) return Schema::ViewEvent;
   if (op == SnapshotEvent::kOp) return Schema::SnapshotEvent;
   if (op == Moved::kOp) return Schema::Moved;
+  if (op == DatabaseState::kOp) return Schema::DatabaseState;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
   if (op == ProblemMessage::kOp) return Schema::ProblemMessage;
@@ -4170,6 +4182,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == Moved::kOp) {
     read(json, value.emplace<Moved>());
+    return;
+  }
+  if (op == DatabaseState::kOp) {
+    read(json, value.emplace<DatabaseState>());
     return;
   }
   if (op == Presence::kOp) {

@@ -150,6 +150,7 @@ enum class Schema {
   ViewEvent,
   SnapshotEvent,
   Moved,
+  DatabaseState,
   PresencePointer,
   PresenceUser,
   Presence,
@@ -366,7 +367,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 340;
+constexpr int kSchemaCount = 341;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1442,6 +1443,17 @@ void read(const nlohmann::json& json, Moved& value);
 nlohmann::json to_json(const Moved& value);
 template <>
 inline constexpr Schema kSchemaOf<Moved> = Schema::Moved;
+
+// The node lost its connection to the database, or has it again. The server sends this message only if the site has several nodes. Without the database, the node draws the model but saves no edits. The client should keep its edits, and send those that are not durable again when the database is reachable. Meanwhile, another node may have taken over the model, so the frames may be out of date. The client can open a second connection at the address of the site. If that connection gets `welcome`, the client should use it and close the first one.
+struct DatabaseState {
+  static constexpr std::string_view kOp = "database";
+  bool reachable = false;  // false: the server refuses edits (503).
+  bool operator==(const DatabaseState&) const = default;
+};
+void read(const nlohmann::json& json, DatabaseState& value);
+nlohmann::json to_json(const DatabaseState& value);
+template <>
+inline constexpr Schema kSchemaOf<DatabaseState> = Schema::DatabaseState;
 
 // Point where a pointer is on the surface. Position in world coordinates.
 struct PresencePointer {
@@ -3210,7 +3222,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, SnapshotEvent, Moved, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, SnapshotEvent, Moved, DatabaseState, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

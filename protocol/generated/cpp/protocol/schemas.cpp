@@ -130,6 +130,7 @@ std::string_view name(Schema schema) {
     case Schema::ViewEvent: return "ViewEvent";
     case Schema::SnapshotEvent: return "SnapshotEvent";
     case Schema::Moved: return "Moved";
+    case Schema::DatabaseState: return "DatabaseState";
     case Schema::PresencePointer: return "PresencePointer";
     case Schema::PresenceUser: return "PresenceUser";
     case Schema::Presence: return "Presence";
@@ -476,6 +477,7 @@ std::string_view schema_bundle() {
 "ViewEvent":{"type":"object","additionalProperties":false,"required":["op","event","view"],"properties":{"op":{"const":"view"},"event":{"type":"string","enum":["created","changed","deleted"]},"view":{"type":"integer","minimum":1,"maximum":9007199254740991},"user":{"type":"string","maxLength":200}}},
 "SnapshotEvent":{"type":"object","additionalProperties":false,"required":["op","event","snapshot"],"properties":{"op":{"const":"snapshot"},"event":{"type":"string","enum":["created","changed","deleted"]},"snapshot":{"type":"integer","minimum":1,"maximum":9007199254740991},"user":{"type":"string","maxLength":200}}},
 "Moved":{"type":"object","additionalProperties":false,"required":["op"],"properties":{"op":{"const":"moved"},"url":{"type":"string","minLength":1,"maxLength":255}}},
+"DatabaseState":{"type":"object","additionalProperties":false,"required":["op","reachable"],"properties":{"op":{"const":"database"},"reachable":{"type":"boolean"}}},
 "PresencePointer":{"type":"object","additionalProperties":false,"required":["position"],"properties":{"position":{"$ref":"#/definitions/Point3"},"radius":{"type":"number","exclusiveMinimum":0,"maximum":1000000000.0}}},
 "PresenceUser":{"type":"object","additionalProperties":false,"required":["session","name","color"],"properties":{"session":{"$ref":"#/definitions/Uuid"},"name":{"type":"string","minLength":1,"maxLength":200},"full_name":{"type":"string","minLength":1,"maxLength":200},"color":{"$ref":"#/definitions/PersonColor"},"pointer":{"$ref":"#/definitions/PresencePointer"},"leading":{"type":"boolean"},"following":{"$ref":"#/definitions/Uuid"},"camera":{"$ref":"#/definitions/Camera"}}},
 "Presence":{"type":"object","additionalProperties":false,"required":["op","users"],"properties":{"op":{"const":"presence"},"users":{"type":"array","minItems":0,"maxItems":10000,"items":{"$ref":"#/definitions/PresenceUser"}}}},
