@@ -54,6 +54,14 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.account_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('access', node_event(TG_OP), NULL, NULL, '{}', CASE WHEN TG_OP = 'INSERT' THEN NEW.name ELSE OLD.name END);
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.activity_author() RETURNS text
     LANGUAGE sql STABLE
     AS $$ SELECT coalesce(current_setting('strata.user', true), '') $$;
@@ -183,6 +191,15 @@ CREATE FUNCTION public.analysis_table_changed() RETURNS trigger
     AS $$
 BEGIN
   PERFORM analysis_show_table(CASE TG_TABLE_NAME WHEN 'record_tables' THEN (to_jsonb(NEW) ->> 'id')::bigint ELSE (to_jsonb(NEW) ->> 'table_id')::bigint END);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.attachment_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('table', 'changed', t.project_id, NULL, ARRAY[t.id], activity_author())
+  FROM record_tables t WHERE t.id = NEW.table_id;
   RETURN NULL;
 END $$;
 
@@ -356,6 +373,27 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.comment_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('comment', node_event(TG_OP), NULL, NEW.model_id, ARRAY[NEW.id], activity_author());
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.comments_gone_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('comment', 'deleted', NULL, part.model_id, part.ids, activity_author())
+  FROM (
+    SELECT one.model_id, array_agg(one.id ORDER BY one.id) AS ids
+    FROM (SELECT g.model_id, g.id, (row_number() OVER (ORDER BY g.id) - 1) / 500 AS part FROM gone g JOIN models m ON m.id = g.model_id) one
+    GROUP BY one.model_id, one.part
+  ) part;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.deletion_is_audited() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -510,6 +548,14 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.kiosk_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('kiosk', node_event(TG_OP), NULL, NULL, ARRAY[OLD.id], activity_author());
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.member_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -536,6 +582,16 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.member_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  person bigint := CASE WHEN TG_OP = 'DELETE' THEN OLD.user_id ELSE NEW.user_id END;
+BEGIN
+  PERFORM send_to_nodes('access', node_event(TG_OP), NULL, NULL, '{}', u.name) FROM users u WHERE u.id = person;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.model_access_is_audited() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -550,6 +606,21 @@ BEGIN
   END IF;
   RETURN NULL;
 END $$;
+
+CREATE FUNCTION public.named_part_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  part_id bigint := CASE WHEN TG_OP = 'DELETE' THEN OLD.id ELSE NEW.id END;
+  of_model bigint := CASE WHEN TG_OP = 'DELETE' THEN OLD.model_id ELSE NEW.model_id END;
+BEGIN
+  PERFORM send_to_nodes(TG_ARGV[0], node_event(TG_OP), NULL, m.id, ARRAY[part_id], activity_author()) FROM models m WHERE m.id = of_model;
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.node_event(operation text) RETURNS text
+    LANGUAGE sql IMMUTABLE
+    AS $$ SELECT CASE operation WHEN 'INSERT' THEN 'created' WHEN 'UPDATE' THEN 'changed' ELSE 'deleted' END $$;
 
 CREATE FUNCTION public.note_activity(line public.activities, first_stroke uuid DEFAULT NULL::uuid) RETURNS void
     LANGUAGE plpgsql
@@ -610,6 +681,14 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.project_group_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('access', node_event(TG_OP), NULL, NULL, '{}', '');
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.project_settings_are_audited() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -648,6 +727,15 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.records_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('records', 'changed', t.project_id, NULL, ARRAY[NEW.table_id], NEW.user_name, NEW.sequence)
+  FROM record_tables t WHERE t.id = NEW.table_id;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.role_in_project_is_audited() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -677,6 +765,19 @@ END $$;
 CREATE FUNCTION public.role_rank(role text) RETURNS integer
     LANGUAGE sql IMMUTABLE
     AS $$ SELECT array_position(ARRAY['guest', 'viewer', 'annotator', 'curator', 'administrator', 'owner'], role) $$;
+
+CREATE FUNCTION public.send_to_nodes(of_kind text, of_event text, of_project bigint, of_model bigint, of_subjects bigint[], of_user text, of_sequence bigint DEFAULT NULL::bigint) RETURNS void
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF NOT EXISTS (SELECT FROM nodes) THEN
+    RETURN;
+  END IF;
+  INSERT INTO node_messages (from_node, kind, event, project_id, model_id, subject_ids, sequence, user_name)
+  VALUES (nullif(current_setting('strata.node', true), '')::uuid, of_kind, of_event, of_project, of_model, of_subjects, of_sequence,
+    coalesce(of_user, ''));
+  PERFORM pg_notify('strata_nodes', '');
+END $$;
 
 CREATE FUNCTION public.sign_on_is_audited() RETURNS trigger
     LANGUAGE plpgsql
@@ -712,6 +813,16 @@ BEGIN
     line.record_key := written.record;
   END IF;
   PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.table_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  changed record_tables := CASE WHEN TG_OP = 'DELETE' THEN OLD ELSE NEW END;
+BEGIN
+  PERFORM send_to_nodes('table', node_event(TG_OP), changed.project_id, NULL, ARRAY[changed.id], activity_author());
   RETURN NULL;
 END $$;
 
@@ -800,11 +911,28 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.token_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('access', 'deleted', NULL, NULL, '{}', OLD.user_name);
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.tool_deletion_is_audited() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
 BEGIN
   PERFORM audit('deletion', 'tool', OLD.id, OLD.name, NULL);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.tool_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM send_to_nodes('tool', CASE WHEN NEW.deleted IS NULL THEN node_event(TG_OP) ELSE 'deleted' END, NULL, NULL, ARRAY[NEW.id],
+    activity_author());
   RETURN NULL;
 END $$;
 
@@ -1537,6 +1665,32 @@ ALTER TABLE public.all_models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.node_messages (
+    id bigint NOT NULL,
+    xid bigint DEFAULT ((pg_current_xact_id())::text)::bigint NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    from_node uuid,
+    kind text NOT NULL,
+    event text NOT NULL,
+    project_id bigint,
+    model_id bigint,
+    subject_ids bigint[] DEFAULT '{}'::bigint[] NOT NULL,
+    sequence bigint,
+    user_name text NOT NULL,
+    CONSTRAINT node_messages_event_check CHECK ((event = ANY (ARRAY['created'::text, 'changed'::text, 'deleted'::text]))),
+    CONSTRAINT node_messages_kind_check CHECK ((kind = ANY (ARRAY['records'::text, 'table'::text, 'comment'::text, 'view'::text, 'snapshot'::text, 'tool'::text, 'access'::text, 'kiosk'::text]))),
+    CONSTRAINT node_messages_subject_ids_check CHECK ((cardinality(subject_ids) <= 500))
+);
+
+ALTER TABLE public.node_messages ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.node_messages_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.nodes (
     id uuid NOT NULL,
     url text NOT NULL,
@@ -1918,6 +2072,9 @@ ALTER TABLE ONLY public.model_sources
 ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.node_messages
+    ADD CONSTRAINT node_messages_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.nodes
     ADD CONSTRAINT nodes_pkey PRIMARY KEY (id);
 
@@ -2103,6 +2260,8 @@ CREATE INDEX models_project ON public.all_models USING btree (project_id);
 
 CREATE UNIQUE INDEX models_slug ON public.all_models USING btree (slug) WHERE (binned IS NULL);
 
+CREATE INDEX node_messages_xid ON public.node_messages USING btree (xid);
+
 CREATE INDEX pending_sign_ins_expires ON public.pending_sign_ins USING btree (expires);
 
 CREATE INDEX personal_views_model ON public.personal_views USING btree (model_id);
@@ -2141,7 +2300,13 @@ CREATE INDEX tour_files_tour ON public.tour_files USING btree (tour_id);
 
 CREATE UNIQUE INDEX users_name_in_any_case ON public.users USING btree (lower(name));
 
+CREATE TRIGGER account_change_to_nodes AFTER UPDATE OF name, role, password, disabled, deleted ON public.users FOR EACH ROW WHEN ((((((old.name IS DISTINCT FROM new.name) OR (old.role IS DISTINCT FROM new.role)) OR (old.password IS DISTINCT FROM new.password)) OR (old.disabled IS DISTINCT FROM new.disabled)) OR (old.deleted IS DISTINCT FROM new.deleted))) EXECUTE FUNCTION public.account_to_nodes();
+
 CREATE TRIGGER account_is_audited AFTER INSERT OR UPDATE OF name, full_name, role, password, disabled, deleted ON public.users FOR EACH ROW EXECUTE FUNCTION public.account_is_audited();
+
+CREATE TRIGGER account_to_nodes AFTER INSERT ON public.users FOR EACH ROW EXECUTE FUNCTION public.account_to_nodes();
+
+CREATE TRIGGER attachment_to_nodes AFTER UPDATE OF visibility ON public.attachments FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.attachment_to_nodes();
 
 CREATE TRIGGER attachment_visibility_is_audited AFTER UPDATE OF visibility ON public.attachments FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.visibility_is_audited('attachment');
 
@@ -2159,11 +2324,17 @@ CREATE CONSTRAINT TRIGGER column_is_shown AFTER INSERT ON public.record_columns 
 
 CREATE TRIGGER column_visibility_is_audited AFTER UPDATE OF visibility ON public.record_columns FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.visibility_is_audited('column');
 
+CREATE TRIGGER comment_change_to_nodes AFTER UPDATE OF version ON public.comments FOR EACH ROW WHEN ((old.version <> new.version)) EXECUTE FUNCTION public.comment_to_nodes();
+
 CREATE TRIGGER comment_deletion_is_audited AFTER DELETE ON public.comments FOR EACH ROW EXECUTE FUNCTION public.comment_deletion_is_audited();
 
 CREATE TRIGGER comment_emptied_is_audited AFTER UPDATE OF deleted ON public.comments FOR EACH ROW WHEN (((old.deleted IS NULL) AND (new.deleted IS NOT NULL))) EXECUTE FUNCTION public.comment_deletion_is_audited();
 
 CREATE TRIGGER comment_is_activity AFTER INSERT OR DELETE OR UPDATE OF resolved, deleted ON public.comments FOR EACH ROW EXECUTE FUNCTION public.comment_is_activity();
+
+CREATE TRIGGER comment_to_nodes AFTER INSERT ON public.comments FOR EACH ROW EXECUTE FUNCTION public.comment_to_nodes();
+
+CREATE TRIGGER comments_gone_to_nodes AFTER DELETE ON public.comments REFERENCING OLD TABLE AS gone FOR EACH STATEMENT EXECUTE FUNCTION public.comments_gone_to_nodes();
 
 CREATE TRIGGER edits_are_activity AFTER INSERT ON public.edits REFERENCING NEW TABLE AS added FOR EACH STATEMENT EXECUTE FUNCTION public.edits_are_activity();
 
@@ -2173,7 +2344,13 @@ CREATE TRIGGER group_person_is_activity AFTER INSERT OR DELETE ON public.group_p
 
 CREATE TRIGGER group_person_is_audited AFTER INSERT OR DELETE ON public.group_people FOR EACH ROW EXECUTE FUNCTION public.group_person_is_audited();
 
+CREATE TRIGGER group_person_to_nodes AFTER INSERT OR DELETE ON public.group_people FOR EACH ROW EXECUTE FUNCTION public.member_to_nodes();
+
+CREATE TRIGGER kiosk_change_to_nodes AFTER UPDATE OF revoked, phone ON public.kiosks FOR EACH ROW WHEN (((old.revoked IS DISTINCT FROM new.revoked) OR (old.phone IS DISTINCT FROM new.phone))) EXECUTE FUNCTION public.kiosk_to_nodes();
+
 CREATE TRIGGER kiosk_is_audited AFTER INSERT OR DELETE OR UPDATE OF revoked, phone, wants_reload ON public.kiosks FOR EACH ROW EXECUTE FUNCTION public.kiosk_is_audited();
+
+CREATE TRIGGER kiosk_to_nodes AFTER DELETE ON public.kiosks FOR EACH ROW EXECUTE FUNCTION public.kiosk_to_nodes();
 
 CREATE TRIGGER layer_deletion_is_audited AFTER DELETE ON public.all_layers FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('layer');
 
@@ -2195,6 +2372,8 @@ CREATE TRIGGER member_is_activity AFTER INSERT OR DELETE OR UPDATE OF role ON pu
 
 CREATE TRIGGER member_is_audited AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_members FOR EACH ROW EXECUTE FUNCTION public.role_in_project_is_audited('person');
 
+CREATE TRIGGER member_to_nodes AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_members FOR EACH ROW EXECUTE FUNCTION public.member_to_nodes();
+
 CREATE TRIGGER model_access_is_audited AFTER UPDATE OF project_id, source_download ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.model_access_is_audited();
 
 CREATE TRIGGER model_deletion_is_audited AFTER DELETE ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('model');
@@ -2213,17 +2392,27 @@ CREATE TRIGGER project_group_is_activity AFTER INSERT OR DELETE OR UPDATE OF rol
 
 CREATE TRIGGER project_group_is_audited AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_groups FOR EACH ROW EXECUTE FUNCTION public.role_in_project_is_audited('group');
 
+CREATE TRIGGER project_group_to_nodes AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_groups FOR EACH ROW EXECUTE FUNCTION public.project_group_to_nodes();
+
 CREATE TRIGGER project_is_activity AFTER INSERT OR UPDATE OF name, slug, description ON public.projects FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('project');
 
 CREATE TRIGGER project_settings_are_audited AFTER UPDATE OF require_if_match ON public.projects FOR EACH ROW WHEN ((old.require_if_match <> new.require_if_match)) EXECUTE FUNCTION public.project_settings_are_audited();
 
 CREATE CONSTRAINT TRIGGER record_deletion_is_audited AFTER INSERT ON public.table_edits DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((new.op = ANY (ARRAY['delete'::text, 'detach'::text, 'restore'::text, 'undo'::text, 'redo'::text]))) EXECUTE FUNCTION public.record_deletion_is_audited();
 
+CREATE TRIGGER records_to_nodes AFTER INSERT ON public.table_edits FOR EACH ROW EXECUTE FUNCTION public.records_to_nodes();
+
 CREATE TRIGGER sign_on_is_audited AFTER INSERT ON public.sign_ons FOR EACH ROW EXECUTE FUNCTION public.sign_on_is_audited();
+
+CREATE TRIGGER snapshot_change_to_nodes AFTER UPDATE OF version ON public.snapshots FOR EACH ROW WHEN ((old.version <> new.version)) EXECUTE FUNCTION public.named_part_to_nodes('snapshot');
 
 CREATE TRIGGER snapshot_deletion_is_audited AFTER DELETE ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('snapshot');
 
 CREATE TRIGGER snapshot_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('snapshot');
+
+CREATE TRIGGER snapshot_to_nodes AFTER INSERT OR DELETE ON public.snapshots FOR EACH ROW EXECUTE FUNCTION public.named_part_to_nodes('snapshot');
+
+CREATE TRIGGER table_change_to_nodes AFTER UPDATE OF version ON public.record_tables FOR EACH ROW WHEN (((old.version <> new.version) AND (old.sequence = new.sequence))) EXECUTE FUNCTION public.table_to_nodes();
 
 CREATE TRIGGER table_deletion_is_audited AFTER DELETE ON public.record_tables FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('table');
 
@@ -2235,17 +2424,29 @@ CREATE CONSTRAINT TRIGGER table_is_renamed AFTER UPDATE ON public.record_tables 
 
 CREATE CONSTRAINT TRIGGER table_is_shown AFTER INSERT ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.analysis_table_changed();
 
+CREATE TRIGGER table_to_nodes AFTER INSERT OR DELETE ON public.record_tables FOR EACH ROW EXECUTE FUNCTION public.table_to_nodes();
+
+CREATE TRIGGER token_gone_to_nodes AFTER DELETE ON public.tokens FOR EACH ROW WHEN ((old.revoked IS NULL)) EXECUTE FUNCTION public.token_to_nodes();
+
 CREATE TRIGGER token_is_audited AFTER INSERT OR UPDATE OF revoked ON public.tokens FOR EACH ROW EXECUTE FUNCTION public.token_is_audited();
 
+CREATE TRIGGER token_to_nodes AFTER UPDATE OF revoked ON public.tokens FOR EACH ROW WHEN (((old.revoked IS NULL) AND (new.revoked IS NOT NULL))) EXECUTE FUNCTION public.token_to_nodes();
+
 CREATE TRIGGER tool_deletion_is_audited AFTER UPDATE OF deleted ON public.tool_shapes FOR EACH ROW WHEN (((old.deleted IS NULL) AND (new.deleted IS NOT NULL))) EXECUTE FUNCTION public.tool_deletion_is_audited();
+
+CREATE TRIGGER tool_to_nodes AFTER INSERT OR UPDATE OF name, deleted ON public.tool_shapes FOR EACH ROW EXECUTE FUNCTION public.tool_to_nodes();
 
 CREATE TRIGGER tour_deletion_is_audited AFTER DELETE ON public.tours FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('tour');
 
 CREATE TRIGGER tour_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.tours FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('tour');
 
+CREATE TRIGGER view_change_to_nodes AFTER UPDATE OF version ON public.views FOR EACH ROW WHEN ((old.version <> new.version)) EXECUTE FUNCTION public.named_part_to_nodes('view');
+
 CREATE TRIGGER view_deletion_is_audited AFTER DELETE ON public.views FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('view');
 
 CREATE TRIGGER view_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.views FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('view');
+
+CREATE TRIGGER view_to_nodes AFTER INSERT OR DELETE ON public.views FOR EACH ROW EXECUTE FUNCTION public.named_part_to_nodes('view');
 
 ALTER TABLE ONLY public.activities
     ADD CONSTRAINT activities_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;

@@ -4,6 +4,7 @@
 
 #include "core/log.h"
 #include "core/no_such.h"
+#include "store/nodes/node_messages.h"
 #include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 
@@ -159,6 +160,12 @@ Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self
   if (claimed || claimed.error().code != ErrorCode::busy) return claimed;
   STRATA_TRY(end_sessions_of_owner(model));
   return try_claim(model, self);
+}
+
+void Nodes::act_as(const Uuid& self) { pool_.name_node(self); }
+
+std::unique_ptr<NodeMessages> Nodes::messages(const Uuid& self) {
+  return std::make_unique<NodeMessages>(pool_.dsn(), self);
 }
 
 // After a wait for a concurrent claim, the condition is checked again, so only one of two claims

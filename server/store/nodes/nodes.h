@@ -14,6 +14,7 @@
 
 namespace strata::store {
 
+class NodeMessages;
 class Params;
 class Pool;
 
@@ -89,6 +90,13 @@ class Nodes {
   Result<void> begin_drain(const Uuid& node);
   Result<void> leave(const Uuid& node);  // removes the node; its models have no owner then
   Result<void> forget_ended();           // removes nodes whose lease ended `kForgetAfter` ago
+
+  // --- Messages between nodes (store/nodes/node_messages.h)
+  // Marks the changes of this process as those of the node, so the node does not get messages about
+  // them. Call it before the first change.
+  void act_as(const Uuid& self);
+  // Returns a new reader of the messages to `self`.
+  std::unique_ptr<NodeMessages> messages(const Uuid& self);
 
   // --- Models
   // Makes `self` the owner of a model, and returns the new epoch. The model must have no owner, or

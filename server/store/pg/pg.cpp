@@ -280,6 +280,29 @@ Result<void> PgConnection::each_row(const char* sql, const Params& params,
   return outcome;
 }
 
+Result<bool> PgConnection::wait_for_notification(std::chrono::milliseconds limit) {
+  PGconn* raw = connection_.get();
+  const auto take_all = [raw] {
+    bool any = false;
+    while (PGnotify* notification = PQnotifies(raw)) {
+      PQfreemem(notification);
+      any = true;
+    }
+    return any;
+  };
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  // Notifications can arrive together with the results of statements.
+  while (!take_all()) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    if (left.count() <= 0) return false;
+    pollfd socket{PQsocket(raw), POLLIN, 0};
+    const int ready = poll(&socket, 1, static_cast<int>(left.count()));
+    if (ready > 0 && PQconsumeInput(raw) != 1) return failed(nullptr);
+  }
+  return true;
+}
+
 // A message in the WAL that no program reads. Only a transaction that writes WAL waits for
 // standbys.
 Result<void> PgConnection::confirm_visible() {

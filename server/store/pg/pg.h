@@ -177,6 +177,10 @@ class PgConnection {
   Result<void> each_row(const char* sql, const Params& params,
                         const std::function<Result<void>(const PgResult&)>& on_row);
 
+  // Waits for a notification after LISTEN, or returns false after `limit`, which may exceed the
+  // limits of the connection. Forgets all notifications that have arrived.
+  Result<bool> wait_for_notification(std::chrono::milliseconds limit);
+
   // Makes the current transaction (or one of its own) wait, when it commits, until the synchronous
   // standbys have all changes that this session can read. Call it before you report changes that
   // another session has committed: that commit may still wait for a standby, or its wait may have

@@ -283,4 +283,36 @@ Result<TableChange> Tables::drop_column(TableId table_id, ColumnId column_id,
   });
 }
 
+Result<TableChange> Tables::change_of(TableId table_id, std::int64_t sequence,
+                                      std::size_t most_records) {
+  return pool_.read([&](PgConnection& connection) -> Result<TableChange> {
+    auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
+    TableChange change;
+    change.table = STRATA_TRY(table_of(connection, table_id));
+    change.sequence = sequence;
+    auto cells = STRATA_TRY(connection.query(
+        "SELECT subject = 'column', subject_id, (after ->> 'exists')::boolean FROM table_changes "
+        "WHERE table_id = $1 AND sequence = $2 ORDER BY subject_id",
+        Params().id(table_id).integer(sequence)));
+    if (cells.rows() == 0) return no_such("table entry", std::to_string(sequence));
+    for (int i = 0; i < cells.rows(); ++i) {
+      const auto id = cells.integer(i, 1);
+      if (cells.boolean(i, 0))
+        change.columns_changed = true;
+      else if (cells.null(i, 2))
+        change.changed.push_back(id);
+      else
+        (cells.boolean(i, 2) ? change.created : change.deleted).push_back(id);
+    }
+    if (change.columns_changed || change.created.size() + change.changed.size() > most_records)
+      return change;
+    std::vector<std::int64_t> keys = change.created;
+    keys.insert(keys.end(), change.changed.begin(), change.changed.end());
+    std::ranges::sort(keys);
+    if (!keys.empty())
+      change.records = STRATA_TRY(load_rows(connection, table_id, change.table.columns, keys));
+    return change;
+  });
+}
+
 }  // namespace strata::store

@@ -87,6 +87,10 @@ class Tables {
   // sequences.
   Result<TableHistory> history(TableId table_id, Role seen_by, std::optional<std::int64_t> key,
                                int limit, int offset, std::optional<std::int64_t> before = {});
+  // Returns the change of an entry of the journal, with the present state of the table and of the
+  // records. If it changed the columns, or more than `most_records` records, `records` is empty.
+  // Returns `not_found` if the table or the entry does not exist.
+  Result<TableChange> change_of(TableId table_id, std::int64_t sequence, std::size_t most_records);
   // Plans to undo the newest entry of the user in force, or to redo the entry that was undone last.
   // Returns a `conflict` error if no such entry exists. `undo` returns a `stale` error if the table
   // has changed since the plan.

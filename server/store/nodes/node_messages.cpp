@@ -1,0 +1,154 @@
+#include "store/nodes/node_messages.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "store/pg/pg_row.h"
+
+namespace strata::store {
+namespace {
+
+using std::chrono::milliseconds;
+
+// The reader tries again every second, so it must not wait long for a database that hangs.
+constexpr PgLimits kReaderLimits{milliseconds(5000), milliseconds(5000), milliseconds(2000)};
+
+// After a crash, PostgreSQL can assign ids of transactions again that it assigned shortly before
+// and whose transactions it did not save. The reader also looks for messages of so many earlier
+// ids.
+constexpr std::int64_t kAssignedAgain = 1000;
+
+constexpr std::array<std::string_view, 8> kKinds{"records",  "table", "comment", "view",
+                                                 "snapshot", "tool",  "access",  "kiosk"};
+constexpr std::array<std::string_view, 3> kEvents{"created", "changed", "deleted"};
+
+template <class Value, std::size_t Count>
+std::optional<Value> named(const std::array<std::string_view, Count>& names,
+                           const std::string& name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Value>(found - names.begin());
+}
+
+// Returns nothing for a message that a newer version has written and this one does not know.
+std::optional<NodeMessage> read_message(const PgResult& rows, int i) {
+  PgRow row(rows, i);
+  NodeMessage message;
+  message.id = row.integer();
+  message.time = row.time();
+  const auto kind = named<NodeMessage::Kind>(kKinds, row.text());
+  const auto event = named<NodeMessage::Event>(kEvents, row.text());
+  message.project = row.id<std::optional<ProjectId>>();
+  message.model = row.id<std::optional<ModelId>>();
+  message.subjects = row.json().get<std::vector<std::int64_t>>();
+  message.sequence = row.optional_integer();
+  message.user = row.text();
+  if (!kind || !event) return std::nullopt;
+  message.kind = *kind;
+  message.event = *event;
+  return message;
+}
+
+}  // namespace
+
+NodeMessages::NodeMessages(std::string dsn, const Uuid& self, Options options)
+    : dsn_(std::move(dsn)), self_(self), options_(options) {}
+
+// Listens before it reads, so no message falls between the two.
+Result<PgConnection*> NodeMessages::connected() {
+  if (!connection_ || !connection_->alive()) {
+    connection_.reset();
+    auto fresh = STRATA_TRY(PgConnection::connect(dsn_, kReaderLimits));
+    STRATA_TRY(fresh.script("LISTEN strata_nodes"));
+    connection_.emplace(std::move(fresh));
+  }
+  return &*connection_;
+}
+
+// Starts at the present state. The messages that are already visible count as read.
+Result<NodeMessages::News> NodeMessages::begin(std::int64_t from,
+                                               std::chrono::system_clock::time_point now) {
+  const bool missed = position_.has_value();
+  auto rows = STRATA_TRY(connection_->query("SELECT id, xid FROM node_messages WHERE xid >= $1",
+                                            Params().integer(from)));
+  Position position{from, {}, now};
+  for (int i = 0; i < rows.rows(); ++i) position.read[rows.integer(i, 0)] = rows.integer(i, 1);
+  position_ = std::move(position);
+  return News{{}, missed, false, now};
+}
+
+Result<NodeMessages::News> NodeMessages::read() {
+  PgConnection& connection = *STRATA_TRY(connected());
+  // A statement of its own, before the messages are read: each transaction that had ended by then
+  // is visible to the next statement.
+  auto state = STRATA_TRY(connection.query(
+      "SELECT pg_snapshot_xmin(pg_current_snapshot())::text::bigint, clock_timestamp(), "
+      "pg_snapshot_xmax(pg_current_snapshot())::text::bigint"));
+  const std::int64_t oldest_running = state.integer(0, 0), next = state.integer(0, 2);
+  const std::int64_t settled = oldest_running - kAssignedAgain;
+  const auto now = state.time(0, 1);
+  if (ended_.empty() || std::chrono::steady_clock::now() - ended_.back().when >
+                            std::min(options_.keep / 10, std::chrono::seconds(60)))
+    ended_.push_back({std::chrono::steady_clock::now(), oldest_running});
+  if (!position_) return begin(settled, now);
+  if (position_->read.size() > options_.most_unsettled) {
+    // An old transaction is still running. Its messages are lost, and so are those of all others
+    // that are running now.
+    return begin(next, now);
+  }
+  // The ids decrease if an older state of the database replaced it.
+  if (now - position_->time > options_.missed_after || next < position_->from)
+    return begin(settled, now);
+
+  PgArray known(oid::kInt8);
+  for (const auto& [id, transaction] : position_->read) known.add(id);
+  auto rows = STRATA_TRY(connection.query(
+      "SELECT m.id, m.time, m.kind, m.event, m.project_id, m.model_id, to_jsonb(m.subject_ids), m.sequence, m.user_name, "
+      "m.from_node IS NOT DISTINCT FROM $3, m.xid FROM node_messages m WHERE m.xid >= $1 "
+      "AND NOT EXISTS (SELECT FROM unnest($2::bigint[]) AS known (id) WHERE known.id = m.id) ORDER BY m.id LIMIT $4",
+      Params()
+          .integer(position_->from)
+          .array(known)
+          .uuid(self_)
+          .integer(static_cast<std::int64_t>(options_.most_at_once))));
+  News news;
+  news.time = now;
+  news.more = rows.rows() == static_cast<int>(options_.most_at_once);
+  for (int i = 0; i < rows.rows(); ++i) {
+    position_->read[rows.integer(i, 0)] = rows.integer(i, 10);
+    if (rows.boolean(i, 9)) continue;
+    if (auto message = read_message(rows, i)) news.messages.push_back(std::move(*message));
+  }
+  position_->time = now;
+  if (news.more) return news;
+  // The ids of transactions that have ended need not be remembered.
+  position_->from = std::max(position_->from, settled);
+  std::erase_if(position_->read, [&](const auto& entry) { return entry.second < position_->from; });
+  return news;
+}
+
+Result<bool> NodeMessages::wait(milliseconds limit) {
+  return STRATA_TRY(connected())->wait_for_notification(limit);
+}
+
+// Restored from a backup, messages have ids of transactions of another database. These are deleted
+// by their age.
+Result<void> NodeMessages::prune() {
+  const auto keep_from = std::chrono::steady_clock::now() - options_.keep;
+  std::optional<std::int64_t> ended_before;
+  while (!ended_.empty() && ended_.front().when <= keep_from) {
+    ended_before = ended_.front().oldest_running;
+    ended_.pop_front();
+  }
+  if (!ended_before) return {};
+  PgConnection& connection = *STRATA_TRY(connected());
+  STRATA_TRY(connection.query(
+      "DELETE FROM node_messages WHERE id IN (SELECT id FROM node_messages WHERE xid < $1 "
+      "OR time < clock_timestamp() - interval '1 day' ORDER BY id LIMIT 10000)",
+      Params().integer(*ended_before)));
+  return {};
+}
+
+}  // namespace strata::store
