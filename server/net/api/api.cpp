@@ -3,6 +3,7 @@
 
 #include <exception>
 
+#include "app/nodes/node_lease.h"
 #include "core/log.h"
 #include "core/no_such.h"
 #include "net/api/models/personal_view.h"
@@ -23,6 +24,7 @@
 #include "room/participants.h"
 #include "room/rooms.h"
 #include "store/content/projects.h"
+#include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
@@ -131,7 +133,9 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
                templates_,
                trash_purger_},
       recomputer_(context_),
-      demo_annotators_(context_) {
+      demo_annotators_(context_),
+      node_events_(store, rooms, auth_, *shared_->sockets, table_events_),
+      node_listener_(listen_to_nodes()) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_sign_on_routes(router_, context_, sign_ons_);
@@ -199,7 +203,26 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
 
 Api::~Api() { stop_workers(); }
 
+std::unique_ptr<app::NodeListener> Api::listen_to_nodes() {
+  if (!options_.lease) return nullptr;
+  const auto receive = [this](const store::NodeMessage& message, std::chrono::nanoseconds age) {
+    auto received = node_events_.receive(message);
+    if (received) {
+      ++metrics().node_messages;
+      metrics().node_message_ages.add(age);
+    }
+    return received;
+  };
+  const auto start_over = [this] {
+    ++metrics().node_messages_missed;
+    node_events_.start_over();
+  };
+  return std::make_unique<app::NodeListener>(store_.nodes().messages(options_.lease->node().id),
+                                             app::NodeListener::Handlers{receive, start_over});
+}
+
 void Api::stop_workers() {
+  if (node_listener_) node_listener_->stop();
   recomputer_.stop();
   demo_annotators_.stop();
   trash_purger_.stop();

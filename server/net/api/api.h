@@ -7,6 +7,7 @@
 
 #include "app/demo/demo_annotators.h"
 #include "app/layers/recomputer.h"
+#include "app/nodes/node_listener.h"
 #include "app/strokes/brush_shape_cache.h"
 #include "app/template_registry.h"
 #include "app/trash_purger.h"
@@ -25,6 +26,7 @@
 #include "net/http/worker_pool.h"
 #include "net/live/live_session.h"
 #include "net/live/live_sockets.h"
+#include "net/live/node_events.h"
 #include "net/live/table_events.h"
 #include "net/transport/server_options.h"
 #include "protocol/messages.h"
@@ -83,6 +85,7 @@ class Api {
   void stop_workers();
 
  private:
+  std::unique_ptr<app::NodeListener> listen_to_nodes();
   void answer_read(const Request& request, const Route& route, const Respond& respond);
   static void answer_failures(const Request& request, const Respond& answer,
                               const std::function<void()>& work);
@@ -111,6 +114,8 @@ class Api {
   const RouteContext context_;
   app::Recomputer recomputer_;
   app::DemoAnnotators demo_annotators_;
+  NodeEvents node_events_;
+  std::unique_ptr<app::NodeListener> node_listener_;  // null: the server is alone
 };
 
 // Returns the headers that every response gets.

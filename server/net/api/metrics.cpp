@@ -156,13 +156,22 @@ void write_machine(MetricsWriter& out, const Metrics& metrics, const Gauges& gau
               "Expiry of the TLS certificate, in seconds since 1970.", end);
 }
 
-void write_node(MetricsWriter& out, const Gauges& gauges) {
+void write_node(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges) {
   if (!gauges.node) return;
   out.gauge("strata_node_lease_seconds", "Time until the lease of the node ends. 0: it has ended.",
             gauges.node->lease_s);
   out.counter("strata_models_moved_total",
               "Open models that this node gave to other nodes or lost to them.",
               gauges.node->models_moved);
+  out.counter("strata_node_messages_received_total",
+              "Messages about changes at other nodes that this node received.",
+              metrics.node_messages.load());
+  out.counter("strata_node_messages_missed_total",
+              "How often messages of other nodes may be missing, so all clients connected again.",
+              metrics.node_messages_missed.load());
+  out.head("strata_node_message_seconds", "histogram",
+           "Time from a change at another node until this node has sent it to its clients.");
+  out.histogram("strata_node_message_seconds", {}, metrics.node_message_ages);
 }
 
 void write_archive(MetricsWriter& out, const Gauges& gauges) {
@@ -188,7 +197,7 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   write_edits(out, metrics, gauges);
   write_drawing(out, metrics, gauges);
   write_machine(out, metrics, gauges);
-  write_node(out, gauges);
+  write_node(out, metrics, gauges);
   write_archive(out, gauges);
   return out.text();
 }

@@ -21,6 +21,9 @@ struct Metrics {
   app::EditCounters edits;
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
+  // Messages of other nodes of the site, and how often some may be missing.
+  std::atomic<std::uint64_t> node_messages{0}, node_messages_missed{0};
+  Histogram node_message_ages;                   // from a change until its message was handled
   std::atomic<std::uint64_t> questions_left{0};  // the client disconnected before the response
   // The expiry of the TLS certificate, in seconds since 1970. 0: the server uses plain HTTP.
   std::atomic<std::int64_t> certificate_end{0};

@@ -10,4 +10,9 @@ namespace strata::net {
 void tell_threads(const RouteContext& context, const Layer& layer, Visibility before,
                   const std::string& user);
 
+// Sends the event of a comment that another node has created or changed. Reads the comment. Does
+// nothing if it no longer exists.
+Result<void> tell_comment(store::Store& store, LiveSockets& sockets,
+                          protocol::CommentEventEvent event, CommentId id, const std::string& user);
+
 }  // namespace strata::net

@@ -1,5 +1,6 @@
 #include "net/live/live_sockets.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "net/live/live_session.h"
@@ -69,15 +70,48 @@ void LiveSockets::close_user(const std::string& user, int code, const std::strin
       code, reason);
 }
 
-void LiveSockets::tell_if(const std::function<bool(const LiveSession&)>& chosen,
-                          const protocol::ServerMessage& message) {
-  std::vector<std::shared_ptr<LiveSession>> sessions;
+void LiveSockets::close_unwelcome(const std::string& user, const MayStay& may_stay, int code,
+                                  const std::string& reason) {
+  struct Checked {
+    std::shared_ptr<LiveSocket> socket;
+    std::shared_ptr<LiveSession> session;
+    std::string secret;
+  };
+  std::vector<Checked> all;
   {
     std::lock_guard lock(mutex_);
-    for (const Entry& entry : entries_)
-      if (auto session = entry.session.lock()) sessions.push_back(std::move(session));
+    for (const Entry& entry : entries_) {
+      Checked each{entry.socket.lock(), entry.session.lock(), entry.secret};
+      if (each.socket && each.session) all.push_back(std::move(each));
+    }
   }
-  for (const auto& session : sessions)
+  for (const Checked& each : all)
+    if ((user.empty() || each.session->user() == user) &&
+        !may_stay(each.secret, each.session->project_id(), each.session->role()))
+      each.socket->close(code, reason);
+}
+
+bool LiveSockets::has_model(ModelId model_id) {
+  return std::ranges::any_of(sessions(),
+                             [&](const auto& session) { return session->model_id() == model_id; });
+}
+
+bool LiveSockets::has_project(ProjectId project_id) {
+  return std::ranges::any_of(
+      sessions(), [&](const auto& session) { return session->project_id() == project_id; });
+}
+
+std::vector<std::shared_ptr<LiveSession>> LiveSockets::sessions() {
+  std::vector<std::shared_ptr<LiveSession>> sessions;
+  std::lock_guard lock(mutex_);
+  for (const Entry& entry : entries_)
+    if (auto session = entry.session.lock()) sessions.push_back(std::move(session));
+  return sessions;
+}
+
+void LiveSockets::tell_if(const std::function<bool(const LiveSession&)>& chosen,
+                          const protocol::ServerMessage& message) {
+  for (const auto& session : sessions())
     if (chosen(*session)) session->tell(message);
 }
 

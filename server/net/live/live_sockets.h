@@ -41,6 +41,14 @@ class LiveSockets {
   // Closes a user's sessions. Clients that still have access reconnect automatically with the new
   // role.
   void close_user(const std::string& user, int code, const std::string& reason);
+  // Closes the sessions of a user, or of all users if `user` is empty, that may not stay with their
+  // secret, project and role. Calls `may_stay`, which may block, without a lock.
+  using MayStay = std::function<bool(const std::string& secret, ProjectId project_id, Role role)>;
+  void close_unwelcome(const std::string& user, const MayStay& may_stay, int code,
+                       const std::string& reason);
+  // Return whether a session could receive an event of the model, or of the project.
+  bool has_model(ModelId model_id);
+  bool has_project(ProjectId project_id);
 
  private:
   struct Entry {
@@ -48,6 +56,7 @@ class LiveSockets {
     std::weak_ptr<LiveSession> session;
     std::string secret;
   };
+  std::vector<std::shared_ptr<LiveSession>> sessions();
   void tell_if(const std::function<bool(const LiveSession&)>& chosen,
                const protocol::ServerMessage& message);
   void close_if(const std::function<bool(const Entry&)>& chosen, int code,

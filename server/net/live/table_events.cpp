@@ -5,7 +5,6 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMaxRecords = 100;  // with more records, one event of the table is sent
 constexpr Visibility kSights[] = {Visibility::everyone, Visibility::team, Visibility::curators};
 
 }  // namespace
@@ -27,7 +26,8 @@ void TableEvents::records_changed(const store::TableChange& change, const std::s
   if (change.sequence == 0) return;
   rooms_.admit_keys(change.table.id, change.created);
   rooms_.records_changed(change.table.id);
-  if (change.columns_changed || change.records.size() + change.deleted.size() > kMaxRecords)
+  if (change.columns_changed ||
+      change.created.size() + change.changed.size() + change.deleted.size() > kMaxRecordEvents)
     return tell_table(sockets_, protocol::TableEventEvent::changed, change.table, user);
   protocol::RecordEvent message;
   message.table = change.table.id.number();

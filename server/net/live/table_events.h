@@ -14,6 +14,9 @@ namespace strata::net {
 void tell_table(LiveSockets& sockets, protocol::TableEventEvent event, const Table& table,
                 const std::string& user);
 
+// With more records in one change, one event of the table is sent.
+inline constexpr std::size_t kMaxRecordEvents = 100;
+
 // Notifies open rooms and connected users of changed records. Sends one event per record. Sends one
 // event for the table instead if its columns also changed or too many records changed.
 class TableEvents final : public app::ChangeNotifier {

@@ -25,6 +25,8 @@ from support.strata_server import LONG_S, Requests, StrataServer, _place_of_data
 FAULT_WORDS = [
     "could not be renewed",
     "could not join the site again",
+    "messages of other nodes",
+    "changes at other nodes may be missing",
     "may have lost them to other nodes",
     "has claimed model",
     "a commit failed and is tried again",

@@ -115,10 +115,16 @@ TEST(Metrics, a_value_that_does_not_exist_is_left_out) {
   EXPECT_TRUE(has_line(values.text(), "strata_certificate_end_seconds 1900000000"));
 }
 
-TEST(Metrics, only_a_node_has_a_lease_and_models_that_moved) {
+TEST(Metrics, only_a_node_has_a_lease_and_messages_of_other_nodes) {
   Values values;
+  values.metrics.node_messages = 7;
+  values.metrics.node_messages_missed = 1;
+  values.metrics.node_message_ages.add(20ms);
   EXPECT_TRUE(has_line(values.text(), "strata_node_lease_seconds 2.5"));
   EXPECT_TRUE(has_line(values.text(), "strata_models_moved_total 3"));
+  EXPECT_TRUE(has_line(values.text(), "strata_node_messages_received_total 7"));
+  EXPECT_TRUE(has_line(values.text(), "strata_node_messages_missed_total 1"));
+  EXPECT_TRUE(has_line(values.text(), "strata_node_message_seconds_count 1"));
   values.node.reset();
   EXPECT_EQ(values.text().find("strata_node"), std::string::npos);
 }

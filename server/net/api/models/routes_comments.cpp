@@ -61,11 +61,10 @@ nlohmann::json to_json(const Comment& comment) {
 }
 
 // Returns the users whose names may occur in a comment and in a change to it.
-Result<People> people_of(const RouteContext& context, const Comment& comment,
-                         const std::string& asking) {
+Result<People> people_of(store::Store& store, const Comment& comment, const std::string& asking) {
   std::vector<std::string> names{comment.user, asking};
   if (comment.resolved) names.push_back(comment.resolved->user);
-  return People::load(context.store, names);
+  return People::load(store, names);
 }
 
 nlohmann::json to_json(const Comment& comment, const People& people) {
@@ -86,14 +85,14 @@ Result<Response> page_response(const RouteContext& context, const Request& reque
   return response;
 }
 
-void tell(const RouteContext& context, CommentEventEvent event, const Comment& comment,
+void tell(LiveSockets& sockets, CommentEventEvent event, const Comment& comment,
           const People& people, const std::string& user) {
   protocol::CommentEvent message;
   message.event = event;
   message.comment_id = comment.id.number();
   message.comment = to_json(comment, people);
   message.user = user;
-  context.live_sockets.tell_model(comment.model_id, comment.visibility, message);
+  sockets.tell_model(comment.model_id, comment.visibility, message);
 }
 
 Result<Comment> stored_comment(const RouteContext& context, const Request& request) {
@@ -172,7 +171,7 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room,
 
 Result<Response> write(const RouteContext& context, const Request& request,
                        const Comment& comment) {
-  const auto people = STRATA_TRY(people_of(context, comment, request.user()));
+  const auto people = STRATA_TRY(people_of(context.store, comment, request.user()));
   const auto answer = [&people](const Comment& made) {
     return json_response(to_json(made, people), 201)
         .with("Location", "/api/v1/comments/" + to_string(made.id))
@@ -181,7 +180,7 @@ Result<Response> write(const RouteContext& context, const Request& request,
   const auto written =
       context.store.comments().create(comment, idempotent_response<Comment>(request, answer));
   if (!written) return tl::unexpected(written.error());
-  tell(context, CommentEventEvent::created, *written, people, request.user());
+  tell(context.live_sockets, CommentEventEvent::created, *written, people, request.user());
   return answer(*written);
 }
 
@@ -236,14 +235,14 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
     else if (!comment.resolved)
       comment.resolved = Comment::Resolution{request.user(), {}};
   }
-  const auto people = STRATA_TRY(people_of(context, comment, request.user()));
+  const auto people = STRATA_TRY(people_of(context.store, comment, request.user()));
   const auto answer = [&people](const Comment& now) {
     return json_response(to_json(now, people)).with("ETag", etag_of(now.version));
   };
   const auto changed =
       context.store.comments().update(comment, idempotent_response<Comment>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
-  tell(context, CommentEventEvent::changed, *changed, people, request.user());
+  tell(context.live_sockets, CommentEventEvent::changed, *changed, people, request.user());
   return answer(*changed);
 }
 
@@ -258,9 +257,9 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
       comment, idempotent_response<Comments::Removal>(request, answer));
   if (!removal) return tl::unexpected(removal.error());
   if (removal->left) {
-    const auto people = people_of(context, *removal->left, request.user());
-    tell(context, CommentEventEvent::changed, *removal->left, people.value_or(People()),
-         request.user());
+    const auto people = people_of(context.store, *removal->left, request.user());
+    tell(context.live_sockets, CommentEventEvent::changed, *removal->left,
+         people.value_or(People()), request.user());
   }
   for (const auto id : removal->gone) {
     protocol::CommentEvent message;
@@ -309,6 +308,16 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
       if (is_meant(least_role(sight)))
         context.live_sockets.tell_sight(layer.model_id, sight, message);
   }
+}
+
+Result<void> tell_comment(store::Store& store, LiveSockets& sockets, CommentEventEvent event,
+                          CommentId id, const std::string& user) {
+  const auto comment = store.comments().comment(id, Role::owner);
+  if (!comment && comment.error().code == ErrorCode::not_found) return {};
+  if (!comment) return tl::unexpected(comment.error());
+  const auto people = STRATA_TRY(people_of(store, *comment, user));
+  tell(sockets, event, *comment, people, user);
+  return {};
 }
 
 void add_comment_routes(Router& router, const RouteContext& context) {

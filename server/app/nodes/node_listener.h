@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "core/error.h"
+#include "store/nodes/node_messages.h"
+
+namespace strata::app {
+
+// Receives the messages of the other nodes of the site (store/nodes/node_messages.h), on its own
+// thread. A notification of the database wakes it, and it also reads once a second, so a lost
+// notification or connection loses no message.
+class NodeListener {
+ public:
+  // Called on the thread of the listener. May block.
+  struct Handlers {
+    // `age` is the time since the change, by the clock of the database. After an error
+    // `unavailable` or `busy`, the message is passed again later, before all others.
+    std::function<Result<void>(const store::NodeMessage& message, std::chrono::nanoseconds age)>
+        on_message;
+    // Messages may be missing, so everything must be read again.
+    std::function<void()> on_missed;
+  };
+  // Reads from the present state on. If the database does not answer now, the listener reports
+  // missed messages as soon as it answers.
+  NodeListener(std::unique_ptr<store::NodeMessages> messages, Handlers handlers);
+  ~NodeListener() { stop(); }
+  void stop();  // waits for a running handler
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Waiting {
+    store::NodeMessage message;
+    std::chrono::nanoseconds age;  // when it was read
+    Clock::time_point read;
+  };
+  void run();
+  Result<void> read();
+  bool pass_on();  // returns false if messages still wait
+  void wait_for_news();
+  bool pause(std::chrono::milliseconds time);  // returns false if the listener stops
+
+  const std::unique_ptr<store::NodeMessages> messages_;
+  const Handlers handlers_;
+  // Used by the thread.
+  std::deque<Waiting> waiting_;
+  bool missed_ = false, more_ = false, fails_ = false;
+  Clock::time_point pruned_ = Clock::now();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace strata::app
