@@ -52,7 +52,7 @@ fail_step() {  # WHAT
        END         { begin = failed || lines < 40 ? 0 : lines - 40
                      end = lines < begin + 40 ? lines : begin + 40
                      for (i = begin; i < end; ++i) print kept[i] }' "$progress_log" >&2
-  die "$1 The lines above say why; all of them are in $progress_log."
+  die "$1 The lines above show the reason. $progress_log contains all lines."
 }
 
 # in_step TEXT COMMAND…: runs a part of a step that does not report its progress.

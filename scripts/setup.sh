@@ -38,7 +38,7 @@ install_packages() {
   local missing
   mapfile -t missing < <(missing_packages "$@")
   [ ${#missing[@]} -gt 0 ] || return 0
-  command -v apt-get >/dev/null || die "Strata is built on Debian 12, and there is no apt-get here. docker/README.md tells of containers."
+  command -v apt-get >/dev/null || die "Strata is built on Debian 12, but this system has no apt-get. To use a container, see docker/README.md."
   [ "$(id -u)" = 0 ] || command -v sudo >/dev/null || die "Packages are missing: ${missing[*]}. Run this as root, or install sudo."
   begin_step Packages
   # Without this setting, Debian's PostgreSQL starts an unneeded cluster.

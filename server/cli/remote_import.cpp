@@ -191,7 +191,7 @@ Result<std::string> import_remotely(const std::string& server_url, const std::st
     const auto job = STRATA_TRY(object_in(polled, {"state", "progress"}));
     const std::string state = text_of(job, "state");
     if (state == "done") {
-      if (!job.contains("model")) return not_strata("A job that is done without a model");
+      if (!job.contains("model")) return not_strata("A finished job without a model");
       auto answer = STRATA_TRY(client.get("/api/v1/models/" + job.at("model").dump()));
       const auto model = STRATA_TRY(object_in(answer, {"id", "name"}));
       return model.dump(2);
@@ -200,7 +200,7 @@ Result<std::string> import_remotely(const std::string& server_url, const std::st
       return tl::unexpected(
           problem_of(job.value("problem", nlohmann::json()), 422, "Import " + state, state));
     if (state != "queued" && state != "running")
-      return not_strata("A job of the state `" + state + "`");
+      return not_strata("A job with the state `" + state + "`");
     progress.report(job.at("progress").is_number() ? job.at("progress").get<double>() : 0,
                     text_of(job, "message"));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));

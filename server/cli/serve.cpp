@@ -96,14 +96,14 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
     if (!has_tls)
       log::warning(
           "listening on " + address.host +
-          " without --tls-cert: passwords travel unencrypted unless a proxy in front of this server uses TLS");
+          " without --tls-cert: passwords are sent without encryption unless a proxy in front of this server uses TLS");
     return {};
   }
   return fail(
       ErrorCode::forbidden, "Administrator account missing",
       "Other computers can reach " + address.host +
           ", but no administrator has a password. Create an account: strata user add NAME --role administrator "
-          "--password-stdin. Or let people sign in with --oidc-config. Or listen on 127.0.0.1.",
+          "--password-stdin. Alternatively, let people sign in with --oidc-config, or listen on 127.0.0.1.",
       "--listen");
 }
 
@@ -190,7 +190,8 @@ void add_log_options(CLI::App& command, ServeOptions& options) {
       .add_option_function<std::string>(
           "--log-level",
           [&options](const std::string& text) { options.log_levels = *log::parse_levels(text); },
-          "Least level of the log, also for single modules, for example warning,store=debug")
+          "Lowest level of the messages to log; a module can have its own level, for example "
+          "warning,store=debug")
       ->envname("STRATA_LOG_LEVEL")
       ->check([](const std::string& text) {
         const auto levels = log::parse_levels(text);
@@ -250,14 +251,14 @@ int run(ServeOptions options) {
     if (!options.data.database.empty())
       return report(
           {ErrorCode::malformed, "Not a private database",
-           "With --database, give analysts access to that PostgreSQL itself. docs/how-to/query-with-sql.md lists the statements.",
+           "If you use --database, give analysts access to that PostgreSQL server. docs/how-to/query-with-sql.md lists the statements.",
            "--sql-listen"});
     options.data.cluster.sql = std::move(*sql);
   }
   if (!options.data.cluster.archive.empty() && !options.data.database.empty())
     return report(
         {ErrorCode::malformed, "Not a private database",
-         "With --database, archive that PostgreSQL with its own tools, such as pgBackRest (docs/how-to/back-up-and-restore.md).",
+         "If you use --database, archive that PostgreSQL server with its own tools, such as pgBackRest (docs/how-to/back-up-and-restore.md).",
          "--archive"});
   std::optional<store::NewNode> node;
   if (!options.node_url.empty()) {
@@ -390,8 +391,8 @@ Command add_serve(CLI::App& app) {
       ->check([](const std::string& text) { return usage_of(parse_sql_listen, text); });
   command
       ->add_option("--node-url", options->node_url,
-                   "Address of this server among several that use the same --database, http or "
-                   "https, for example https://strata.example.org/node/a")
+                   "HTTP or HTTPS address of this server, if several servers use the same "
+                   "--database, for example https://strata.example.org/node/a")
       ->envname("STRATA_NODE_URL")
       ->needs(command->get_option("--database"))  // the nodes of a site share it
       ->check([](const std::string& text) { return usage_of(store::check_node_url, text); });

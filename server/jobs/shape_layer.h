@@ -43,8 +43,8 @@ Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& 
 
 // Paints values that are given for a geometry's welded positions (NaN: no value). Float types are
 // interpolated. Integer types are keys or classes and get the value of the nearest position.
-// Returns the Error `invalid` with the field `type` if a value does not fit the type. Otherwise
-// like `compute_shape_layer`.
+// Returns the Error `invalid` with the field `type` if a value does not fit the type. Takes
+// long, reports progress and can be canceled.
 Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry,
                                     std::vector<double> values, ValueType type, int resolution,
                                     Progress& progress);

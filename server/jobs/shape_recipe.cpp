@@ -139,9 +139,9 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
       return r.absolute ? "World coordinate along the model's up (" + model.up + ")."
                         : "Height above the model's lowest point, along its up (" + model.up + ").";
     case ShapeKind::slope:
-      return "Inclination of the surface: 0° lies flat and faces up, 90° is a vertical wall, 180° faces down.";
+      return "Inclination of the surface: 0° where it is horizontal and faces up, 90° where it is vertical, 180° where it faces down.";
     case ShapeKind::azimuth:
-      return "Direction that the surface faces, clockwise from north as seen from above; none where it lies flat.";
+      return "Direction that the surface faces, clockwise from north, seen from above; no value where the surface is horizontal.";
     case ShapeKind::mean_curvature:
       return "Mean curvature: positive where the surface bulges, negative where it is hollow." +
              fit;
@@ -155,14 +155,14 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
     case ShapeKind::roughness:
       return "Distance of the surface to the plane that best fits it within " + within + ".";
     case ShapeKind::ambient_occlusion:
-      return "Share of the light from all around that reaches the surface: 1 in the open, 0 in deep cavities. " +
+      return "Share of the light from all around that reaches the surface: 1 where nothing blocks it, 0 in deep cavities. " +
              std::to_string(r.rays.value_or(kDefaultRays)) + " rays of " +
              short_number(r.distance_mm.value_or(0)) + " mm.";
     case ShapeKind::boundary_distance:
       return "Straight distance to the nearest open edge of the mesh.";
     case ShapeKind::model_distance:
       return "Distance to the surface of " + other +
-             ": positive where this one lies in front of it (material was added), negative behind it. Searched up to " +
+             ": positive where this model is in front of that surface (material was added), negative where it is behind. Searched up to " +
              short_number(r.distance_mm.value_or(0)) + " mm.";
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";

@@ -22,8 +22,8 @@ enum class ShapePart { opaque, light, dark };
 
 // Converts an image to the raster. The image is centered in the smallest square that contains it,
 // and the area outside it is empty. Each cell is the mean of its pixels. Without `part`, the tool
-// is the opaque part if the image has transparency, otherwise the light part. Returns the Error
-// `invalid` if no cell belongs to the tool.
+// is the opaque part of an image with transparency, or the light part of an image without it.
+// Returns the Error `invalid` if no cell belongs to the tool.
 Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part);
 
 // Returns an image that is white in the tool and transparent elsewhere.

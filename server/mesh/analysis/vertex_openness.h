@@ -12,11 +12,11 @@ namespace strata::mesh {
 constexpr std::size_t kMostTracedTriangles = 2'500'000;
 
 // Computes the share of the surrounding light that reaches each vertex (mesh/analysis/openness.h),
-// for the shading of frames. The highest byte of each vertex's color becomes 255 in the open and 0
-// in a closed cavity. If the outer side seems to be the inside of a thin wall, the other side is
-// used, because windings are not always correct. The function traces at most about 25 million rays
-// on half of the cores. Every run gives the same result. Fails when cancelled or with
-// `out_of_memory`. In both cases the geometry is unchanged.
+// for the shading of frames. The highest byte of each vertex's color becomes 255 where nothing
+// blocks the light, and 0 in a closed cavity. If the outer side seems to be the inside of a thin
+// wall, the other side is used, because windings are not always correct. The function traces at
+// most about 25 million rays on half of the cores. Every run gives the same result. Fails when
+// cancelled or with `out_of_memory`. In both cases the geometry is unchanged.
 Result<void> bake_openness(Geometry& geometry, Progress& progress);
 
 // Gives each vertex of `to` the openness of the nearest point of `from`. Both are versions of one

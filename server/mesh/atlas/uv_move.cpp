@@ -146,7 +146,7 @@ std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh,
   for (const auto t : moved) moves[t] = true;
   const double side = resolution;
 
-  // Texels per unit of length, as for the triangles that stay.
+  // Computes the texels per unit of length of the triangles that do not move.
   double uv_area = 0, area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     if (moves[t]) continue;

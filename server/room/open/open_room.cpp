@@ -332,7 +332,7 @@ void OpenRoom::deposed(const Error& why) {
 
 Result<void> OpenRoom::check_not_deposed() {
   if (!services_.options.node) return {};
-  // The work itself reports other errors.
+  // Ignores errors of this query. If the work also needs the database, the work reports them.
   const auto state = services_.store.journal().state(model_id_, {});
   if (!state || state->epoch == epoch_) return {};
   const Error why = moved_to({});

@@ -37,7 +37,7 @@ bool has_words(const fs::path& log, std::string_view words) {
 std::optional<WalSegment> missing_segment(const ArchiveFolder& archive,
                                           const ArchiveFolder::Copy& copy) {
   const auto segments = archive.segments();
-  if (segments.empty()) return std::nullopt;  // the copy contains the WAL that it needs itself
+  if (segments.empty()) return std::nullopt;  // the copy itself contains the WAL that it needs
   const WalSegment newest = *segments.rbegin();
   if (newest.timeline != copy.first.timeline) return std::nullopt;
   return first_missing(segments, copy.first, newest);

@@ -18,9 +18,9 @@ struct RestorePlan {
   std::optional<std::chrono::system_clock::time_point> moment;  // empty: the last archived change
   std::optional<WalSegment> newest;  // the last archived segment; empty: none since the copy
 };
-// Chooses the newest copy before the moment. Returns `not_found` if the archive has no copy that is
-// old enough or no copy at all, and `invalid` for a moment in the future or if a WAL segment that
-// is surely needed is missing.
+// Chooses the newest copy before the moment. Returns `not_found` if the archive has no such copy.
+// Returns `invalid` if the moment is in the future. Without a moment, also returns `invalid` if a
+// WAL segment between the copy and the newest segment is missing.
 Result<RestorePlan> plan_restore(
     const ArchiveFolder& archive,
     const std::optional<std::chrono::system_clock::time_point>& moment);

@@ -37,9 +37,9 @@ Result<void> give_folder(const std::filesystem::path& folder, const DatabaseUser
 Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
                     const std::filesystem::path& log, int death_signal);
 
-// Runs a program until it ends. Asks `goes_on` ten times a second, and kills the program and its
-// children when it returns false (`cancelled`). Returns `storage_full` if the program reports a
-// full disk, and `internal` with the end of `log` if it fails in another way.
+// Runs a program until it ends. Calls `goes_on` ten times a second. If `goes_on` returns false,
+// kills the program and its children, and returns `cancelled`. Returns `storage_full` if the
+// program reports a full disk, and `internal` with the end of `log` if it fails in another way.
 Result<void> run_to_end(const std::vector<std::string>& command, const DatabaseUser& user,
                         const std::filesystem::path& log, const std::function<bool()>& goes_on);
 

@@ -67,9 +67,12 @@ Error problem_of(std::string_view sqlstate, std::string_view message) {
         "Something with this name or id already exists (" + what + "). Choose another name or id.",
         ""};
   if (sqlstate == "23503")
-    return {ErrorCode::conflict, "Conflict",
-            "This refers to something that does not exist, or it is still in use (" + what + ").",
-            ""};
+    return {
+        ErrorCode::conflict, "Conflict",
+        "The request refers to something that does not exist, or deletes something that is still "
+        "in use (" +
+            what + ").",
+        ""};
   if (sqlstate.starts_with("23"))
     return {ErrorCode::conflict, "Conflict", "The database rejected these values (" + what + ").",
             ""};
@@ -81,7 +84,7 @@ Error problem_of(std::string_view sqlstate, std::string_view message) {
             "The database cannot store a value (" + what + ").", ""};
   if (starts_with_any(sqlstate, {"40", "55P03", "57014", "25006"}))
     return {ErrorCode::busy, "Database busy",
-            "PostgreSQL could not do this now (" + what + "). Try again.", ""};
+            "PostgreSQL cannot complete the request at the moment (" + what + "). Try again.", ""};
   if (sqlstate.starts_with("58"))
     return {ErrorCode::unavailable, "Database unavailable",
             "PostgreSQL cannot read or write its files (" + what + "). Check its disk.", ""};

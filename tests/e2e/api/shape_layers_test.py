@@ -155,7 +155,7 @@ def test_kinds(server):
     assert 0 <= statistics["min"] < 2 and 358 < statistics["max"] <= 360, statistics
     assert (
         0 < 1 - statistics["area_m2"] / ball["area_m2"] < 0.01
-    ), "only what lies flat faces no way"
+    ), "only horizontal surfaces have no value"
 
     mean, statistics = compute(server, BALL, "mean_curvature", radius_mm=12)
     # the radius is 50 mm, with waves

@@ -262,7 +262,7 @@ def invitations(server, section):
         "one link for each user",
     )
     section.tried(
-        "An invitation as a token, and for signing in",
+        "The secret of an invitation as a token for scripts, and as a token for signing in",
         {
             server.get(M, token=second).status,
             Browser(server).request("POST", "/login", {"token": second}).status,

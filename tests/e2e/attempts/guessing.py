@@ -162,7 +162,7 @@ def many_addresses(server, section):
         "… and at the same time the user, at an address with an earlier sign-in",
         known.status,
         200,
-        "guesses of others do not affect an address from which the user has signed in",
+        "guesses from other addresses do not delay the user at an address with an earlier sign-in",
     )
     homes = itertools.count(1)
     new = while_slowed(

@@ -377,7 +377,7 @@ test("a tap on a class says which it is, beside the place, until the object move
   await choose("Sherds");
 });
 
-test("a tap tells of what is there, with its picture", async () => {
+test("a tap shows the record at this place, with its picture", async () => {
   await live();
   await page.touchscreen.tap(x, y);
   card = page.locator(".card");

@@ -196,7 +196,7 @@ test("one's own deletion asks first", async () => {
   assert.deepEqual(await server.json("GET", "/tools"), { tools: [], total: 0 });
 });
 
-test("the help sheet tells of it", async () => {
+test("the help sheet describes the brush", async () => {
   await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
   await page.keyboard.press("?");
   await page.getByRole("term").filter({ hasText: words.help.brush_rows[1][0] }).waitFor();

@@ -126,7 +126,7 @@ def test_a_request_at_the_wrong_node_is_redirected(site, model):
     problem = answer.json()
     assert problem["type"] == "/problems#moved" and problem["detail"], problem
     assert owner.get(path).status == 200
-    # by the slug too, and for every address below the model
+    # the same for the slug, and for every address below the model
     for there in (
         f"/models/{model['slug']}",
         f"/models/{model['slug']}/comments",
@@ -213,7 +213,7 @@ def test_connections_survive_a_redirection(site, model):
         "Authorization": f"Bearer {site.token}",
         "Content-Type": "application/json",
     }
-    # a small body is read, and the connection stays
+    # the server reads a small body, and the connection stays open
     link = http.client.HTTPConnection(other.host, other.port, timeout=60)
     for _ in range(3):
         link.request("POST", path, json.dumps(stroke(model)), headers)

@@ -240,7 +240,7 @@ class StrataServer(Requests):
                 and level[0] not in ("I", "D", "W", "E")
                 and not any(word in line for word in warnings)
             ):
-                bad.append(line)  # not a line of the log, but of a crash, a sanitizer or a library
+                bad.append(line)  # from a crash, a sanitizer or a library, not from the log
         assert not bad, "the log of the server is not clean:\n" + "\n".join(bad[:50])
 
     def sql(self, statement):

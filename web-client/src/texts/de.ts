@@ -369,7 +369,7 @@ export const texts = {
     next_view: "Nächste gespeicherte Ansicht",
     previous_view: "Vorherige gespeicherte Ansicht",
     panel: "Seitenleiste ein- oder ausblenden",
-    leave: "Nicht mehr folgen, Kommentar schließen oder zurück zu jetzt",
+    leave: "Nicht mehr folgen, Kommentar schließen oder den aktuellen Stand zeigen",
   },
   model: {
     back: "Alle Modelle",
@@ -884,7 +884,7 @@ export const texts = {
       },
       ambient_occlusion: {
         title: "Umgebungsverdeckung",
-        lead: "Anteil der Umgebung, der von jeder Stelle aus sichtbar ist: 1 im Freien, 0 in tiefen Höhlungen.",
+        lead: "Anteil der Umgebung, der von jeder Stelle aus sichtbar ist: 1 bei freier Sicht, 0 in tiefen Höhlungen.",
       },
       height: { title: "Höhe", lead: "Über dem tiefsten Punkt, entlang der Richtung nach oben." },
       slope: {

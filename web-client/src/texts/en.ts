@@ -342,7 +342,7 @@ export const texts = {
     next_view: "Next saved view",
     previous_view: "Previous saved view",
     panel: "Show or hide the side panel",
-    leave: "Stop following, close the comment, or go back to now",
+    leave: "Stop following, close the comment, or show the current state",
   },
   model: {
     back: "All models",
@@ -801,7 +801,7 @@ export const texts = {
     widen: "Allow more records…",
     widen_title: (layer: string) => `Allow more records in “${layer}”?`,
     widen_lead: (highest: number) =>
-      `The layer can now store only keys up to ${formatCount(highest)}. After this change, it can store all keys, but uses more memory. Its paint and history are kept.`,
+      `At present, the layer can store only keys up to ${formatCount(highest)}. After this change, it can store all keys, but uses more memory. Its paint and history are kept.`,
     widen_yes: "Allow",
     widened: "The layer can now store all keys.",
     saved_default: "Your current view is now the default for everyone.",
@@ -848,7 +848,7 @@ export const texts = {
       },
       ambient_occlusion: {
         title: "Ambient occlusion",
-        lead: "How much of the surroundings is visible from each point: 1 in the open, 0 in deep cavities.",
+        lead: "How much of the surroundings is visible from each point: 1 where nothing blocks the view, 0 in deep cavities.",
       },
       height: { title: "Height", lead: "Height above the lowest point, along the up direction." },
       slope: { title: "Slope", lead: "0° is flat, 90° is vertical, more is an overhang." },

@@ -362,7 +362,7 @@ export const texts = {
     next_view: "Vista guardada siguiente",
     previous_view: "Vista guardada anterior",
     panel: "Mostrar u ocultar el panel lateral",
-    leave: "Dejar de seguir, cerrar el comentario o volver a ahora",
+    leave: "Dejar de seguir, cerrar el comentario o mostrar el estado actual",
   },
   model: {
     back: "Todos los modelos",
@@ -873,7 +873,7 @@ export const texts = {
       },
       ambient_occlusion: {
         title: "Oclusión ambiental",
-        lead: "Qué parte del entorno ve cada lugar: 1 al descubierto, 0 en cavidades profundas.",
+        lead: "Qué parte del entorno se ve desde cada punto: 1 si nada la tapa, 0 en cavidades profundas.",
       },
       height: { title: "Altura", lead: "Sobre el punto más bajo, según el eje vertical." },
       slope: {

@@ -180,7 +180,7 @@ describe("records that were looked at", () => {
   });
 });
 
-describe("what a card tells of a record", () => {
+describe("what a card shows about a record", () => {
   const column = (id: number, slug: string, kind: ColumnKind = "text"): Column => ({
     id,
     name: slug,
