@@ -70,7 +70,9 @@ def table(results):
     for event, rows in results.items():
         seconds, gaps, saved, lost, doubled = zip(*rows)
         times = [
-            f"{percentile(values, share):.1f}" for values in (seconds, gaps) for share in (0.5, 0.95)
+            f"{percentile(values, share):.1f}"
+            for values in (seconds, gaps)
+            for share in (0.5, 0.95)
         ]
         counts = [str(sum(values)) for values in (saved, lost, doubled)]
         lines.append(f"| {' | '.join([event, str(len(rows)), *times, *counts])} |")
