@@ -8,6 +8,7 @@
 #include "cli/restore.h"
 #include "store/cluster/backup.h"
 #include "store/cluster/inspect.h"
+#include "store/cluster/scratch_folder.h"
 
 namespace strata::cli {
 namespace {
@@ -90,6 +91,16 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
   return restored;
 }
 
+// Restores into a private cluster in a temporary folder, and compares every table with the backup.
+Result<void> restore_to_check(const fs::path& folder, const store::BackupFacts& facts,
+                              Progress& progress) {
+  const auto scratch = STRATA_TRY(store::ScratchFolder::make("restore", 0755));
+  store::ClusterOptions cluster_options;
+  cluster_options.settings = {"fsync=off"};  // the folder is deleted at the end
+  const auto cluster = STRATA_TRY(store::Cluster::start(scratch.folder(), cluster_options));
+  return store::restore_backup(folder, facts, cluster->dsn(), progress);
+}
+
 int restore(const BackupOptions& options) {
   if (!options.archive.empty()) {
     if (!options.data.database.empty())
@@ -106,10 +117,6 @@ int restore(const BackupOptions& options) {
     return store::check_backup(options.folder, progress);
   }();
   if (!facts) return report(facts.error());
-  if (options.check_only) {
-    std::cout << "complete: " << summary(*facts) << std::endl;
-    return 0;
-  }
   const auto known = store::newest_migration(install_dirs().migrations);
   if (!known) return report(known.error());
   if (facts->schema_version > *known)
@@ -121,10 +128,15 @@ int restore(const BackupOptions& options) {
                    {}});
   const auto done = [&]() -> Result<void> {
     const ProgressLine line(progress);
+    if (options.check_only) return restore_to_check(options.folder, *facts, progress);
     if (options.data.database.empty()) return restore_into_folder(options, *facts, progress);
     return store::restore_backup(options.folder, *facts, options.data.database, progress);
   }();
   if (!done) return report(done.error());
+  if (options.check_only) {
+    std::cout << "the backup is good: " << summary(*facts) << std::endl;
+    return 0;
+  }
   std::cout << "restored " << summary(*facts)
             << "\nevery table equals the backup; you can start the server with this data"
             << std::endl;
@@ -162,8 +174,8 @@ Command add_restore(CLI::App& app) {
                    "2026-11-21T14:32:00Z (default: the newest state)")
       ->needs(archive);
   command->add_flag("--check", options->check_only,
-                    "Only check the backup, without restoring it. An archive is restored into a "
-                    "temporary folder.");
+                    "Only check the backup or the archive: restore it into a temporary folder "
+                    "(TMPDIR), compare it, and delete the folder");
   command->callback([folder, archive] {
     if (folder->empty() && archive->empty()) throw CLI::RequiredError("folder or --archive");
   });

@@ -1,48 +1,19 @@
 // `strata restore --archive`: the site as it was at a moment, from the archive of a server.
 #include "cli/restore.h"
 
-#include <stdlib.h>
-#include <sys/stat.h>
-
-#include <cstring>
 #include <iostream>
 
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
 #include "core/text/timestamp.h"
 #include "store/cluster/archive_restore.h"
+#include "store/cluster/scratch_folder.h"
 
 namespace strata::cli {
 namespace fs = std::filesystem;
 namespace {
 
 using Time = std::chrono::system_clock::time_point;
-
-// Deletes the folder at the end.
-class Scratch {
- public:
-  explicit Scratch(fs::path folder) : folder_(std::move(folder)) {}
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
-
-Result<fs::path> make_temporary_folder() {
-  std::error_code error;
-  std::string folder = (fs::temp_directory_path(error) / "strata-restore-XXXXXX").string();
-  // The database user must be able to enter the folder. The database in it is private.
-  if (!mkdtemp(folder.data()) || chmod(folder.c_str(), 0755) != 0)
-    return fail(ErrorCode::internal, "Cannot create folder",
-                folder + ": " + std::strerror(errno) + ". Choose another folder with TMPDIR.");
-  return fs::path(folder);
-}
 
 Result<std::optional<Time>> parse_moment(const std::string& text) {
   if (text.empty()) return std::optional<Time>();
@@ -72,24 +43,26 @@ Result<store::RestoredSite> recover(const store::ArchiveFolder& archive,
   return store::restore_archive(archive, plan, folder, progress);
 }
 
+Result<store::ScratchFolder> restore_folder(const ArchiveRestore& options, const fs::path& data) {
+  if (options.check_only) return store::ScratchFolder::make("restore", 0755);
+  return store::ScratchFolder(data / kRestoring);
+}
+
 Result<void> restore_or_check(const ArchiveRestore& options) {
   const fs::path data = fs::absolute(options.data);
   if (!options.check_only) STRATA_TRY(check_new_data_folder(data));
   const auto archive = STRATA_TRY(store::ArchiveFolder::open(options.archive));
   const auto moment = STRATA_TRY(parse_moment(options.at));
   const auto plan = STRATA_TRY(store::plan_restore(archive, moment));
-  fs::path parent = data;
-  if (options.check_only) {
-    auto temporary = STRATA_TRY(make_temporary_folder());
-    parent = std::move(temporary);
-  }
+  std::error_code ignored;
+  if (!options.check_only) fs::remove_all(data / kRestoring, ignored);
+  const auto scratch = STRATA_TRY(restore_folder(options, data));
   std::cout << "restoring " << (moment ? "the state at " + utc_text(*moment) : "the newest state")
             << "\nfrom the copy of " << utc_text(plan.copy.made)
             << " and the changes since then\nto "
-            << (options.check_only ? "the temporary folder " : "") << parent.string() << std::endl;
-  const Scratch scratch(options.check_only ? parent : data / kRestoring);
-  std::error_code ignored;
-  if (!options.check_only) fs::remove_all(scratch.folder(), ignored);
+            << (options.check_only ? "the temporary folder " + scratch.folder().string()
+                                   : data.string())
+            << std::endl;
   const auto site = STRATA_TRY(recover(archive, plan, scratch.folder()));
   if (!options.check_only) STRATA_TRY(finish_restore(data));
   print_site(site);

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "core/digest.h"
 #include "core/text/hex.h"
 #include "store/cluster/cluster_process.h"
+#include "store/cluster/scratch_folder.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {
@@ -26,42 +28,6 @@ constexpr std::uintmax_t kMaxManifest = 64u << 20;
 
 Error damaged(const fs::path& folder, const std::string& why) {
   return {ErrorCode::invalid, "Backup damaged", folder.string() + ": " + why, {}};
-}
-
-// A folder that is being written. The destructor deletes the folder unless `keep_as` succeeded.
-class Unfinished {
- public:
-  explicit Unfinished(fs::path folder) : folder_(std::move(folder)) {}
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
-  ~Unfinished() {
-    std::error_code ignored;
-    if (!folder_.empty()) fs::remove_all(folder_, ignored);
-  }
-  const fs::path& folder() const { return folder_; }
-  Result<void> keep_as(const fs::path& name) {
-    std::error_code error;
-    fs::rename(folder_, name, error);
-    if (error)
-      return fail(ErrorCode::internal, "Backup not written",
-                  "Cannot rename the folder to " + name.string() + ": " + error.message() + ".");
-    folder_.clear();
-    return {};
-  }
-
- private:
-  fs::path folder_;
-};
-
-// Makes a folder for the output and the password file of the programs. It is not in the folder of
-// the backup, because that disk may be full.
-Result<fs::path> make_scratch() {
-  std::error_code error;
-  std::string folder = (fs::temp_directory_path(error) / "strata-backup-XXXXXX").string();
-  if (!mkdtemp(folder.data()))
-    return fail(ErrorCode::internal, "Cannot create folder",
-                folder + ": " + std::strerror(errno) + ".");
-  return fs::path(folder);
 }
 
 // --- PostgreSQL programs
@@ -115,12 +81,16 @@ Result<void> run_program(const std::vector<std::string>& command, const fs::path
   });
 }
 
-// Returns the folder of programs that are not older than the server whose data they read.
-Result<fs::path> programs_for(PgConnection& connection) {
+// Returns the path of a program that is not older than the server whose data it reads.
+Result<fs::path> program_for(PgConnection& connection, const char* name) {
   auto version =
       STRATA_TRY(connection.query("SELECT current_setting('server_version_num')::int8 / 10000"));
-  if (auto same = find_programs(static_cast<int>(version.integer(0, 0)))) return same;
-  return find_programs(0);
+  std::error_code error;
+  if (const auto same = find_programs(static_cast<int>(version.integer(0, 0)));
+      same && fs::exists(*same / name, error))
+    return *same / name;
+  const auto newest = STRATA_TRY(find_programs(0));
+  return newest / name;
 }
 
 // --- the content of a database
@@ -151,6 +121,18 @@ Result<std::vector<Relation>> relations(PgConnection& connection, const char* ki
   for (int row = 0; row < found.rows(); ++row)
     list.push_back({found.text(row, 0), found.integer(row, 1)});
   return list;
+}
+
+// Reads what describes the database as a whole.
+Result<BackupFacts> read_state(PgConnection& connection) {
+  auto state = STRATA_TRY(connection.query(
+      "SELECT to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"'), "
+      "(SELECT max(version::int8) FROM public.schema_migrations), current_setting('server_version')"));
+  BackupFacts facts;
+  facts.made = state.text(0, 0);
+  facts.schema_version = state.integer(0, 1);
+  facts.server_version = state.text(0, 2);
+  return facts;
 }
 
 Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progress& progress) {
@@ -260,21 +242,20 @@ Result<void> write_file(const fs::path& file, const std::string& text) {
 
 Result<void> dump(PgConnection& connection, const std::string& dsn, const std::string& snapshot,
                   const fs::path& folder, std::uint64_t database_bytes, Progress& progress) {
-  const auto programs = STRATA_TRY(programs_for(connection));
-  const auto made = STRATA_TRY(make_scratch());
-  const Unfinished scratch(made);
+  const auto pg_dump = STRATA_TRY(program_for(connection, "pg_dump"));
+  // not in the folder of the backup, because that disk may be full
+  const auto scratch = STRATA_TRY(ScratchFolder::make("backup"));
   const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));
   const fs::path file = folder / kDump;
-  return run_program(
-      {programs / "pg_dump", "--format=custom", "--compress=1", "--no-owner", "--no-privileges",
-       "--snapshot=" + snapshot, "--file=" + file.string(), "--dbname=" + client},
-      scratch.folder() / "log", progress, [&] {
-        std::error_code not_yet;
-        const auto size = fs::file_size(file, not_yet);
-        if (!not_yet)
-          progress.report(std::min(0.99, double(size) / double(database_bytes + 1)),
-                          "Writing, " + std::to_string(size >> 20) + " MB so far");
-      });
+  return run_program({pg_dump, "--format=custom", "--compress=1", "--no-owner", "--no-privileges",
+                      "--snapshot=" + snapshot, "--file=" + file.string(), "--dbname=" + client},
+                     scratch.folder() / "log", progress, [&] {
+                       std::error_code not_yet;
+                       const auto size = fs::file_size(file, not_yet);
+                       if (!not_yet)
+                         progress.report(std::min(0.99, double(size) / double(database_bytes + 1)),
+                                         "Writing, " + std::to_string(size >> 20) + " MB so far");
+                     });
 }
 
 }  // namespace
@@ -302,17 +283,12 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   if (mkdir(part.c_str(), 0700) != 0)
     return fail(ErrorCode::internal, "Cannot create folder",
                 part.string() + ": " + std::strerror(errno) + ".", "folder");
-  Unfinished unfinished(part);
+  ScratchFolder unfinished(part);
 
   const auto moment = STRATA_TRY(Transaction::begin_reading(connection));
-  auto state = STRATA_TRY(connection.query(
-      "SELECT pg_export_snapshot(), to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"'), "
-      "(SELECT max(version::int8) FROM public.schema_migrations), current_setting('server_version'), "
-      "pg_database_size(current_database())"));
-  BackupFacts facts;
-  facts.made = state.text(0, 1);
-  facts.schema_version = state.integer(0, 2);
-  facts.server_version = state.text(0, 3);
+  auto facts = STRATA_TRY(read_state(connection));
+  auto state = STRATA_TRY(
+      connection.query("SELECT pg_export_snapshot(), pg_database_size(current_database())"));
 
   // Read the contents before the dump, because sequences are not part of a snapshot. The sequences
   // in the dump then have the values that were read here, or later ones.
@@ -320,13 +296,15 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   STRATA_TRY(read_contents(connection, facts, progress));
   progress.begin_stage(0.4, 0.9);
   if (auto dumped = dump(connection, dsn, state.text(0, 0), part,
-                         static_cast<std::uint64_t>(state.integer(0, 4)), progress);
+                         static_cast<std::uint64_t>(state.integer(0, 1)), progress);
       !dumped)
     return tl::unexpected(dumped.error());
   progress.begin_stage(0.9, 1);
   STRATA_TRY(read_dump(part / kDump, facts, progress));
   STRATA_TRY(write_file(part / kManifest, to_json(facts).dump(2) + "\n"));
-  STRATA_TRY(unfinished.keep_as(folder));
+  if (const auto failed = unfinished.keep_as(folder))
+    return fail(ErrorCode::internal, "Backup not written",
+                "Cannot rename the folder to " + folder.string() + ": " + failed.message() + ".");
   return facts;
 }
 
@@ -354,30 +332,42 @@ Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
         "A backup can be restored only into an empty database. This database has the table " +
             there.front().name + ".",
         "--database");
-  const auto programs = STRATA_TRY(programs_for(connection));
+  const auto pg_restore = STRATA_TRY(program_for(connection, "pg_restore"));
 
-  const auto made = STRATA_TRY(make_scratch());
-  const Unfinished scratch(made);
+  const auto scratch = STRATA_TRY(ScratchFolder::make("backup"));
   const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));
   progress.begin_stage(0, 0.7);
-  STRATA_TRY(
-      run_program({programs / "pg_restore", "--exit-on-error", "--single-transaction", "--no-owner",
-                   "--no-privileges", "--dbname=" + client, (folder / kDump).string()},
-                  scratch.folder() / "log", progress, [&] { progress.report(0.5, "Restoring"); }));
+  STRATA_TRY(run_program({pg_restore, "--exit-on-error", "--single-transaction", "--no-owner",
+                          "--no-privileges", "--dbname=" + client, (folder / kDump).string()},
+                         scratch.folder() / "log", progress,
+                         [&] { progress.report(0.5, "Restoring"); }));
 
   progress.begin_stage(0.7, 1);
   BackupFacts now;
   const auto moment = STRATA_TRY(Transaction::begin_reading(connection));
   STRATA_TRY(read_contents(connection, now, progress));
-  for (const auto& [name, table] : facts.tables)
-    if (const auto found = now.tables.find(name);
-        found == now.tables.end() || found->second != table)
-      return tl::unexpected(damaged(folder, "the table " + name + " differs from the backup."));
-  for (const auto& [name, last] : facts.sequences)
-    if (const auto found = now.sequences.find(name);
-        found == now.sequences.end() || found->second < last)
-      return tl::unexpected(
-          damaged(folder, "the sequence " + name + " would assign numbers that are in use."));
+  if (const std::string wrong = difference(facts, now); !wrong.empty())
+    return tl::unexpected(damaged(folder, wrong));
+  return {};
+}
+
+Result<BackupFacts> read_facts(const std::string& dsn, Progress& progress) {
+  auto connection = STRATA_TRY(connect(dsn));
+  const auto moment = STRATA_TRY(Transaction::begin_reading(connection));
+  auto facts = STRATA_TRY(read_state(connection));
+  STRATA_TRY(read_contents(connection, facts, progress));
+  return facts;
+}
+
+std::string difference(const BackupFacts& expected, const BackupFacts& found) {
+  for (const auto& [name, table] : expected.tables)
+    if (const auto same = found.tables.find(name);
+        same == found.tables.end() || same->second != table)
+      return "the table " + name + " differs from the original.";
+  for (const auto& [name, last] : expected.sequences)
+    if (const auto same = found.sequences.find(name);
+        same == found.sequences.end() || same->second < last)
+      return "the sequence " + name + " would assign numbers that are in use.";
   return {};
 }
 

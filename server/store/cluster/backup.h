@@ -47,4 +47,12 @@ Result<BackupFacts> check_backup(const std::filesystem::path& folder, Progress& 
 Result<void> restore_backup(const std::filesystem::path& folder, const BackupFacts& facts,
                             const std::string& dsn, Progress& progress);
 
+// Reads all tables and sequences of a database of Strata, to compare it with another one. There is
+// no dump, so `bytes` and `sha256` are empty.
+Result<BackupFacts> read_facts(const std::string& dsn, Progress& progress);
+// Returns the first difference of a copy from the original, as a sentence that begins with a lower
+// case letter. Returns an empty text if no difference exists. The sequences of the copy may be
+// ahead.
+std::string difference(const BackupFacts& expected, const BackupFacts& found);
+
 }  // namespace strata::store

@@ -215,6 +215,8 @@ def check_bad_backups(whole, data, folder):
     ):
         bad = copy(name, change)
         refused("restore", bad, "--data", data, told=told)
+        if name in ("flipped", "rows"):  # the file is damaged, or the restored content differs
+            refused("restore", bad, "--check", told=told)
         assert not os.path.exists(os.path.join(data, "postgres")) and not os.path.exists(
             os.path.join(data, "restoring")
         ), os.listdir(data)
@@ -272,7 +274,16 @@ def test_a_backup_is_made_while_people_paint(server, whole, story):
     painters.end()
     assert done.returncode == 0 and "backed up 1 model, 2 layers" in done.stdout, done
     assert os.stat(whole).st_mode & 0o077 == 0  # the folder contains password hashes
-    assert "complete: 1 model" in strata("restore", whole, "--check").stdout
+
+
+def test_a_backup_is_checked_by_a_restore(whole, folder):
+    scratch = os.path.join(folder, "scratch")
+    os.mkdir(scratch)
+    os.chmod(scratch, 0o755)
+    done = strata("restore", whole, "--check", env={**os.environ, "TMPDIR": scratch})
+    assert done.returncode == 0 and done.stdout.startswith("the backup is good: 1 model"), done
+    assert os.listdir(scratch) == []
+    os.rmdir(scratch)
 
 
 def test_what_is_there_is_not_written_over(server, whole):
