@@ -133,6 +133,51 @@ setup_cluster() {
   done
 }
 
+# The next major version of PostgreSQL, from Debian 13, for the test of `strata upgrade-database`. It
+# is unpacked with the libraries of Debian 13 that it needs, because it does not run with those of
+# Debian 12. The programs are in build/deps/debian13/usr/lib/postgresql/17/bin.
+newer_postgresql=(postgresql-17 postgresql-client-17 libpq5 libc6 libgcc-s1 libstdc++6 libicu76 libssl3t64 libldap2 libsasl2-2
+  libxml2 libxslt1.1 liblzma5 liblz4-1 libzstd1 zlib1g libpam0g libaudit1 libcap-ng0 libcap2 libsystemd0 libselinux1 libpcre2-8-0
+  libgssapi-krb5-2 libkrb5-3 libk5crypto3 libkrb5support0 libcom-err2 libkeyutils1 libreadline8t64 libtinfo6 libuuid1 libxxhash0)
+setup_newer_postgresql() {
+  local folder=$PWD/build/deps/debian13 apt=$PWD/build/deps/debian13-apt stamp options
+  stamp=$(printf '%s\n' "${newer_postgresql[@]}" | sha256sum)
+  ! is_current newer-postgresql "$stamp" || [ ! -e "$folder/usr/lib/postgresql/17/bin/pg_upgrade" ] || return 0
+  begin_step "PostgreSQL 17 for a test"
+  rm -rf "$folder" "$apt"
+  mkdir -p "$folder" "$apt"/{lists,cache/archives}/partial
+  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian trixie main" >"$apt/sources.list"
+  # Separate lists, so that the machine never installs a package of Debian 13.
+  options=(-qq -o "Dir::Etc::sourcelist=$apt/sources.list" -o Dir::Etc::sourceparts=/dev/null -o "Dir::State::lists=$apt/lists"
+    -o "Dir::Cache=$apt/cache" -o APT::Sandbox::User=root)
+  in_step "reading what Debian 13 has" apt-get "${options[@]}" update || fail_step "The lists of packages could not be read."
+  (cd "$apt" && in_step "downloading" apt-get "${options[@]}" download "${newer_postgresql[@]}") || fail_step "PostgreSQL 17 could not be downloaded."
+  local package
+  for package in "$apt"/*.deb; do dpkg -x "$package" "$folder" || fail_step "Could not unpack $package."; done
+  wrap_programs "$folder/usr/lib/postgresql/17"
+  rm -rf "$apt"
+  end_step
+  write_stamp newer-postgresql "$stamp"
+}
+
+# wrap_programs FOLDER: replaces each program in FOLDER/bin by a script that runs it with the
+# libraries that are unpacked with it.
+wrap_programs() {
+  local program
+  mv "$1/bin" "$1/programs"
+  mkdir "$1/bin"
+  for program in "$1"/programs/*; do
+    cat >"$1/bin/${program##*/}" <<'END'
+#!/bin/sh
+here=${0%/*}
+for loader in "$here"/../../../*/ld-linux-*.so.*; do
+  exec "$loader" --library-path "${loader%/*}" --argv0 "$0" "$here/../programs/${0##*/}" "$@"
+done
+END
+  done
+  chmod 755 "$1"/bin/*
+}
+
 require_node() {
   local major
   major=$(node -p 'process.versions.node.split(".")[0]')

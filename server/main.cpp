@@ -12,12 +12,18 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
 
   const std::map<std::string, strata::cli::Command> commands{
-      {"serve", strata::cli::add_serve(app)},     {"import", strata::cli::add_import(app)},
-      {"demo", strata::cli::add_demo(app)},       {"migrate", strata::cli::add_migrate(app)},
-      {"doctor", strata::cli::add_doctor(app)},   {"user", strata::cli::add_user(app)},
-      {"token", strata::cli::add_token(app)},     {"backup", strata::cli::add_backup(app)},
-      {"restore", strata::cli::add_restore(app)}, {"kiosk", strata::cli::add_kiosk(app)},
+      {"serve", strata::cli::add_serve(app)},
+      {"import", strata::cli::add_import(app)},
+      {"demo", strata::cli::add_demo(app)},
+      {"migrate", strata::cli::add_migrate(app)},
+      {"doctor", strata::cli::add_doctor(app)},
+      {"user", strata::cli::add_user(app)},
+      {"token", strata::cli::add_token(app)},
+      {"backup", strata::cli::add_backup(app)},
+      {"restore", strata::cli::add_restore(app)},
+      {"kiosk", strata::cli::add_kiosk(app)},
       {"audit", strata::cli::add_audit(app)},
+      {"upgrade-database", strata::cli::add_upgrade_database(app)},
   };
   try {
     app.parse(argc, argv);

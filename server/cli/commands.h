@@ -20,5 +20,6 @@ Command add_kiosk(CLI::App& app);
 Command add_audit(CLI::App& app);
 Command add_backup(CLI::App& app);
 Command add_restore(CLI::App& app);
+Command add_upgrade_database(CLI::App& app);
 
 }  // namespace strata::cli

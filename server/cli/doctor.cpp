@@ -11,6 +11,7 @@
 #include "core/text/timestamp.h"
 #include "render/renderer.h"
 #include "store/cluster/archive_keeper.h"
+#include "store/cluster/cluster_process.h"
 #include "store/cluster/inspect.h"
 
 namespace strata::cli {
@@ -135,11 +136,21 @@ void check_archive(Report& report, const std::string& dsn) {
     report.good("Archive", last);
 }
 
+// Reports that the private cluster can be updated.
+void check_version(Report& report, const store::Cluster::State& state) {
+  const auto installed = store::installed_programs();
+  if (state.version == 0 || installed.empty() || installed.rbegin()->first <= state.version) return;
+  report.good("PostgreSQL update",
+              "PostgreSQL " + std::to_string(installed.rbegin()->first) +
+                  " is installed, too; `strata upgrade-database` shows how to change to it");
+}
+
 // Only reads. Does not create, start or migrate a database, and does not disturb a running server.
 void check_database(Report& report, const DataOptions& options) {
   if (!options.database.empty()) return check_connection(report, options.database, "external");
   const auto state = store::Cluster::inspect(options.data);
   const std::string where = "private cluster in " + options.data.string();
+  if (!state.trouble) check_version(report, state);
   if (state.running) {
     check_connection(report, state.dsn, where + ", a server is running");
     return check_archive(report, state.dsn);

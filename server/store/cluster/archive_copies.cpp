@@ -1,7 +1,6 @@
 #include "store/cluster/archive_copies.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "core/log.h"
 #include "store/cluster/cluster.h"
@@ -12,12 +11,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kReady = ".ready";
-
-int major_version(const fs::path& pgdata) {
-  int major = 0;
-  std::ifstream(pgdata / "PG_VERSION") >> major;
-  return major;
-}
 
 // Deletes a folder of the archive. Another name first, so that an interruption does not leave an
 // incomplete copy that looks complete.
@@ -58,7 +51,7 @@ std::set<WalSegment> waiting_segments(const Cluster& cluster) {
 Result<ArchiveFolder::Copy> make_copy(const ArchiveFolder& archive, const Cluster& cluster,
                                       const std::function<bool()>& goes_on) {
   const auto user = STRATA_TRY(database_user());
-  const auto programs = STRATA_TRY(find_programs(major_version(cluster.folder() / "pgdata")));
+  const auto programs = STRATA_TRY(find_programs(data_version(cluster.folder() / "pgdata")));
   const fs::path log = cluster.folder() / "archive.log";
   std::error_code error;
   fs::remove(log, error);

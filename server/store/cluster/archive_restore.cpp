@@ -147,9 +147,7 @@ Result<RestoredSite> restore_archive(const ArchiveFolder& archive, const Restore
     copied.error().detail += " Run the command as the user of the server.";
     return tl::unexpected(copied.error());
   }
-  int major = 0;
-  std::ifstream(pgdata / "PG_VERSION") >> major;
-  const auto programs = STRATA_TRY(find_programs(major));
+  const auto programs = STRATA_TRY(find_programs(data_version(pgdata)));
   progress.report(0.4, "Checking the copy");
   STRATA_TRY(
       run_to_end({programs / "pg_verifybackup", "--quiet", pgdata.string()}, user, log, goes_on));

@@ -67,10 +67,33 @@ fs::path postgres_folder(const fs::path& data_dir) {
   return fs::absolute(data_dir, error).lexically_normal() / "postgres";
 }
 
-int version_of(const fs::path& data) {
-  int major = 0;
-  if (std::ifstream version(data / "PG_VERSION"); version) version >> major;
-  return major;
+// Finds the programs for the data of a site. If only a newer version is installed, the error names
+// the command that updates the data.
+Result<fs::path> find_programs_for_data(int major) {
+  auto found = find_programs(major);
+  if (found || major == 0) return found;
+  const auto installed = installed_programs();
+  if (!installed.empty() && installed.rbegin()->first > major)
+    found.error().detail +=
+        " PostgreSQL " + std::to_string(installed.rbegin()->first) +
+        " is installed: when both versions are, `strata upgrade-database` updates the data. "
+        "Without the old version, restore a backup into a new folder with `strata restore`.";
+  return found;
+}
+
+// Refuses to create a database while the database of the site has another name. An upgrade that was
+// interrupted between its two last steps leaves this state.
+Result<void> check_not_set_aside(const fs::path& place) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(place.parent_path(), error))
+    if (const std::string name = entry.path().filename();
+        name.starts_with("postgres-") && name.ends_with(kBeforeUpgrade))
+      return fail(ErrorCode::conflict, "Upgrade interrupted",
+                  "The site is in " + entry.path().string() + ", and " + place.string() +
+                      " contains no database. Remove " + place.string() +
+                      " if it exists, and rename the folder: mv '" + entry.path().string() + "' '" +
+                      place.string() + "'.");
+  return {};
 }
 
 }  // namespace
@@ -153,6 +176,7 @@ struct Cluster::Impl {
     std::error_code error;
     folder = postgres_folder(data_dir);
     data = folder / "pgdata";
+    if (data_version(data) == 0) STRATA_TRY(check_not_set_aside(folder));  // creates nothing
     log_file = folder / "postgres.log";
     STRATA_TRY(give_folder(folder, user));
 
@@ -177,8 +201,8 @@ struct Cluster::Impl {
     if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kMaxLog)
       fs::rename(log_file, folder / "postgres.log.1", error);
 
-    const int major = version_of(data);
-    auto found = STRATA_TRY(find_programs(major));
+    const int major = data_version(data);
+    auto found = STRATA_TRY(find_programs_for_data(major));
     programs = found;
     if (major == 0) STRATA_TRY(initialise());
     if (!options.archive.empty()) {
@@ -211,12 +235,11 @@ struct Cluster::Impl {
   // Runs initdb in a folder with another name first, so that an interrupted initdb leaves nothing
   // that looks like a database.
   Result<void> initialise() {
+    STRATA_TRY(check_not_set_aside(folder));  // again, because only now the folder is locked
     const fs::path fresh = folder / "pgdata.new";
     std::error_code error;
     fs::remove_all(fresh, error);
-    auto child = STRATA_TRY(spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust",
-                                   "-E", "UTF8", "--locale=C.UTF-8", "--no-instructions"},
-                                  user, log_file, SIGKILL));
+    auto child = STRATA_TRY(spawn(initdb_command(programs, fresh), user, log_file, SIGKILL));
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
@@ -304,6 +327,7 @@ struct Cluster::Impl {
       if (Clock::now() >= deadline)
         return fail(ErrorCode::unavailable, "Database not started",
                     "PostgreSQL in " + folder.string() + " did not start: " + tail(log_file));
+      end_postmaster(data, 0s);  // of a killed pg_upgrade; the next tries wait for its end
       std::this_thread::sleep_for(100ms);
     }
   }
@@ -337,11 +361,12 @@ Cluster::~Cluster() = default;
 Cluster::State Cluster::inspect(const fs::path& data_dir) {
   const fs::path folder = postgres_folder(data_dir);
   State state;
-  state.version = version_of(folder / "pgdata");
+  state.version = data_version(folder / "pgdata");
   state.dsn = dsn_of(socket_folder(folder), running_port(folder / "pgdata"), "strata");
   state.running =
       state.version > 0 && PQping((state.dsn + " connect_timeout=5").c_str()) == PQPING_OK;
-  if (auto programs = find_programs(state.version); !programs) state.trouble = programs.error();
+  if (auto programs = find_programs_for_data(state.version); !programs)
+    state.trouble = programs.error();
   if (auto user = database_user(); !user) state.trouble = user.error();
   return state;
 }
@@ -368,6 +393,14 @@ const std::optional<ArchiveFolder>& Cluster::archive() const { return impl_->arc
 
 Result<void> Cluster::ensure_running() {
   return impl_->on_keeper([this] { return impl_->run(); });
+}
+
+Result<void> Cluster::stop() {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->watching = false;
+  }
+  return impl_->on_keeper([this] { return impl_->stop(); });
 }
 
 void Cluster::watch() {

@@ -29,6 +29,10 @@ struct ClusterOptions {
   std::chrono::seconds patience{30};
 };
 
+// `strata upgrade-database` renames the folder `postgres` of the old version to
+// `postgres-N-before-upgrade`.
+inline constexpr const char* kBeforeUpgrade = "-before-upgrade";
+
 // The private PostgreSQL of the server. The first start runs `initdb`. By default, PostgreSQL
 // listens on a Unix socket only. It stops with the server, or the kernel stops it if the server is
 // killed. Any thread may start and use it. A separate thread forks the postmaster, because the
@@ -63,6 +67,9 @@ class Cluster {
   const std::optional<ArchiveFolder>& archive() const;  // of ClusterOptions::archive
   // Restarts the postmaster if it has died (tests kill it). Returns quickly if it is running.
   Result<void> ensure_running();
+  // Stops PostgreSQL. The folder stays locked until the destruction, so no other process opens the
+  // data.
+  Result<void> stop();
   // Begins to watch the postmaster, and restarts it when it dies.
   void watch();
 

@@ -47,34 +47,96 @@ Result<DatabaseUser> database_user() {
   return user;
 }
 
-Result<fs::path> find_programs(int expected_major) {
-  int best = 0;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator("/usr/lib/postgresql", error)) {
-    const std::string version = entry.path().filename();
-    if (!is_all_digits(version) || version.size() > 3 ||
-        !fs::exists(entry.path() / "bin/postgres", error))
-      continue;
-    const int major = std::stoi(version);
-    if (major > best && (expected_major == 0 || major == expected_major)) best = major;
+namespace {
+
+std::string program_folders() {
+  const char* listed = std::getenv("STRATA_POSTGRESQL");
+  return listed && *listed ? listed : "/usr/lib/postgresql";
+}
+
+std::vector<fs::path> parts_of_list(std::string list) {
+  std::vector<fs::path> parts;
+  while (!list.empty()) {
+    const std::string part = list.substr(0, list.find(':'));
+    list.erase(0, std::min(list.size(), part.size() + 1));
+    if (!part.empty()) parts.emplace_back(part);
   }
-  if (best > 0) return fs::path("/usr/lib/postgresql") / std::to_string(best) / "bin";
-  if (const char* path = std::getenv("PATH"); path && expected_major == 0) {
-    std::string rest = path;
-    while (!rest.empty()) {
-      const fs::path folder = rest.substr(0, rest.find(':'));
-      rest.erase(0, std::min(rest.size(), folder.string().size() + 1));
+  return parts;
+}
+
+}  // namespace
+
+std::map<int, fs::path> installed_programs() {
+  std::map<int, fs::path> found;
+  std::error_code error;
+  for (const fs::path& folder : parts_of_list(program_folders()))
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      const std::string version = entry.path().filename();
+      if (is_all_digits(version) && version.size() <= 3 &&
+          fs::exists(entry.path() / "bin/postgres", error))
+        found.emplace(std::stoi(version), entry.path() / "bin");
+    }
+  return found;
+}
+
+Result<fs::path> find_programs(int expected_major) {
+  const auto installed = installed_programs();
+  if (expected_major == 0 && !installed.empty()) return installed.rbegin()->second;
+  if (const auto same = installed.find(expected_major); same != installed.end())
+    return same->second;
+  std::error_code error;
+  if (const char* path = std::getenv("PATH"); path && expected_major == 0)
+    for (const fs::path& folder : parts_of_list(path))
       if (fs::exists(folder / "postgres", error) && fs::exists(folder / "initdb", error))
         return folder;
-    }
-  }
-  const std::string which =
-      expected_major ? "PostgreSQL " + std::to_string(expected_major) + ", which wrote the data,"
-                     : "PostgreSQL";
+  const std::string number = expected_major ? std::to_string(expected_major) : "";
   return fail(ErrorCode::internal, "PostgreSQL missing",
-              which +
-                  " is not installed (Strata searched /usr/lib/postgresql/*/bin). Install "
-                  "postgresql, or use --database.");
+              "PostgreSQL" + (expected_major ? " " + number + ", which wrote the data," : number) +
+                  " is not installed (Strata searched for N/bin in " + program_folders() +
+                  "). Install postgresql" + (expected_major ? "-" + number : number) +
+                  ", or use --database.");
+}
+
+int data_version(const fs::path& pgdata) {
+  int major = 0;
+  if (std::ifstream version(pgdata / "PG_VERSION"); version) version >> major;
+  return major;
+}
+
+std::vector<std::string> initdb_command(const fs::path& programs, const fs::path& pgdata) {
+  return {programs / "initdb",
+          "-D",
+          pgdata,
+          "-U",
+          "strata",
+          "-A",
+          "trust",
+          "-E",
+          "UTF8",
+          "--locale=C.UTF-8",
+          "--no-instructions"};
+}
+
+bool end_postmaster(const fs::path& pgdata, std::chrono::seconds patience) {
+  pid_t pid = 0;
+  std::ifstream(pgdata / "postmaster.pid") >> pid;
+  if (pid <= 1) return true;
+  std::error_code error;
+  const fs::path data = fs::canonical(pgdata, error);
+  // A postmaster works in its data folder. So a process that got the same number later differs.
+  const fs::path place = "/proc/" + std::to_string(pid) + "/cwd";
+  const auto ended = [&] {
+    std::error_code gone;
+    return fs::read_symlink(place, gone) != data || gone;
+  };
+  if (ended()) return true;
+  kill(pid, SIGINT);  // a fast shutdown, which writes a checkpoint
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!ended()) {
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
 }
 
 namespace {
@@ -128,7 +190,7 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
 }
 
 Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
-                    const fs::path& log, int death_signal) {
+                    const fs::path& log, int death_signal, const fs::path& folder) {
   std::vector<char*> arguments;
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -157,7 +219,7 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
     prctl(PR_SET_PDEATHSIG, death_signal);  // after setuid, which clears this setting
     if (getppid() != parent) _exit(126);    // the parent died before prctl
     umask(0077);
-    if (chdir("/") != 0) _exit(126);
+    if (chdir(folder.c_str()) != 0) _exit(126);
     execve(arguments[0], arguments.data(), environment.data());
     _exit(127);
   }
@@ -169,8 +231,9 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
 }
 
 Result<void> run_to_end(const std::vector<std::string>& command, const DatabaseUser& user,
-                        const fs::path& log, const std::function<bool()>& goes_on) {
-  const auto child = STRATA_TRY(spawn(command, user, log, SIGKILL));
+                        const fs::path& log, const std::function<bool()>& goes_on,
+                        const fs::path& folder) {
+  const auto child = STRATA_TRY(spawn(command, user, log, SIGKILL, folder));
   int status = 0;
   bool cancelled = false;
   for (;;) {

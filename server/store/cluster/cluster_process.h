@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,9 +25,25 @@ struct DatabaseUser {
 };
 Result<DatabaseUser> database_user();
 
-// Returns /usr/lib/postgresql/N/bin with the expected N (0 means the newest). If it does not exist,
-// returns the folder of `postgres` on the PATH.
+// Returns the folders of the installed programs by major version: N/bin in the folders that
+// STRATA_POSTGRESQL lists, separated by colons. Without this variable, in /usr/lib/postgresql.
+std::map<int, std::filesystem::path> installed_programs();
+
+// Returns the installed programs of the expected version (0 means the newest). If 0 is expected and
+// none are installed, returns the folder of `postgres` on the PATH.
 Result<std::filesystem::path> find_programs(int expected_major);
+
+// Returns the major version of the PostgreSQL that made the data, or 0 if no data exist.
+int data_version(const std::filesystem::path& pgdata);
+
+// Returns the command that makes an empty cluster with the settings of all private clusters.
+std::vector<std::string> initdb_command(const std::filesystem::path& programs,
+                                        const std::filesystem::path& pgdata);
+
+// Stops a postmaster that has the data open, although no server of Strata has them open. If
+// `strata upgrade-database` is killed, the postmaster that pg_upgrade has started continues. The
+// caller must have the lock of the folder. Returns true if no postmaster is left after `patience`.
+bool end_postmaster(const std::filesystem::path& pgdata, std::chrono::seconds patience);
 
 // Makes `user` the owner of the folder, sets its mode to 0700, and verifies in a child process that
 // this user can enter it.
@@ -33,15 +51,18 @@ Result<void> give_folder(const std::filesystem::path& folder, const DatabaseUser
 
 // Forks and runs a program as `user`, and returns its pid. Output is appended to `log`. The program
 // has default signal handlers and no other open files. It is in a separate process group, so Ctrl-C
-// reaches only the server. It receives `death_signal` when the calling thread ends.
+// reaches only the server. It receives `death_signal` when the calling thread ends. `folder` is its
+// working directory.
 Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
-                    const std::filesystem::path& log, int death_signal);
+                    const std::filesystem::path& log, int death_signal,
+                    const std::filesystem::path& folder = "/");
 
 // Runs a program until it ends. Calls `goes_on` ten times a second. If `goes_on` returns false,
 // kills the program and its children, and returns `cancelled`. Returns `storage_full` if the
 // program reports a full disk, and `internal` with the end of `log` if it fails in another way.
 Result<void> run_to_end(const std::vector<std::string>& command, const DatabaseUser& user,
-                        const std::filesystem::path& log, const std::function<bool()>& goes_on);
+                        const std::filesystem::path& log, const std::function<bool()>& goes_on,
+                        const std::filesystem::path& folder = "/");
 
 // Quotes a value for a connection string of libpq.
 std::string dsn_value(std::string_view value);
