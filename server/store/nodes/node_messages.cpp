@@ -55,6 +55,7 @@ std::optional<NodeMessage> read_message(const PgResult& rows, int i) {
 
 NodeMessages::NodeMessages(std::string dsn, const Uuid& self, Options options)
     : dsn_(std::move(dsn)), self_(self), options_(options) {}
+NodeMessages::~NodeMessages() = default;
 
 // Listens before it reads, so no message falls between the two.
 Result<PgConnection*> NodeMessages::connected() {
@@ -62,9 +63,9 @@ Result<PgConnection*> NodeMessages::connected() {
     connection_.reset();
     auto fresh = STRATA_TRY(PgConnection::connect(dsn_, kReaderLimits));
     STRATA_TRY(fresh.script("LISTEN strata_nodes"));
-    connection_.emplace(std::move(fresh));
+    connection_ = std::make_unique<PgConnection>(std::move(fresh));
   }
-  return &*connection_;
+  return connection_.get();
 }
 
 // Starts at the present state. The messages that are already visible count as read.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,9 +12,10 @@
 #include "core/error.h"
 #include "core/ids.h"
 #include "core/uuid.h"
-#include "store/pg/pg.h"
 
 namespace strata::store {
+
+class PgConnection;
 
 // A change that another node, or a program that is not a node, has committed. Triggers write the
 // messages (db/migrations/000045_node_messages.sql). A message names the subject of the change and
@@ -54,6 +56,7 @@ class NodeMessages {
   };
   NodeMessages(std::string dsn, const Uuid& self, Options options);
   NodeMessages(std::string dsn, const Uuid& self) : NodeMessages(std::move(dsn), self, Options()) {}
+  ~NodeMessages();
 
   struct News {
     std::vector<NodeMessage> messages;  // sorted by id
@@ -84,7 +87,7 @@ class NodeMessages {
   const std::string dsn_;
   const Uuid self_;
   const Options options_;
-  std::optional<PgConnection> connection_;
+  std::unique_ptr<PgConnection> connection_;
   std::optional<Position> position_;
   struct Ended {
     std::chrono::steady_clock::time_point when;
