@@ -126,7 +126,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // may be in the journal nevertheless. Its author sends it again and then gets its first answer.
   void stop_saving(const Error& why);
   // Accepts edits again. They start after the room was compared with the journal, because another
-  // server may have claimed the model in the meantime. Then PipelineHost::saving_continued is called.
+  // server may have claimed the model in the meantime. Then PipelineHost::saving_continued is
+  // called.
   void continue_saving();
 
   void refuse_waiting(const Error& why);

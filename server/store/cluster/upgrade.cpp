@@ -92,7 +92,7 @@ Result<void> check_owner(const fs::path& pgdata, const DatabaseUser& user) {
                   ". Run the command as this user, for example with `sudo -u`.");
 }
 
-// The new cluster is made beside the folder `postgres`, and renamed to it.
+// The new cluster is made in the parent folder of `postgres`, and renamed to it.
 Result<void> check_same_disk(const UpgradePlan& plan) {
   struct stat data {
   }, cluster{};

@@ -1,6 +1,7 @@
 """A site changes from PostgreSQL 15 of Debian 12 to PostgreSQL 17 of Debian 13: the plan, the
 rehearsal during work, interruptions, the upgrade, and the way back."""
 import os
+import shutil
 import signal
 import subprocess
 
@@ -72,6 +73,8 @@ def contents(server):
 
 def interrupt(server, number):
     """Starts the upgrade, and sends a signal while pg_upgrade runs."""
+    reports = os.path.join(server.data, "upgrading", "postgres", "pgdata", "pg_upgrade_output.d")
+    shutil.rmtree(reports, ignore_errors=True)  # of an earlier upgrade that was killed
     child = subprocess.Popen(
         [os.environ["STRATA_BINARY"], "upgrade-database", "--data", server.data, "--apply"],
         stdout=subprocess.DEVNULL,
@@ -79,7 +82,6 @@ def interrupt(server, number):
         text=True,
         env=environment(BOTH),
     )
-    reports = os.path.join(server.data, "upgrading", "postgres", "pgdata", "pg_upgrade_output.d")
     wait_for(lambda: os.path.exists(reports) or child.poll() is not None, "pg_upgrade to begin")
     child.send_signal(number)
     told = child.communicate()[1]

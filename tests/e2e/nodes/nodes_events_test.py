@@ -28,7 +28,8 @@ def model(site):
 @pytest.fixture(scope="module")
 def nodes(site, model):
     """The owner of the model, where the pages are, and the other node."""
-    site.ok("GET", f"/models/{model['id']}/layers")
+    with LiveClient(site.nodes[0], model["id"]) as live:
+        live.hello()
     owner = wait_for(lambda: site.owner(model["id"]), "a node that owns the model")
     return owner, next(node for node in site.nodes if node is not owner)
 
