@@ -768,16 +768,16 @@ CREATE FUNCTION public.role_rank(role text) RETURNS integer
 
 CREATE FUNCTION public.send_to_nodes(of_kind text, of_event text, of_project bigint, of_model bigint, of_subjects bigint[], of_user text, of_sequence bigint DEFAULT NULL::bigint) RETURNS void
     LANGUAGE plpgsql
-    AS $$
+    AS $_$
 BEGIN
   IF NOT EXISTS (SELECT FROM nodes) THEN
     RETURN;
   END IF;
   INSERT INTO node_messages (from_node, kind, event, project_id, model_id, subject_ids, sequence, user_name)
-  VALUES (nullif(current_setting('strata.node', true), '')::uuid, of_kind, of_event, of_project, of_model, of_subjects, of_sequence,
-    coalesce(of_user, ''));
+  VALUES (substring(current_setting('application_name') FROM '^strata-([0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12})$')::uuid,
+    of_kind, of_event, of_project, of_model, of_subjects, of_sequence, coalesce(of_user, ''));
   PERFORM pg_notify('strata_nodes', '');
-END $$;
+END $_$;
 
 CREATE FUNCTION public.sign_on_is_audited() RETURNS trigger
     LANGUAGE plpgsql

@@ -34,8 +34,8 @@ BEGIN
     RETURN;
   END IF;
   INSERT INTO node_messages (from_node, kind, event, project_id, model_id, subject_ids, sequence, user_name)
-  VALUES (nullif(current_setting('strata.node', true), '')::uuid, of_kind, of_event, of_project, of_model, of_subjects, of_sequence,
-    coalesce(of_user, ''));
+  VALUES (substring(current_setting('application_name') FROM '^strata-([0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12})$')::uuid,
+    of_kind, of_event, of_project, of_model, of_subjects, of_sequence, coalesce(of_user, ''));
   PERFORM pg_notify('strata_nodes', '');
 END $$;
 

@@ -28,7 +28,6 @@ double processor_seconds() {
 Result<std::unique_ptr<NodeLease>> NodeLease::start(store::Nodes& nodes, room::Rooms& rooms,
                                                     Options options) {
   std::unique_ptr<NodeLease> lease(new NodeLease(nodes, rooms, std::move(options)));
-  nodes.act_as(lease->options_.node.id);
   const auto sent = Clock::now();
   STRATA_TRY(nodes.join(lease->options_.node));
   lease->sent_ = lease->measured_ = sent;

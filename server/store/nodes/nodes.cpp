@@ -48,7 +48,8 @@ Result<std::optional<Node>> first_node(const Result<PgResult>& rows) {
   return rows->rows() == 0 ? std::nullopt : std::optional(read_node(*rows, 0));
 }
 
-// The name of a node's sessions in PostgreSQL, before the id of the node.
+// The name of a node's sessions in PostgreSQL, before the id of the node. Triggers read the name
+// (db/migrations/000045_node_messages.sql).
 constexpr const char* kSessionPrefix = "strata-";
 
 // A null node is a server that is alone.
@@ -161,8 +162,6 @@ Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self
   STRATA_TRY(end_sessions_of_owner(model));
   return try_claim(model, self);
 }
-
-void Nodes::act_as(const Uuid& self) { pool_.name_node(self); }
 
 std::unique_ptr<NodeMessages> Nodes::messages(const Uuid& self) {
   return std::make_unique<NodeMessages>(pool_.dsn(), self);

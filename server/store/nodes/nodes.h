@@ -58,7 +58,8 @@ struct Ownership {
 Result<std::string> check_node_url(const std::string& url);
 
 // Returns the connection string (libpq) with which a node must open its Store. Its sessions in
-// PostgreSQL then have the name of the node, so that a claim can end them.
+// PostgreSQL then have the name of the node. So a claim can end them, and the node gets no messages
+// about its own changes.
 std::string with_sessions_of(const Uuid& node, const std::string& dsn);
 
 // The nodes of a site, and the models that each of them has. A model has one owner and an epoch, a
@@ -92,9 +93,6 @@ class Nodes {
   Result<void> forget_ended();           // removes nodes whose lease ended `kForgetAfter` ago
 
   // --- Messages between nodes (store/nodes/node_messages.h)
-  // Marks the changes of this process as those of the node, so the node does not get messages about
-  // them. Call it before the first change.
-  void act_as(const Uuid& self);
   // Returns a new reader of the messages to `self`.
   std::unique_ptr<NodeMessages> messages(const Uuid& self);
 

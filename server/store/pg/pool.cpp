@@ -18,24 +18,6 @@ Result<Pool::Lease> Pool::acquire(const PgLimits& limits) {
   return tl::unexpected(connection.error());
 }
 
-void Pool::name_node(const Uuid& node) {
-  std::vector<PgConnection> unnamed;  // closed after the mutex is released
-  std::lock_guard lock(mutex_);
-  begin_session_ = "SET strata.node = '" + to_string(node) + "'";
-  unnamed.swap(idle_);
-}
-
-Result<PgConnection> Pool::connect(const PgLimits& limits) {
-  auto connection = STRATA_TRY(PgConnection::connect(dsn_, limits));
-  std::string begin;
-  {
-    std::lock_guard lock(mutex_);
-    begin = begin_session_;
-  }
-  if (!begin.empty()) STRATA_TRY(connection.script(begin));
-  return connection;
-}
-
 // Returns an idle connection, or a new one if no connection is idle.
 Result<PgConnection> Pool::take(const PgLimits& limits) {
   for (;;) {
@@ -48,7 +30,7 @@ Result<PgConnection> Pool::take(const PgLimits& limits) {
   }
   const auto deadline = std::chrono::steady_clock::now() + kReconnectFor;
   for (;;) {
-    auto connection = connect(limits);
+    auto connection = PgConnection::connect(dsn_, limits);
     if (connection || std::chrono::steady_clock::now() >= deadline) return connection;
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }

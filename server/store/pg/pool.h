@@ -22,9 +22,6 @@ class Pool {
       : dsn_(std::move(dsn)), limits_(limits), slot_for_(slot_for), free_slots_(size) {}
 
   const std::string& dsn() const { return dsn_; }
-  // Names this node of the site in the sessions that begin from now on (`strata.node`), and ends
-  // idle sessions. Triggers read the name (db/migrations/000045_node_messages.sql).
-  void name_node(const Uuid& node);
 
   class Lease {
    public:
@@ -81,7 +78,6 @@ class Pool {
 
  private:
   Result<PgConnection> take(const PgLimits& limits);
-  Result<PgConnection> connect(const PgLimits& limits);
   void release(PgConnection connection);
   void free_slot();
 
@@ -91,7 +87,6 @@ class Pool {
   std::mutex mutex_;
   std::condition_variable changed_;
   int free_slots_;
-  std::string begin_session_;  // SQL; may be empty
   std::vector<PgConnection> idle_;
 };
 

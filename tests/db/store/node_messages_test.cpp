@@ -42,7 +42,6 @@ class MessagesOfNodes : public ::testing::Test {
   }
   // Changes of `store_` are those of node b. Node a reads its messages.
   void join() {
-    store_->nodes().act_as(b_.id);
     ASSERT_TRUE(store_->nodes().join(a_));
     ASSERT_TRUE(store_->nodes().join(b_));
     ASSERT_TRUE(reader_.read());
@@ -103,10 +102,10 @@ class MessagesOfNodes : public ::testing::Test {
 
   bool joins_ = true;
   const std::string dsn_ = test::fresh_database();
-  std::unique_ptr<Store> store_ = test::open_store(dsn_);
-  PgConnection connection_ = connect();
   const NewNode a_{random_uuid(), "http://a.example", "1.0", "llvmpipe"},
       b_{random_uuid(), "http://b.example", "1.0", "llvmpipe"};
+  std::unique_ptr<Store> store_ = test::open_store(with_sessions_of(b_.id, dsn_));
+  PgConnection connection_ = connect();
   NodeMessages reader_{dsn_, a_.id};
 };
 
