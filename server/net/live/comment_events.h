@@ -15,4 +15,8 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
 Result<void> tell_comment(store::Store& store, LiveSockets& sockets,
                           protocol::CommentEventEvent event, CommentId id, const std::string& user);
 
+// Sends the event of a deleted comment.
+void tell_comment_deleted(LiveSockets& sockets, ModelId model, CommentId id,
+                          const std::string& user);
+
 }  // namespace strata::net

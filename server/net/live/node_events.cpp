@@ -26,6 +26,17 @@ Event event_of(const NodeMessage& message) {
   return Event::deleted;
 }
 
+// Sends the event of a part of a model, such as a view. `part` is the member with its id.
+template <class PartEvent>
+void tell_part(LiveSockets& sockets, const NodeMessage& message, std::int64_t id,
+               std::int64_t PartEvent::*part) {
+  PartEvent event;
+  event.event = event_of<decltype(event.event)>(message);
+  event.*part = id;
+  event.user = message.user;
+  if (message.model) sockets.tell_model(*message.model, event);
+}
+
 bool is_gone(const Error& error) { return error.code == ErrorCode::not_found; }
 
 }  // namespace
@@ -42,22 +53,12 @@ Result<void> NodeEvents::receive(const NodeMessage& message) {
       case NodeMessage::Kind::comment: STRATA_TRY(receive_comment(message, CommentId(id))); break;
       case NodeMessage::Kind::tool: STRATA_TRY(receive_tool(message, ToolId(id))); break;
       case NodeMessage::Kind::kiosk: check_access(kiosk_name(KioskId(id))); break;
-      case NodeMessage::Kind::view: {
-        protocol::ViewEvent event;
-        event.event = event_of<protocol::ViewEventEvent>(message);
-        event.view = id;
-        event.user = message.user;
-        if (message.model) sockets_.tell_model(*message.model, event);
+      case NodeMessage::Kind::view:
+        tell_part(sockets_, message, id, &protocol::ViewEvent::view);
         break;
-      }
-      case NodeMessage::Kind::snapshot: {
-        protocol::SnapshotEvent event;
-        event.event = event_of<protocol::SnapshotEventEvent>(message);
-        event.snapshot = id;
-        event.user = message.user;
-        if (message.model) sockets_.tell_model(*message.model, event);
+      case NodeMessage::Kind::snapshot:
+        tell_part(sockets_, message, id, &protocol::SnapshotEvent::snapshot);
         break;
-      }
       case NodeMessage::Kind::access: break;
     }
   }
@@ -91,14 +92,10 @@ Result<void> NodeEvents::receive_table(const NodeMessage& message, TableId id) {
 
 Result<void> NodeEvents::receive_comment(const NodeMessage& message, CommentId id) {
   if (!message.model || !sockets_.has_model(*message.model)) return {};
-  const auto event = event_of<protocol::CommentEventEvent>(message);
   if (message.event != NodeMessage::Event::deleted)
-    return tell_comment(store_, sockets_, event, id, message.user);
-  protocol::CommentEvent deleted;
-  deleted.event = event;
-  deleted.comment_id = id.number();
-  deleted.user = message.user;
-  sockets_.tell_model(*message.model, deleted);
+    return tell_comment(store_, sockets_, event_of<protocol::CommentEventEvent>(message), id,
+                        message.user);
+  tell_comment_deleted(sockets_, *message.model, id, message.user);
   return {};
 }
 

@@ -261,13 +261,8 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
     tell(context.live_sockets, CommentEventEvent::changed, *removal->left,
          people.value_or(People()), request.user());
   }
-  for (const auto id : removal->gone) {
-    protocol::CommentEvent message;
-    message.event = CommentEventEvent::deleted;
-    message.comment_id = id.number();
-    message.user = request.user();
-    context.live_sockets.tell_model(removal->model_id, message);
-  }
+  for (const auto id : removal->gone)
+    tell_comment_deleted(context.live_sockets, removal->model_id, id, request.user());
   return answer(*removal);
 }
 
@@ -318,6 +313,15 @@ Result<void> tell_comment(store::Store& store, LiveSockets& sockets, CommentEven
   const auto people = STRATA_TRY(people_of(store, *comment, user));
   tell(sockets, event, *comment, people, user);
   return {};
+}
+
+void tell_comment_deleted(LiveSockets& sockets, ModelId model, CommentId id,
+                          const std::string& user) {
+  protocol::CommentEvent message;
+  message.event = CommentEventEvent::deleted;
+  message.comment_id = id.number();
+  message.user = user;
+  sockets.tell_model(model, message);
 }
 
 void add_comment_routes(Router& router, const RouteContext& context) {
