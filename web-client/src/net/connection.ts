@@ -9,7 +9,7 @@ import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";
 import { CameraSender } from "./camera-sender";
 import { addressAtNode } from "./node-address";
 import { NodeSearch } from "./node-search";
-import { kFirstRetryMs, kLastRetryMs, Resender } from "./resender";
+import { kLastRetryMs, Resender, retryDelayMs } from "./resender";
 import { kOpenSocket, type SocketLike } from "./socket";
 import { SilenceWatch } from "./silence-watch";
 import { beginOf, StrokeHandle, type StrokeOptions } from "./stroke";
@@ -573,7 +573,7 @@ export class Connection {
   private retryLater(): void {
     const random = (this._options.random ?? Math.random)();
     const lastMs = this._moved ? kLastMovedRetryMs : kLastRetryMs;
-    const delayMs = Math.min(lastMs, kFirstRetryMs * 2 ** this._attempts) * (0.75 + random / 2);
+    const delayMs = retryDelayMs(this._attempts, random, lastMs);
     this._attempts += 1;
     this._retryTimer = setTimeout(() => {
       this._retryTimer = null;

@@ -3,7 +3,7 @@
 // of the site gets a welcome. The node of that connection has taken over the model.
 
 import { parse_server_message, type ServerMessage } from "../core/protocol.gen";
-import { kFirstRetryMs, kLastRetryMs } from "./resender";
+import { retryDelayMs } from "./resender";
 import type { SocketLike } from "./socket";
 
 export interface NodeSearchHost {
@@ -40,9 +40,9 @@ export class NodeSearch {
   }
 
   private later(): void {
-    const delayMs = Math.min(kLastRetryMs, kFirstRetryMs * 2 ** this._attempts);
+    const delayMs = retryDelayMs(this._attempts, this._host.random());
     this._attempts += 1;
-    this._timer = setTimeout(() => this.attempt(), delayMs * (0.75 + this._host.random() / 2));
+    this._timer = setTimeout(() => this.attempt(), delayMs);
   }
 
   private attempt(): void {

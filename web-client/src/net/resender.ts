@@ -3,8 +3,12 @@
 
 import type { ChangeMessage } from "./outbox";
 
-export const kFirstRetryMs = 250;
+const kFirstRetryMs = 250;
 export const kLastRetryMs = 8000;
+
+/** Returns the time before the next attempt. It doubles with each attempt, and varies at random. */
+export const retryDelayMs = (attempts: number, random: number, lastMs = kLastRetryMs): number =>
+  Math.min(lastMs, kFirstRetryMs * 2 ** attempts) * (0.75 + random / 2);
 
 export class Resender {
   /** The rate of messages, which is below the server's limit. */
