@@ -29,6 +29,7 @@ std::string_view name(ErrorCode code) {
     case ErrorCode::cancelled: return "cancelled";
     case ErrorCode::moved: return "moved";
     case ErrorCode::internal: return "internal";
+    case ErrorCode::damaged: return "damaged";
     case ErrorCode::not_implemented: return "not_implemented";
     case ErrorCode::bad_gateway: return "bad_gateway";
     case ErrorCode::busy: return "busy";

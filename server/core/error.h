@@ -41,6 +41,7 @@ enum class ErrorCode {
   moved,                // another node of the site has the model
   // Failures of the server. The same request may succeed later.
   internal,         // an error in the program, or damaged data
+  damaged,          // a stored file is missing, or its content has changed
   not_implemented,  // a part of HTTP that the server does not support
   bad_gateway,      // the response of another program is invalid
   busy,             // too much work is in the queue

@@ -3144,6 +3144,14 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
+        Damaged: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
         DiskFull: {
             headers: {
                 [name: string]: unknown;
