@@ -1483,6 +1483,11 @@ ALTER TABLE ONLY public.blob_chunks ALTER COLUMN data SET STORAGE EXTERNAL;
 CREATE TABLE public.blobs (
     sha256 bytea NOT NULL,
     bytes bigint NOT NULL,
+    is_outside boolean DEFAULT false NOT NULL,
+    chunk_sums bytea,
+    unused timestamp with time zone,
+    removing timestamp with time zone,
+    CONSTRAINT blobs_chunk_sums_check CHECK (((chunk_sums IS NOT NULL) = is_outside)),
     CONSTRAINT blobs_sha256_check CHECK ((octet_length(sha256) = 32))
 );
 
@@ -1529,6 +1534,16 @@ CREATE TABLE public.detail_levels (
     level integer NOT NULL,
     geometry bytea NOT NULL,
     CONSTRAINT detail_levels_level_check CHECK ((level > 0))
+);
+
+CREATE TABLE public.file_store (
+    one boolean DEFAULT true NOT NULL,
+    id uuid NOT NULL,
+    place text NOT NULL,
+    owner text NOT NULL,
+    CONSTRAINT file_store_one_check CHECK (one),
+    CONSTRAINT file_store_owner_check CHECK ((char_length(owner) <= 100)),
+    CONSTRAINT file_store_place_check CHECK (((char_length(place) >= 1) AND (char_length(place) <= 4096)))
 );
 
 CREATE TABLE public.group_people (
@@ -2033,6 +2048,9 @@ ALTER TABLE ONLY public.edits
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_pkey PRIMARY KEY (model_id, sequence);
 
+ALTER TABLE ONLY public.file_store
+    ADD CONSTRAINT file_store_pkey PRIMARY KEY (one);
+
 ALTER TABLE ONLY public.group_people
     ADD CONSTRAINT group_people_pkey PRIMARY KEY (group_id, user_id);
 
@@ -2199,6 +2217,10 @@ CREATE INDEX audit_log_failed ON public.audit_log USING btree (address, "time") 
 CREATE INDEX audit_log_project ON public.audit_log USING btree (project_id, id) WHERE (project_id IS NOT NULL);
 
 CREATE INDEX audit_log_time ON public.audit_log USING btree ("time", id);
+
+CREATE INDEX blobs_removing ON public.blobs USING btree (removing) WHERE (removing IS NOT NULL);
+
+CREATE INDEX blobs_unused ON public.blobs USING btree (unused) WHERE (unused IS NOT NULL);
 
 CREATE INDEX comments_layer ON public.comments USING btree (layer_id);
 

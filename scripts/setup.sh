@@ -178,6 +178,20 @@ END
   chmod 755 "$1"/bin/*
 }
 
+# The S3 server of the tests is OpenStack Swift (tests/e2e/s3). Only the packages that it imports are
+# unpacked, because it depends on twice as many.
+python_of_swift=(liberasurecode1 libxml2 libxslt1.1 python3-certifi python3-cffi-backend python3-chardet python3-charset-normalizer
+  python3-cryptography python3-dnspython python3-eventlet python3-greenlet python3-idna python3-lxml python3-netifaces python3-openssl
+  python3-paste python3-pastedeploy python3-pastedeploy-tpl python3-pkg-resources python3-pyeclib python3-requests python3-six
+  python3-tempita python3-urllib3 python3-xattr)
+setup_s3() {
+  local package
+  for package in $(missing_packages "${python_of_swift[@]}"); do
+    unpack_beside "$package" "usr/share/doc/$package/copyright" "the S3 server of the tests needs it"
+  done
+  unpack_beside python3-swift usr/lib/python3/dist-packages/swift/__init__.py "it is the S3 server of the tests"
+}
+
 require_node() {
   local major
   major=$(node -p 'process.versions.node.split(".")[0]')

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
       {"restore", strata::cli::add_restore(app)},
       {"kiosk", strata::cli::add_kiosk(app)},
       {"audit", strata::cli::add_audit(app)},
+      {"files", strata::cli::add_files(app)},
       {"upgrade-database", strata::cli::add_upgrade_database(app)},
   };
   try {

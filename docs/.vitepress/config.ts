@@ -33,6 +33,7 @@ const howTo = {
     "move-to-three-nodes",
     "watch-the-server",
     "back-up-and-restore",
+    "keep-files-outside-the-database",
     "manage-people",
     "sign-in-with-openid-connect",
     "limit-visibility",

@@ -7,14 +7,20 @@ namespace {
 
 constexpr std::chrono::hours kBetweenLooks{1};
 constexpr std::chrono::minutes kAfterFailure{1};  // the database may be reachable by then
+constexpr std::chrono::hours kBetweenLists{24};   // a list of all files is expensive in a bucket
 
 }  // namespace
 
 TrashPurger::TrashPurger(store::Trash& trash, std::chrono::days keep, store::Audit& audit,
-                         std::chrono::days keep_audit)
-    : trash_(trash), keep_(keep), audit_(audit), keep_audit_(keep_audit), thread_([this] {
-        run();
-      }) {}
+                         std::chrono::days keep_audit, store::Files& files,
+                         std::chrono::days keep_files)
+    : trash_(trash),
+      keep_(keep),
+      audit_(audit),
+      keep_audit_(keep_audit),
+      files_(files),
+      keep_files_(keep_files),
+      thread_([this] { run(); }) {}
 
 void TrashPurger::check_now() {
   const std::lock_guard lock(mutex_);
@@ -36,7 +42,7 @@ bool TrashPurger::is_stopping() {
   return stopping_;
 }
 
-// Both functions return false when they are done, and true if the server stops before that.
+// These functions return false when they are done, and true if the server stops before that.
 Result<bool> TrashPurger::empty_trash() {
   STRATA_TRY(trash_.expire(keep_));
   Result<bool> some = true;
@@ -47,6 +53,18 @@ Result<bool> TrashPurger::empty_trash() {
 Result<bool> TrashPurger::purge_audit() {
   Result<bool> some = keep_audit_.count() > 0;
   while (some && *some && !is_stopping()) some = audit_.purge_some(keep_audit_);
+  return some;
+}
+
+Result<bool> TrashPurger::sweep_files() {
+  const auto now = std::chrono::steady_clock::now();
+  if (!have_listed_files_ || now - files_listed_ >= kBetweenLists) {
+    STRATA_TRY(files_.find_superfluous(keep_files_));
+    files_listed_ = now;
+    have_listed_files_ = true;
+  }
+  Result<bool> some = true;
+  while (some && *some && !is_stopping()) some = files_.sweep(keep_files_);
   return some;
 }
 
@@ -61,7 +79,8 @@ void TrashPurger::run() {
     }
     const auto emptied = empty_trash();
     const auto purged = purge_audit();
-    pause = emptied && purged ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
+    const auto swept = sweep_files();
+    pause = emptied && purged && swept ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
     if (is_stopping()) continue;
     if (!emptied)
       log::warning("the server could not empty the Trash and will try again: " +
@@ -69,6 +88,9 @@ void TrashPurger::run() {
     if (!purged)
       log::warning("the server could not delete old rows of the audit log and will try again: " +
                    purged.error().detail);
+    if (!swept)
+      log::warning("the server could not delete unused files and will try again: " +
+                   swept.error().detail);
   }
 }
 

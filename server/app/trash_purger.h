@@ -6,18 +6,21 @@
 #include <thread>
 
 #include "store/content/trash.h"
+#include "store/files/files.h"
 #include "store/people/audit.h"
 
 namespace strata::app {
 
-// Erases expired entries of the trash, and deletes old rows of the audit log, when the server
-// starts and every hour. Erases entries immediately if users request it. Works in small steps. If
-// the server stops, it erases the remaining entries after its next start.
+// Erases expired entries of the trash, deletes old rows of the audit log, and sweeps the files
+// outside the database, when the server starts and every hour. Erases entries immediately if users
+// request it. Works in small steps. If the server stops, it erases the remaining entries after its
+// next start.
 class TrashPurger {
  public:
-  // `trash` and `audit` must outlive it. If `keep_audit` is 0, the audit log keeps all rows.
+  // `trash`, `audit` and `files` must outlive it. If `keep_audit` is 0, the audit log keeps all
+  // rows. `keep_files` is the time that a file remains after nothing uses it.
   TrashPurger(store::Trash& trash, std::chrono::days keep, store::Audit& audit,
-              std::chrono::days keep_audit);
+              std::chrono::days keep_audit, store::Files& files, std::chrono::days keep_files);
   ~TrashPurger() { stop(); }
   void check_now();  // call it when entries must be erased; does not wait
   void stop();       // waits for the current step
@@ -27,11 +30,16 @@ class TrashPurger {
   bool is_stopping();
   Result<bool> empty_trash();
   Result<bool> purge_audit();
+  Result<bool> sweep_files();
 
   store::Trash& trash_;
   const std::chrono::days keep_;
   store::Audit& audit_;
   const std::chrono::days keep_audit_;
+  store::Files& files_;
+  const std::chrono::days keep_files_;
+  std::chrono::steady_clock::time_point files_listed_;  // the last time
+  bool have_listed_files_ = false;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false, must_check_ = true;

@@ -36,6 +36,15 @@ std::string summary(const store::BackupFacts& facts) {
          std::to_string(facts.schema_version) + ", of " + facts.made;
 }
 
+// Prints what else a restore needs, if some content is outside the database.
+void print_files(const store::BackupFacts& facts) {
+  if (facts.files.count == 0) return;
+  std::cout << "NOT in the backup: " << facts.files.count << " files, "
+            << ((facts.files.bytes + (1 << 20) - 1) >> 20) << " MB, outside the database in "
+            << facts.files.place
+            << "\nCopy them, too (docs/how-to/keep-files-outside-the-database.md)" << std::endl;
+}
+
 // Finds the database without changing it, because a server of this or another version may be using
 // it.
 struct Source {
@@ -66,6 +75,7 @@ int backup(const BackupOptions& options) {
   if (!facts) return report(facts.error());
   std::cout << "backed up " << summary(*facts) << "\nin " << fs::absolute(options.folder).string()
             << std::endl;
+  print_files(*facts);
   return 0;
 }
 
@@ -135,11 +145,16 @@ int restore(const BackupOptions& options) {
   if (!done) return report(done.error());
   if (options.check_only) {
     std::cout << "the backup is good: " << summary(*facts) << std::endl;
+    print_files(*facts);
     return 0;
   }
   std::cout << "restored " << summary(*facts)
             << "\nevery table equals the backup; you can start the server with this data"
             << std::endl;
+  if (facts->files.count > 0)
+    std::cout << facts->files.count << " files are outside the database: start the server with "
+              << "--files, and run `strata files check`. They were in " << facts->files.place
+              << std::endl;
   return 0;
 }
 

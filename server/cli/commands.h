@@ -18,6 +18,7 @@ Command add_user(CLI::App& app);
 Command add_token(CLI::App& app);
 Command add_kiosk(CLI::App& app);
 Command add_audit(CLI::App& app);
+Command add_files(CLI::App& app);
 Command add_backup(CLI::App& app);
 Command add_restore(CLI::App& app);
 Command add_upgrade_database(CLI::App& app);

@@ -37,6 +37,7 @@ Command add_demo(CLI::App& app) {
       "demo", "Create the demo project: a generated pot with the work of two fictional people");
   auto options = std::make_shared<DemoOptions>();
   add_data_options(*command, options->data);
+  add_files_options(*command, options->data);
   command->add_flag("--if-empty", options->if_empty, "Do nothing if the site has a model");
   auto* pot_only = command->add_flag("--pot-only", options->pot_only,
                                      "Create only the pot with two painted layers");

@@ -97,6 +97,7 @@ Command add_import(CLI::App& app) {
   auto* command = app.add_subcommand("import", "Import scans, and print the models as JSON");
   auto options = std::make_shared<ImportOptions>();
   add_data_options(*command, options->data);
+  add_files_options(*command, options->data);
   command
       ->add_option(
           "files", options->files,

@@ -19,6 +19,20 @@ void add_data_options(CLI::App& command, DataOptions& options) {
       ->envname("STRATA_DATABASE");
 }
 
+void add_files_options(CLI::App& command, DataOptions& options) {
+  auto* files = command
+                    .add_option("--files", options.files.place,
+                                "Keep scans, photographs and documents outside the database: a "
+                                "folder, or s3://BUCKET/PREFIX "
+                                "(docs/how-to/keep-files-outside-the-database.md)")
+                    ->envname("STRATA_FILES");
+  command
+      .add_option("--files-endpoint", options.files.endpoint,
+                  "Address of an S3 server that is not Amazon's, https://HOST:PORT")
+      ->envname("STRATA_FILES_ENDPOINT")
+      ->needs(files);
+}
+
 Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) {
   auto open = std::make_unique<OpenDatabase>();
   std::error_code error;
@@ -29,6 +43,7 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
         options.data.string() + ": " + error.message() + ". Specify another folder with --data.");
   store::StoreOptions store_options;
   store_options.dsn = options.database;
+  store_options.files = options.files;
   if (options.database.empty()) {
     auto cluster =
         STRATA_TRY(store::Cluster::start(std::filesystem::absolute(options.data), options.cluster));

@@ -14,9 +14,12 @@ namespace strata::cli {
 struct DataOptions {
   std::filesystem::path data = "data";
   std::string database;
+  store::FilesPlace files{};
   store::ClusterOptions cluster{};  // only for `serve`
 };
 void add_data_options(CLI::App& command, DataOptions& options);
+// Only for commands that read or write scans and other large content.
+void add_files_options(CLI::App& command, DataOptions& options);
 
 struct OpenDatabase {
   std::unique_ptr<store::Cluster> cluster;  // null with --database

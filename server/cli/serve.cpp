@@ -23,6 +23,7 @@
 #include "room/rooms.h"
 #include "sign_on/config.h"
 #include "store/cluster/archive_keeper.h"
+#include "store/files/files.h"
 #include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
 #include "store/people/tokens.h"
@@ -33,7 +34,7 @@
 namespace strata::cli {
 namespace {
 
-constexpr int kMaxTrashDays = 36500, kMaxAuditDays = 36500;
+constexpr int kMaxTrashDays = 36500, kMaxAuditDays = 36500, kMaxFileDays = 36500;
 constexpr int kMaxCopyDays = 365, kMaxCopies = 1000;
 constexpr int kMaxTimeout_s = 3600;
 constexpr int kMaxSlow_ms = 3'600'000;
@@ -48,6 +49,7 @@ struct ServeOptions {
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
   int audit_days = net::ServerOptions{}.audit_days;
+  int file_days = net::ServerOptions{}.file_days;
   net::Timeouts timeouts;
   int samples_at_rest = 16, smooth_samples = 0;
   bool debug = false;
@@ -285,6 +287,15 @@ int run(ServeOptions options) {
     archive = std::make_unique<store::ArchiveKeeper>(
         *(*database)->cluster,
         store::ArchiveRules{std::chrono::days(options.archive_copy_days), options.archive_copies});
+  if (auto found = store.files().check_open(); !found) return report(found.error());
+  if (store.files().is_open()) {
+    auto owns = store.files().owns_files();
+    if (!owns) return report(owns.error());
+    if (!*owns)
+      log::warning(
+          "this database is a copy of the one that the files belong to, so this server deletes no "
+          "files. To make it the owner: strata files adopt");
+  }
   auto orphans = store.attachments().drop_orphans();
   if (!orphans) return report(orphans.error());
   if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
@@ -331,6 +342,7 @@ int run(ServeOptions options) {
   server_options.local_accounts = has_passwords;
   server_options.trash_days = options.trash_days;
   server_options.audit_days = options.audit_days;
+  server_options.file_days = options.file_days;
   server_options.timeouts = options.timeouts;
   server_options.lease = lease.get();
   server_options.archive = archive.get();
@@ -378,6 +390,7 @@ Command add_serve(CLI::App& app) {
   auto* command = app.add_subcommand("serve", "Run the server");
   auto options = std::make_shared<ServeOptions>();
   add_data_options(*command, options->data);
+  add_files_options(*command, options->data);
   command
       ->add_option("--listen", options->listen,
                    "Address of the server, HOST:PORT; port 0 takes a free port")
@@ -447,6 +460,12 @@ Command add_serve(CLI::App& app) {
                    "Days for which the audit log keeps its rows; 0 keeps them permanently")
       ->envname("STRATA_AUDIT_DAYS")
       ->check(CLI::Range(0, kMaxAuditDays))
+      ->capture_default_str();
+  command
+      ->add_option("--file-days", options->file_days,
+                   "Days for which a file outside the database remains after nothing uses it")
+      ->envname("STRATA_FILE_DAYS")
+      ->check(CLI::Range(1, kMaxFileDays))
       ->capture_default_str();
   add_archive_options(*command, *options);
   add_timeout(*command, "head-timeout", options->timeouts.head,

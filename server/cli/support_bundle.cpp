@@ -66,6 +66,8 @@ KnownSecrets secrets_of(const DataOptions& data, const store::SupportFacts* fact
   secrets.add("the owner's token", environment("STRATA_OWNER_TOKEN"));
   secrets.add("the password of the database", environment("PGPASSWORD"));
   secrets.add("the password of the database", environment("STRATA_DATABASE_PASSWORD"));
+  for (const char* name : {"AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY", "AWS_SESSION_TOKEN"})
+    secrets.add("a key of the bucket of the files", environment(name));
   for (auto& password : store::without_passwords(data.database).passwords)
     secrets.add("a password of --database", std::move(password));
   std::string sql_password;

@@ -45,7 +45,7 @@ nlohmann::json disk(const std::filesystem::path& folder) {
 std::string public_value(const std::string& name, const std::string& value) {
   if (value.empty()) return value;
   if (name == "STRATA_DATABASE") return store::without_passwords(value).text;
-  for (const char* word : {"TOKEN", "PASSWORD", "SECRET"})
+  for (const char* word : {"TOKEN", "PASSWORD", "SECRET", "ACCESS_KEY"})
     if (name.find(word) != std::string::npos) return "[set]";
   return redacted(value);
 }

@@ -25,6 +25,8 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
   const auto schema = STRATA_TRY(migrate(*connection, migrations));
   store->impl_->schema_version = schema.version();
   store->impl_->readable_from = schema.readable_from();
+  if (const FilesPlace& files = store->impl_->options.files; !files.place.empty())
+    STRATA_TRY(store->impl_->files.open(files));
   return store;
 }
 
@@ -54,6 +56,7 @@ Groups& Store::groups() { return impl_->groups; }
 Trash& Store::trash() { return impl_->trash; }
 Audit& Store::audit() { return impl_->audit; }
 SignOns& Store::sign_ons() { return impl_->sign_ons; }
+Files& Store::files() { return impl_->files; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "store/files/files_place.h"
 #include "store/pg/pg_limits.h"
 
 namespace strata::store {
@@ -17,6 +18,7 @@ class Attachments;
 class Trash;
 class Audit;
 class Comments;
+class Files;
 class Groups;
 class Jobs;
 class Journal;
@@ -41,6 +43,7 @@ struct StoreOptions {
   int connections = 8;  // size of the pool, which all parts except the journal writer use
   PgLimits limits = kRequestLimits;
   std::chrono::milliseconds slot_for{10'000};  // longest wait for a connection from the pool
+  FilesPlace files{};                          // where new large content goes
 };
 
 struct StoreInfo {
@@ -97,6 +100,7 @@ class Store {
   Trash& trash();
   Audit& audit();       // store/people/audit.h
   SignOns& sign_ons();  // store/people/sign_ons.h
+  Files& files();       // store/files/files.h
 
  private:
   Store();

@@ -17,6 +17,7 @@
 #include "store/content/tools.h"
 #include "store/content/tour_files.h"
 #include "store/content/trash.h"
+#include "store/files/files.h"
 #include "store/journal/journal_reads.h"
 #include "store/nodes/nodes.h"
 #include "store/people/accounts.h"
@@ -27,6 +28,7 @@
 #include "store/people/personal_views.h"
 #include "store/people/sign_ons.h"
 #include "store/people/tokens.h"
+#include "store/pg/blobs.h"
 #include "store/pg/pool.h"
 #include "store/pg/sql.h"
 #include "store/store.h"
@@ -113,10 +115,12 @@ struct Store::Impl {
         pool(options.dsn, options.connections, options.limits, options.slot_for) {}
   const StoreOptions options;
   Pool pool;
+  Blobs blobs{pool};
+  Files files{pool, blobs};
   Comments comments{pool};
   NamedParts views{pool, NamedParts::kViews}, tours{pool, NamedParts::kTours};
   Kiosks kiosks{pool};
-  TourFiles tour_files{pool};
+  TourFiles tour_files{pool, blobs};
   Jobs jobs{pool};
   Nodes nodes{pool};
   Groups groups{pool};
@@ -124,12 +128,12 @@ struct Store::Impl {
   Trash trash{pool};
   Audit audit{pool};
   Projects projects{pool};
-  Models models{pool};
-  SurfaceImages images{pool};
+  Models models{pool, blobs};
+  SurfaceImages images{pool, blobs};
   Layers layers{pool};
   Tables tables{pool};
   Records records{pool};
-  Attachments attachments{pool};
+  Attachments attachments{pool, blobs};
   Journal journal{pool};
   Accounts accounts{pool};
   Members members{pool};

@@ -189,6 +189,15 @@ void write_archive(MetricsWriter& out, const Gauges& gauges) {
             gauges.archive->failed_copies);
 }
 
+void write_files(MetricsWriter& out, const Gauges& gauges) {
+  if (!gauges.files) return;
+  constexpr const char* kName = "strata_file_faults_total";
+  out.head(kName, "counter", "Failed reads of files outside the database.");
+  out.value(kName, "{" + metric_label("kind", "missing") + "}", gauges.files->missing);
+  out.value(kName, "{" + metric_label("kind", "changed") + "}", gauges.files->changed);
+  out.value(kName, "{" + metric_label("kind", "unreachable") + "}", gauges.files->unreachable);
+}
+
 }  // namespace
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
@@ -199,6 +208,7 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   write_machine(out, metrics, gauges);
   write_node(out, metrics, gauges);
   write_archive(out, gauges);
+  write_files(out, gauges);
   return out.text();
 }
 

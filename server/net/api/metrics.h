@@ -48,6 +48,11 @@ struct ArchiveGauges {
   std::uint64_t failed_segments = 0, failed_copies = 0;
 };
 
+// Failed reads of files outside the database (store/files/files.h).
+struct FileGauges {
+  std::uint64_t missing = 0, changed = 0, unreachable = 0;
+};
+
 // The values of other modules. The histograms must exist during the call of `metrics_text`.
 struct Gauges {
   const room::EditTimings& edits;
@@ -62,6 +67,7 @@ struct Gauges {
   std::uint64_t question_steps = 0;
   std::optional<NodeGauges> node{};        // empty if the server runs alone
   std::optional<ArchiveGauges> archive{};  // empty if the server has no archive
+  std::optional<FileGauges> files{};       // empty if all content is in the database
   std::size_t journal_waiting = 0;
   std::uint64_t journal_failed_commits = 0;
   bool journal_accepting = false, database_ready = false, gpu_ready = false;

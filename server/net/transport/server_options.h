@@ -52,6 +52,7 @@ struct ServerOptions {
   double request_burst = 2000;
   int trash_days = 30;   // days until deleted entities are erased; 0: immediately
   int audit_days = 730;  // days until rows of the audit log are deleted; 0: never
+  int file_days = 30;    // days until files outside the database that nothing uses are deleted
   // Requests that take longer, without the transfer of bodies, are logged. 0: no limit.
   std::chrono::milliseconds slow_after{1000};
   Timeouts timeouts;

@@ -82,6 +82,15 @@ Result<void> check_replayed(const Cluster& cluster, const RestorePlan& plan) {
               "--archive");
 }
 
+// The original site may still use the files outside the database, so the copy must not delete them
+// (store/files/files.h). A copy of the cluster has the same identifiers as the original.
+Result<void> disown_files(const Cluster& cluster) {
+  auto connection = STRATA_TRY(PgConnection::connect(cluster.dsn()));
+  return connection.script(
+      "DO $$ BEGIN IF to_regclass('public.file_store') IS NOT NULL THEN "
+      "UPDATE public.file_store SET owner = ''; END IF; END $$");
+}
+
 Result<RestoredSite> read_site(const Cluster& cluster, const RestorePlan& plan) {
   auto connection = STRATA_TRY(PgConnection::connect(cluster.dsn()));
   auto row = STRATA_TRY(
@@ -161,6 +170,7 @@ Result<RestoredSite> restore_archive(const ArchiveFolder& archive, const Restore
   auto cluster = Cluster::start(data_dir, options);
   if (!cluster) return tl::unexpected(explained(archive, plan, log, cluster.error()));
   STRATA_TRY(check_replayed(**cluster, plan));
+  STRATA_TRY(disown_files(**cluster));
   return read_site(**cluster, plan);
 }
 

@@ -135,6 +135,16 @@ Result<BackupFacts> read_state(PgConnection& connection) {
   return facts;
 }
 
+// A database of an older version has no table of files.
+Result<BackupFacts::Files> read_files(PgConnection& connection, const BackupFacts& facts) {
+  if (facts.rows_of("public.file_store") == 0) return BackupFacts::Files{};
+  auto row =
+      STRATA_TRY(connection.query_once("SELECT count(*), coalesce(sum(bytes), 0)::bigint, "
+                                       "(SELECT place FROM public.file_store) FROM public.blobs "
+                                       "WHERE is_outside AND removing IS NULL"));
+  return BackupFacts::Files{row.integer(0, 0), row.integer(0, 1), row.text(0, 2)};
+}
+
 Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progress& progress) {
   const auto tables = STRATA_TRY(relations(connection, "r"));
   std::int64_t all = 1, done = 0;
@@ -189,13 +199,17 @@ json to_json(const BackupFacts& facts) {
   json tables = json::object();
   for (const auto& [name, table] : facts.tables)
     tables[name] = {{"rows", table.rows}, {"digest", table.digest}};
-  return {{"format", kFormat},
-          {"made", facts.made},
-          {"schema_version", facts.schema_version},
-          {"postgresql", facts.server_version},
-          {"dump", {{"bytes", facts.bytes}, {"sha256", facts.sha256}}},
-          {"tables", std::move(tables)},
-          {"sequences", facts.sequences}};
+  json manifest{{"format", kFormat},
+                {"made", facts.made},
+                {"schema_version", facts.schema_version},
+                {"postgresql", facts.server_version},
+                {"dump", {{"bytes", facts.bytes}, {"sha256", facts.sha256}}},
+                {"tables", std::move(tables)},
+                {"sequences", facts.sequences}};
+  if (facts.files.count > 0)
+    manifest["files"] = {
+        {"count", facts.files.count}, {"bytes", facts.files.bytes}, {"place", facts.files.place}};
+  return manifest;
 }
 
 Result<BackupFacts> read_manifest(const fs::path& folder) {
@@ -224,6 +238,9 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
       facts.tables[name] = {table.at("rows").get<std::int64_t>(),
                             table.at("digest").get<std::string>()};
     facts.sequences = manifest.at("sequences").get<std::map<std::string, std::int64_t>>();
+    if (const auto files = manifest.find("files"); files != manifest.end())
+      facts.files = {files->at("count").get<std::int64_t>(), files->at("bytes").get<std::int64_t>(),
+                     files->at("place").get<std::string>()};
     return facts;
   } catch (const json::exception&) {
     return tl::unexpected(
@@ -294,6 +311,7 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   // in the dump then have the values that were read here, or later ones.
   progress.begin_stage(0, 0.4);
   STRATA_TRY(read_contents(connection, facts, progress));
+  facts.files = STRATA_TRY(read_files(connection, facts));
   progress.begin_stage(0.4, 0.9);
   if (auto dumped = dump(connection, dsn, state.text(0, 0), part,
                          static_cast<std::uint64_t>(state.integer(0, 1)), progress);

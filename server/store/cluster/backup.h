@@ -10,7 +10,8 @@
 
 // A backup of a whole site in a folder: `database.dump` in pg_dump's custom format, and
 // `manifest.json`, which lists the expected contents. Everything durable is in PostgreSQL, so
-// nothing else is needed to restore the site.
+// nothing else is needed to restore the site, except files outside the database
+// (store/files/files.h).
 namespace strata::store {
 
 struct BackupFacts {
@@ -24,6 +25,12 @@ struct BackupFacts {
     std::string digest;  // a sum over the contents of the rows that does not depend on their order
     bool operator==(const Table&) const = default;
   };
+  // The content outside the database, which is not in the backup.
+  struct Files {
+    std::int64_t count = 0, bytes = 0;
+    std::string place;
+  };
+  Files files{};
   std::map<std::string, Table> tables;            // by schema-qualified name
   std::map<std::string, std::int64_t> sequences;  // the last number that each sequence returned
 

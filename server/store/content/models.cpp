@@ -192,6 +192,7 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
     auto content = STRATA_TRY(content_of(source.file, cancelled));
     contents.push_back(std::move(content));
   }
+  STRATA_TRY(blobs_.upload(contents, cancelled));
   const auto work = [&](PgConnection& connection) -> Result<Model> {
     const Sha256 geometry = contents.front().hash;
     std::vector<const Content*> by_hash;
@@ -287,29 +288,24 @@ Result<void> Models::remove(ModelId id, const IdempotentResponse<>& answer) {
 }
 
 Result<std::vector<std::uint8_t>> Models::geometry(ModelId model_id) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
-    auto row = STRATA_TRY(connection.query(
-        "SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
-        Params().id(model_id)));
-    if (row.rows() == 0) return no_such("model", to_string(model_id));
-    return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
-  });
+  const auto row = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+    return connection.query("SELECT geometry FROM models WHERE id = $1", Params().id(model_id));
+  }));
+  if (row.rows() == 0) return no_such("model", to_string(model_id));
+  return blobs_.read(row.bytes(0, 0));
 }
 
 Result<std::vector<std::vector<std::uint8_t>>> Models::detail_levels(ModelId model_id) {
-  using Levels = std::vector<std::vector<std::uint8_t>>;
-  return pool_.read([&](PgConnection& connection) -> Result<Levels> {
-    auto rows = STRATA_TRY(connection.query(
-        "SELECT b.sha256, b.bytes FROM detail_levels d JOIN blobs b ON b.sha256 = d.geometry WHERE d.model_id = $1 "
-        "ORDER BY d.level",
-        Params().id(model_id)));
-    Levels levels;
-    for (int i = 0; i < rows.rows(); ++i) {
-      auto level = STRATA_TRY(read_blob(connection, rows.bytes(i, 0), rows.integer(i, 1)));
-      levels.push_back(std::move(level));
-    }
-    return levels;
-  });
+  const auto rows = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+    return connection.query("SELECT geometry FROM detail_levels WHERE model_id = $1 ORDER BY level",
+                            Params().id(model_id));
+  }));
+  std::vector<std::vector<std::uint8_t>> levels;
+  for (int i = 0; i < rows.rows(); ++i) {
+    auto level = STRATA_TRY(blobs_.read(rows.bytes(i, 0)));
+    levels.push_back(std::move(level));
+  }
+  return levels;
 }
 
 Result<SourceFile> Models::read_source(
@@ -325,9 +321,7 @@ Result<SourceFile> Models::read_source(
   if (known.rows() == 0) return no_such("source file", file);
   const SourceFile source{file, to_hex(known.bytes(0, 0)),
                           static_cast<std::uint64_t>(known.integer(0, 1))};
-  const Bytes hash = known.bytes(0, 0);
-  auto sent = stream_blob(pool_, {hash.begin(), hash.end()}, 0, source.bytes, sink);
-  if (!sent) return tl::unexpected(sent.error());
+  STRATA_TRY(blobs_.stream(known.bytes(0, 0), 0, source.bytes, sink));
   return source;
 }
 

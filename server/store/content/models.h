@@ -15,6 +15,7 @@
 
 namespace strata::store {
 
+class Blobs;
 class Pool;
 
 struct NewModel {
@@ -39,7 +40,7 @@ struct NewModel {
 // apply.
 class Models {
  public:
-  explicit Models(Pool& pool) : pool_(pool) {}
+  Models(Pool& pool, Blobs& blobs) : pool_(pool), blobs_(blobs) {}
 
   Result<Model> create(const NewModel& model, const std::function<bool()>& cancelled,
                        const IdempotentResponse<Model>& answer = {});  // one transaction
@@ -57,6 +58,7 @@ class Models {
 
  private:
   Pool& pool_;
+  Blobs& blobs_;
 };
 
 }  // namespace strata::store

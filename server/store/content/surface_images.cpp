@@ -111,7 +111,8 @@ Result<SurfaceImage> SurfaceImages::create(const SurfaceImage& image,
                                            std::span<const std::uint8_t> picture,
                                            const IdempotentResponse<SurfaceImage>& answer) {
   STRATA_TRY(check_surface_image(image));
-  const Content content = content_of(picture);
+  Content content = content_of(picture);
+  STRATA_TRY(blobs_.upload(content));
   const auto work = [&](PgConnection& connection) -> Result<SurfaceImage> {
     // Lock the model, so that concurrent transactions cannot exceed the limit together.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
@@ -167,13 +168,11 @@ Result<void> SurfaceImages::remove(SurfaceImageId id, const IdempotentResponse<>
 }
 
 Result<std::vector<std::uint8_t>> SurfaceImages::picture(SurfaceImageId id) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
-    auto row = STRATA_TRY(connection.query(
-        "SELECT b.sha256, b.bytes FROM looks l JOIN blobs b ON b.sha256 = l.picture WHERE l.id = $1",
-        Params().id(id)));
-    if (row.rows() == 0) return no_such("look", to_string(id));
-    return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
-  });
+  const auto row = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+    return connection.query("SELECT picture FROM looks WHERE id = $1", Params().id(id));
+  }));
+  if (row.rows() == 0) return no_such("look", to_string(id));
+  return blobs_.read(row.bytes(0, 0));
 }
 
 }  // namespace strata::store

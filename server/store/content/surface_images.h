@@ -12,13 +12,14 @@
 
 namespace strata::store {
 
+class Blobs;
 class Pool;
 
 // Images of the surface of a model, stored unchanged. Part of Store, whose rules for threads and
 // errors apply.
 class SurfaceImages {
  public:
-  explicit SurfaceImages(Pool& pool) : pool_(pool) {}
+  SurfaceImages(Pool& pool, Blobs& blobs) : pool_(pool), blobs_(blobs) {}
 
   static constexpr int kMaxSurfaceImages = 32;  // per model
 
@@ -34,6 +35,7 @@ class SurfaceImages {
 
  private:
   Pool& pool_;
+  Blobs& blobs_;
 };
 
 }  // namespace strata::store

@@ -54,7 +54,8 @@ Result<TourFile> TourFiles::add(NamedPartId tour_id, const NewTourFile& file,
                                 const IdempotentResponse<TourFile>& answer) {
   STRATA_TRY(check_text(user, "user"));
   STRATA_TRY(check_name(file.name));
-  const Content content = STRATA_TRY(content_of(file.file, {}));
+  Content content = STRATA_TRY(content_of(file.file, {}));
+  STRATA_TRY(blobs_.upload(content));
   const auto work = [&](PgConnection& connection) -> Result<TourFile> {
     STRATA_TRY(keep_blob(connection, content, {}));
     // Lock the tour, so that concurrent transactions cannot exceed the limits together.

@@ -16,6 +16,7 @@
 
 namespace strata::store {
 
+class Blobs;
 class Pool;
 
 using TourFileId = Id<struct TourFileTag>;
@@ -44,7 +45,7 @@ class TourFiles {
   static constexpr std::int64_t kMaxFiles = 200;                    // per tour
   static constexpr std::int64_t kMaxBytes = std::int64_t{2} << 30;  // per tour
 
-  explicit TourFiles(Pool& pool) : pool_(pool) {}
+  TourFiles(Pool& pool, Blobs& blobs) : pool_(pool), blobs_(blobs) {}
 
   // Returns a `conflict` error for too many files or bytes.
   Result<TourFile> add(NamedPartId tour_id, const NewTourFile& file, const std::string& user,
@@ -58,6 +59,7 @@ class TourFiles {
 
  private:
   Pool& pool_;
+  Blobs& blobs_;
 };
 
 }  // namespace strata::store

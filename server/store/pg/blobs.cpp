@@ -1,167 +1,245 @@
 #include "store/pg/blobs.h"
 
 #include <algorithm>
-#include <fstream>
 
-#include "core/progress.h"
+#include "core/log.h"
+#include "core/text/hex.h"
 #include "store/pg/sql.h"
 
 namespace strata::store {
 namespace {
 
-// Returns the next chunk, which is empty at the end.
-using NextChunk = std::function<Result<Bytes>()>;
+// Read at once from the file store. A multiple of kChunkBytes.
+constexpr std::uint64_t kWindowBytes = 8 * kChunkBytes;
+constexpr std::size_t kSumBytes = Sha256{}.size();
+// A blob may move between the database and the file store while it is read.
+constexpr int kMaxMoves = 10;
 
-Result<void> copy_chunks(PgConnection& connection, const Sha256& hash, const NextChunk& next) {
-  if (auto begun = connection.copy_begin(
-          "COPY blob_chunks (sha256, chunk, data) FROM STDIN (FORMAT binary)");
-      !begun)
-    return begun;
-  for (std::int32_t number = 0;; ++number) {
-    auto chunk = next();
-    if (!chunk) {
-      connection.copy_abort("stopped by Strata");
-      return tl::unexpected(chunk.error());
-    }
-    if (chunk->empty()) return connection.copy_end();
-    std::string row;
-    row.reserve(chunk->size() + 64);
-    append_row_start(row, 3);
-    append_field(row, hash);
-    append_int4(row, number);
-    append_field(row, *chunk);
-    STRATA_TRY(connection.copy_send(row));
-  }
+// The sweep may have deleted the file of a transaction that begins long after its upload. It
+// deletes none before a day has passed.
+constexpr std::chrono::hours kUploadLasts{12};
+bool is_reliable(const Content& content) {
+  return content.uploaded && std::chrono::steady_clock::now() - *content.uploaded < kUploadLasts;
 }
 
-// Returns true if the blob is new and its chunks must be written.
-Result<bool> claim(PgConnection& connection, const Sha256& hash, std::int64_t bytes) {
-  for (;;) {
-    auto made =
-        connection.query("INSERT INTO blobs (sha256, bytes) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-                         Params().bytes(hash).integer(bytes));
-    if (!made) return tl::unexpected(made.error());
-    if (made->affected() > 0) return true;
-    auto held = STRATA_TRY(connection.query("SELECT 1 FROM blobs WHERE sha256 = $1 FOR KEY SHARE",
-                                            Params().bytes(hash)));
-    if (held.rows() > 0) return false;
-  }
+tl::unexpected<Error> damaged_rows() {
+  return fail(ErrorCode::damaged, "Damaged content",
+              "The stored content is incomplete. Restore the database from a backup.");
 }
 
 }  // namespace
 
-Content content_of(Bytes memory) {
-  return {sha256(memory), static_cast<std::int64_t>(memory.size()), memory, {}};
-}
+struct Blobs::Place {
+  std::uint64_t bytes = 0;
+  bool is_outside = false;
+  std::vector<std::uint8_t> chunk_sums;
+};
 
-namespace {
-
-// Returns the next chunk of a file, which is empty at the end of the file.
-Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer,
-                         const std::filesystem::path& file) {
-  in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size()));
-  if (in.bad())
-    return fail(ErrorCode::internal, "File not readable", "Cannot read " + file.string() + ".",
-                "source_files");
-  return Bytes(buffer).first(static_cast<std::size_t>(in.gcount()));
-}
-
-}  // namespace
-
-// Hashes a file before it is sent, so that a scan that is already stored is not sent again.
-Result<Content> content_of(const std::filesystem::path& file,
-                           const std::function<bool()>& cancelled) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in)
-    return fail(ErrorCode::internal, "File not readable", "Cannot open " + file.string() + ".",
-                "source_files");
-  std::vector<std::uint8_t> buffer(kChunkBytes);
-  Sha256Stream stream;
-  Content content;
-  content.file = file;
-  for (;;) {
-    if (cancelled && cancelled()) return cancelled_problem();
-    auto chunk = STRATA_TRY(next_chunk(in, buffer, file));
-    if (chunk.empty()) break;
-    stream.add(chunk);
-    content.bytes += static_cast<std::int64_t>(chunk.size());
+Result<void> Blobs::upload(std::span<Content> contents, const std::function<bool()>& cancelled) {
+  if (!files_) return {};
+  for (Content& content : contents) {
+    if (content.uploaded || static_cast<std::uint64_t>(content.bytes) > files_->max_bytes())
+      continue;
+    const auto sums = STRATA_TRY(chunk_sums_of(content, cancelled));
+    const auto now = std::chrono::steady_clock::now();
+    const auto reserved = STRATA_TRY(pool_.write([&](PgConnection& connection) {
+      return connection.query(
+          "INSERT INTO blobs (sha256, bytes, is_outside, chunk_sums, unused) "
+          "VALUES ($1, $2, true, $3, clock_timestamp()) "
+          "ON CONFLICT (sha256) DO UPDATE SET unused = clock_timestamp() "
+          "WHERE blobs.is_outside AND blobs.removing IS NULL",
+          Params().bytes(content.hash).integer(content.bytes).bytes(sums));
+    }));
+    // Otherwise the content is in the database, or a file is being removed.
+    if (reserved.affected() == 0) continue;
+    // Also if the file exists: it may be damaged or unfinished.
+    STRATA_TRY(files_->put(content, cancelled));
+    content.uploaded = now;
   }
-  content.hash = stream.finish();
-  return content;
+  return {};
 }
 
-Result<void> keep_blob(PgConnection& connection, const Content& content,
-                       const std::function<bool()>& cancelled) {
-  auto fresh = STRATA_TRY(claim(connection, content.hash, content.bytes));
-  if (!fresh) return {};
-  if (content.file.empty()) {
-    Bytes rest = content.memory;
-    return copy_chunks(connection, content.hash, [&]() -> Result<Bytes> {
-      if (cancelled && cancelled()) return cancelled_problem();
-      const Bytes chunk = rest.first(std::min(rest.size(), kChunkBytes));
-      rest = rest.subspan(chunk.size());
-      return chunk;
-    });
-  }
-  std::ifstream in(content.file, std::ios::binary);
-  std::vector<std::uint8_t> buffer(kChunkBytes);
-  Sha256Stream stream;
-  auto written = copy_chunks(connection, content.hash, [&]() -> Result<Bytes> {
-    if (cancelled && cancelled()) return cancelled_problem();
-    auto chunk = next_chunk(in, buffer, content.file);
-    if (chunk) stream.add(*chunk);
-    return chunk;
+Result<std::optional<Blobs::Place>> Blobs::find(Bytes sha256) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::optional<Place>> {
+    const auto row =
+        STRATA_TRY(connection.query("SELECT bytes, is_outside, coalesce(chunk_sums, '') FROM blobs "
+                                    "WHERE sha256 = $1",
+                                    Params().bytes(sha256)));
+    if (row.rows() == 0) return std::optional<Place>();
+    const Bytes sums = row.bytes(0, 2);
+    return std::optional(Place{static_cast<std::uint64_t>(row.integer(0, 0)),
+                               row.boolean(0, 1),
+                               {sums.begin(), sums.end()}});
   });
-  if (written && stream.finish() != content.hash)
-    return fail(ErrorCode::conflict, "File changed",
-                content.file.string() + " changed while it was read. Import it again.",
-                "source_files");
-  return written;
 }
 
-Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256,
-                                            std::int64_t bytes) {
+Result<std::vector<std::uint8_t>> Blobs::read(Bytes sha256) {
+  const auto place = STRATA_TRY(find(sha256));
+  if (!place)
+    return fail(ErrorCode::not_found, "Not found",
+                "Somebody deleted the file while the server was reading it.");
   std::vector<std::uint8_t> content;
-  content.reserve(static_cast<std::size_t>(bytes));
-  STRATA_TRY(connection.each_row("SELECT data FROM blob_chunks WHERE sha256 = $1 ORDER BY chunk",
+  content.reserve(place->bytes);
+  if (!place->is_outside) {
+    // One query is faster than one for each chunk.
+    const auto read = pool_.read([&](PgConnection& connection) {
+      content.clear();
+      return connection.each_row("SELECT data FROM blob_chunks WHERE sha256 = $1 ORDER BY chunk",
                                  Params().bytes(sha256), [&](const PgResult& row) -> Result<void> {
                                    const Bytes chunk = row.bytes(0, 0);
                                    content.insert(content.end(), chunk.begin(), chunk.end());
                                    return {};
-                                 }));
-  if (content.size() != static_cast<std::size_t>(bytes))
-    return fail(ErrorCode::internal, "Damaged content",
-                "The stored content is incomplete. Restore the database from a backup.");
+                                 });
+    });
+    if (!read) return tl::unexpected(read.error());
+    if (content.size() == place->bytes) return content;
+  }
+  content.clear();
+  STRATA_TRY(stream(sha256, 0, place->bytes, [&](Bytes piece) {
+    content.insert(content.end(), piece.begin(), piece.end());
+    return true;
+  }));
+  if (content.size() != place->bytes) return damaged_rows();
   return content;
 }
 
-Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin,
-                         std::uint64_t end, const std::function<bool(Bytes)>& sink) {
-  for (std::uint64_t at = begin; at < end;) {
-    auto chunk = STRATA_TRY(pool.read([&](PgConnection& connection) {
+Result<void> Blobs::stream(Bytes sha256, std::uint64_t begin, std::uint64_t end,
+                           const std::function<bool(Bytes)>& sink) {
+  std::uint64_t at = begin;
+  for (int moves = 0;; ++moves) {
+    const auto place = STRATA_TRY(find(sha256));
+    if (!place)
+      return fail(ErrorCode::not_found, "Not found",
+                  "There is no such file, or somebody deleted it while the server was reading it.");
+    end = std::min(end, place->bytes);
+    if (at >= end) return {};
+    const bool done = STRATA_TRY(place->is_outside ? stream_file(sha256, *place, at, end, sink)
+                                                   : stream_rows(sha256, at, end, sink));
+    if (done) return {};
+    const auto now = STRATA_TRY(find(sha256));
+    if (now && now->is_outside != place->is_outside && moves < kMaxMoves) continue;
+    if (!now)
+      return fail(ErrorCode::not_found, "Not found",
+                  "Somebody deleted the file while the server was reading it.");
+    if (!place->is_outside) return damaged_rows();
+    ++faults_.missing;
+    const std::string name = file_name_of(sha256_of(sha256));
+    log::error("the file " + name + " is missing in " + files_->place());
+    return fail(ErrorCode::damaged, "File missing",
+                "The file " + name + " is missing in " + files_->place() +
+                    ". Copy it from a backup, or upload the same file again.");
+  }
+}
+
+// Both functions return false if the content is not there. `at` is the place of the next byte.
+Result<bool> Blobs::stream_rows(Bytes sha256, std::uint64_t& at, std::uint64_t end,
+                                const std::function<bool(Bytes)>& sink) {
+  while (at < end) {
+    auto chunk = STRATA_TRY(pool_.read([&](PgConnection& connection) {
       return connection.query(
           "SELECT data FROM blob_chunks WHERE sha256 = $1 AND chunk = $2",
           Params().bytes(sha256).integer(static_cast<std::int64_t>(at / kChunkBytes)));
     }));
     const std::size_t skipped = at % kChunkBytes;
-    if (chunk.rows() == 0 || chunk.bytes(0, 0).size() <= skipped)
-      return fail(ErrorCode::not_found, "Not found",
-                  "Somebody deleted the file while the server was reading it.");
+    if (chunk.rows() == 0 || chunk.bytes(0, 0).size() <= skipped) return false;
     Bytes piece = chunk.bytes(0, 0).subspan(skipped);
     piece = piece.first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), end - at)));
-    if (!sink(piece)) break;
+    if (!sink(piece)) return true;
     at += piece.size();
   }
-  return {};
+  return true;
 }
 
-constexpr auto kIsUnused =
-    sql("NOT EXISTS (SELECT 1 FROM all_models WHERE geometry = b.sha256) "
-        "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) "
-        "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "
-        "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "
-        "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256) "
-        "AND NOT EXISTS (SELECT 1 FROM tour_files f WHERE f.sha256 = b.sha256)");
+Result<bool> Blobs::stream_file(Bytes sha256, const Place& place, std::uint64_t& at,
+                                std::uint64_t end, const std::function<bool(Bytes)>& sink) {
+  const Sha256 hash = sha256_of(sha256);
+  if (!files_)
+    return fail(ErrorCode::unavailable, "Files unavailable",
+                "The file " + file_name_of(hash) +
+                    " is outside the database. Name the folder or bucket with --files.");
+  while (at < end) {
+    const std::uint64_t first = at / kChunkBytes * kChunkBytes;
+    const std::uint64_t last =
+        std::min((end + kChunkBytes - 1) / kChunkBytes * kChunkBytes, place.bytes);
+    const auto size = static_cast<std::size_t>(std::min(last - first, kWindowBytes));
+    auto window = files_->read(hash, first, size);
+    if (!window && window.error().code == ErrorCode::not_found) return false;
+    if (!window) {
+      ++faults_.unreachable;
+      return tl::unexpected(window.error());
+    }
+    for (std::size_t offset = 0; offset < size && at < end; offset += kChunkBytes) {
+      const std::size_t wanted = std::min(size - offset, kChunkBytes);
+      const std::size_t sum_at = (first + offset) / kChunkBytes * kSumBytes;
+      const Bytes chunk = Bytes(*window).subspan(
+          std::min(offset, window->size()),
+          std::min(wanted, window->size() - std::min(offset, window->size())));
+      if (chunk.size() != wanted || sum_at + kSumBytes > place.chunk_sums.size() ||
+          strata::sha256(chunk) != sha256_of(Bytes(place.chunk_sums).subspan(sum_at, kSumBytes))) {
+        ++faults_.changed;
+        const std::string name = file_name_of(hash);
+        log::error("the file " + name + " in " + files_->place() + " has changed");
+        return fail(ErrorCode::damaged, "File changed",
+                    "The content of the file " + name + " in " + files_->place() +
+                        " has changed since it was stored, so the server does not send it. Copy it "
+                        "from a backup, or upload the same file again.");
+      }
+      const std::uint64_t chunk_begin = first + offset;
+      const std::size_t skipped = static_cast<std::size_t>(at - chunk_begin);
+      const Bytes piece = chunk.subspan(skipped, static_cast<std::size_t>(std::min<std::uint64_t>(
+                                                     chunk.size() - skipped, end - at)));
+      if (!sink(piece)) return true;
+      at += piece.size();
+    }
+  }
+  return true;
+}
+
+Result<void> write_chunks(PgConnection& connection, const Content& content,
+                          const std::function<bool()>& cancelled) {
+  STRATA_TRY(
+      connection.copy_begin("COPY blob_chunks (sha256, chunk, data) FROM STDIN (FORMAT binary)"));
+  std::int32_t number = 0;
+  // A connection that refuses data ends the copy itself.
+  bool was_refused = false;
+  auto sent = each_chunk(content, cancelled, [&](Bytes chunk) -> Result<void> {
+    std::string row;
+    row.reserve(chunk.size() + 64);
+    append_row_start(row, 3);
+    append_field(row, content.hash);
+    append_int4(row, number++);
+    append_field(row, chunk);
+    auto taken = connection.copy_send(row);
+    was_refused = !taken;
+    return taken;
+  });
+  if (sent) return connection.copy_end();
+  if (!was_refused) connection.copy_abort("stopped by Strata");
+  return sent;
+}
+
+Result<void> keep_blob(PgConnection& connection, const Content& content,
+                       const std::function<bool()>& cancelled) {
+  for (;;) {
+    auto made =
+        connection.query("INSERT INTO blobs (sha256, bytes) VALUES ($1, $2) ON CONFLICT DO NOTHING",
+                         Params().bytes(content.hash).integer(content.bytes));
+    if (!made) return tl::unexpected(made.error());
+    if (made->affected() > 0) return write_chunks(connection, content, cancelled);
+    auto held = STRATA_TRY(connection.query(
+        "SELECT is_outside, removing IS NULL FROM blobs WHERE sha256 = $1 FOR KEY SHARE",
+        Params().bytes(content.hash)));
+    if (held.rows() == 0) continue;
+    const bool is_outside = held.boolean(0, 0), stays = held.boolean(0, 1);
+    if (!is_outside || (stays && is_reliable(content))) return {};
+    // Nobody has checked that the file is there, or the sweep removes it.
+    auto taken_in = STRATA_TRY(connection.query(
+        "UPDATE blobs SET is_outside = false, chunk_sums = NULL, unused = NULL, "
+        "removing = coalesce(removing, clock_timestamp()) WHERE sha256 = $1 AND is_outside",
+        Params().bytes(content.hash)));
+    if (taken_in.affected() > 0) return write_chunks(connection, content, cancelled);
+  }
+}
 
 Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes) {
@@ -173,18 +251,21 @@ Result<void> drop_unused(PgConnection& connection,
       connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE",
                        Params().array(list));
   if (!locked) return tl::unexpected(locked.error());
-  auto done = connection.query(sql("DELETE FROM blobs b WHERE sha256 = any($1) AND ", kIsUnused),
-                               Params().array(list));
+  auto done = connection.query(
+      sql("DELETE FROM blobs b WHERE sha256 = any($1) AND NOT is_outside AND ", kIsUnused),
+      Params().array(list));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
 Result<std::int64_t> drop_all_unused(PgConnection& connection) {
-  auto locked = STRATA_TRY(connection.query(
-      sql("SELECT sha256 FROM blobs b WHERE ", kIsUnused, " FOR UPDATE SKIP LOCKED")));
+  auto locked =
+      STRATA_TRY(connection.query(sql("SELECT sha256 FROM blobs b WHERE NOT is_outside AND ",
+                                      kIsUnused, " FOR UPDATE SKIP LOCKED")));
   PgArray list(oid::kBytea);
   for (int i = 0; i < locked.rows(); ++i) list.add(locked.bytes(i, 0));
   auto done = STRATA_TRY(connection.query(
-      sql("DELETE FROM blobs b WHERE sha256 = any($1) AND ", kIsUnused), Params().array(list)));
+      sql("DELETE FROM blobs b WHERE sha256 = any($1) AND NOT is_outside AND ", kIsUnused),
+      Params().array(list)));
   return done.affected();
 }
 

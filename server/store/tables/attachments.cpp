@@ -134,10 +134,6 @@ Result<Attached> Attachments::attach(TableId table_id, std::int64_t key,
     auto content = STRATA_TRY(content_of(file.file, {}));
     contents.push_back(std::move(content));
   }
-  std::vector<const Content*> by_hash;
-  for (const Content& content : contents) by_hash.push_back(&content);
-  std::sort(by_hash.begin(), by_hash.end(),
-            [](const Content* a, const Content* b) { return a->hash < b->hash; });
   // Check the request before gigabytes are stored. The check is repeated when the table is locked.
   // The table is locked late, because other transactions wait for the lock. The first check is a
   // separate transaction, because it could otherwise deadlock with a deletion of the table. The
@@ -154,6 +150,11 @@ Result<Attached> Attachments::attach(TableId table_id, std::int64_t key,
     return column ? Result<void>{} : tl::unexpected(column.error());
   });
   if (!may) return tl::unexpected(may.error());
+  STRATA_TRY(blobs_.upload(contents, {}));
+  std::vector<const Content*> by_hash;
+  for (const Content& content : contents) by_hash.push_back(&content);
+  std::sort(by_hash.begin(), by_hash.end(),
+            [](const Content* a, const Content* b) { return a->hash < b->hash; });
   const auto work = [&](PgConnection& connection) -> Result<Attached> {
     for (const Content* content : by_hash) STRATA_TRY(keep_blob(connection, *content, {}));
     auto open = STRATA_TRY(lock_table(connection, table_id));
@@ -254,13 +255,11 @@ Result<Attachment> Attachments::show(AttachmentId id, Visibility visibility,
 Result<void> Attachments::read(const std::string& sha256, std::uint64_t begin, std::uint64_t end,
                                const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   auto row = STRATA_TRY(pool_.read([&](PgConnection& connection) {
-    return connection.query("SELECT sha256, bytes FROM blobs WHERE sha256 = decode($1, 'hex')",
+    return connection.query("SELECT sha256 FROM blobs WHERE sha256 = decode($1, 'hex')",
                             Params().text(sha256));
   }));
   if (row.rows() == 0) return no_such("file", sha256);
-  const Bytes hash = row.bytes(0, 0);
-  return stream_blob(pool_, {hash.begin(), hash.end()}, begin,
-                     std::min(end, static_cast<std::uint64_t>(row.integer(0, 1))), sink);
+  return blobs_.stream(row.bytes(0, 0), begin, end, sink);
 }
 
 Result<std::optional<std::vector<std::uint8_t>>> Attachments::thumbnail(const std::string& sha256,

@@ -18,6 +18,7 @@
 
 namespace strata::store {
 
+class Blobs;
 class Pool;
 
 struct NewAttachment {
@@ -37,7 +38,7 @@ struct Attached {
 // of Store, whose rules for threads and errors apply.
 class Attachments {
  public:
-  explicit Attachments(Pool& pool) : pool_(pool) {}
+  Attachments(Pool& pool, Blobs& blobs) : pool_(pool), blobs_(blobs) {}
 
   // Appends all files or none to the cell of a record, as one entry of the journal. If no column is
   // given, uses the first picture column if all files are pictures, otherwise the first document
@@ -72,6 +73,7 @@ class Attachments {
 
  private:
   Pool& pool_;
+  Blobs& blobs_;
 };
 
 }  // namespace strata::store

@@ -4,8 +4,8 @@
 #include "domain/tables/column_value.h"
 #include "domain/tables/term_list.h"
 #include "store/content/layers.h"
+#include "store/pg/blobs.h"
 #include "store/store_impl.h"
-#include "store/tables/attachments.h"
 #include "store/tables/table_rows.h"
 #include "store/tables/table_writer.h"
 #include "store/tables/tables.h"
@@ -174,7 +174,9 @@ Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
   });
   // Runs after the transaction, because a transaction that attaches files locks a blob while it
   // waits for the tables. If it fails, the next start of the server repeats it.
-  if (gone) (void)Attachments(pool_).drop_orphans();
+  if (gone)
+    (void)pool_.write_within(kBulkLimits,
+                             [](PgConnection& connection) { return drop_all_unused(connection); });
   return gone;
 }
 

@@ -102,11 +102,12 @@ TEST_F(UseCases, what_was_in_the_trash_for_long_enough_is_erased_and_nothing_els
   };
   {
     TrashPurger keeper(store_->trash(), std::chrono::days(30), store_->audit(),
-                       std::chrono::days(0));
+                       std::chrono::days(0), store_->files(), std::chrono::days(30));
     keeper.stop();
   }
   EXPECT_EQ(in_trash(), 1);
-  TrashPurger keeper(store_->trash(), std::chrono::days(0), store_->audit(), std::chrono::days(0));
+  TrashPurger keeper(store_->trash(), std::chrono::days(0), store_->audit(), std::chrono::days(0),
+                     store_->files(), std::chrono::days(30));
   keeper.check_now();
   EXPECT_TRUE(wait_until([&] { return in_trash() == 0; }));
   keeper.stop();

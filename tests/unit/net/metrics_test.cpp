@@ -23,6 +23,7 @@ struct Values {
   Histogram frames, commits;
   std::optional<NodeGauges> node = NodeGauges{2.5, 3};
   std::optional<ArchiveGauges> archive = ArchiveGauges{1'900'000'000.5, 1'900'000'000, 4, 1};
+  std::optional<FileGauges> files = FileGauges{1, 2, 3};
 
   std::string text(bool has_disk = true) {
     Gauges gauges{edits, frames, commits};
@@ -33,6 +34,7 @@ struct Values {
     if (has_disk) gauges.disk_bytes = 1u << 30;
     gauges.node = node;
     gauges.archive = archive;
+    gauges.files = files;
     return metrics_text(metrics, gauges);
   }
 };

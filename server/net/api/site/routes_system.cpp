@@ -21,6 +21,7 @@
 #include "render/renderer.h"
 #include "room/rooms.h"
 #include "store/cluster/archive_keeper.h"
+#include "store/files/files.h"
 #include "store/journal/journal_writer.h"
 #include "store/store.h"
 
@@ -61,6 +62,12 @@ std::optional<ArchiveGauges> archive_gauges(const RouteContext& context) {
                        status.failed_copies};
 }
 
+std::optional<FileGauges> file_gauges(const RouteContext& context) {
+  if (!context.store.files().is_open()) return std::nullopt;
+  const auto faults = context.store.files().faults();
+  return FileGauges{faults.missing, faults.changed, faults.unreachable};
+}
+
 Gauges gauges_of(const RouteContext& context) {
   const store::JournalWriter& journal = context.rooms.journal();
   Gauges gauges{context.rooms.edit_timings(), context.renderer.frame_times(),
@@ -84,6 +91,7 @@ Gauges gauges_of(const RouteContext& context) {
   gauges.jobs = context.jobs.counts();
   gauges.node = node_gauges(context);
   gauges.archive = archive_gauges(context);
+  gauges.files = file_gauges(context);
   return gauges;
 }
 

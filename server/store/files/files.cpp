@@ -1,0 +1,428 @@
+#include "store/files/files.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "core/temporary_file.h"
+#include "core/text/hex.h"
+#include "core/uuid.h"
+#include "store/pg/blobs.h"
+
+namespace strata::store {
+namespace {
+
+constexpr int kRowsAtOnce = 500;
+constexpr int kUsersShown = 5;
+constexpr std::int64_t kMaxInMemory = 64 << 20;  // larger content goes through a temporary file
+constexpr std::chrono::hours kSuperfluousAfter{24};
+
+// Identifies this database among its restored copies.
+constexpr auto kDatabaseId =
+    sql("((SELECT system_identifier::text FROM pg_control_system()) || '/' || "
+        "(SELECT oid::text FROM pg_database WHERE datname = current_database()))");
+
+std::string mark_text(const Uuid& id) {
+  return nlohmann::json{{"format", 1}, {"id", to_string(id)}}.dump() + "\n";
+}
+
+// Returns nothing for a text that is not a mark.
+std::optional<Uuid> id_in_mark(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("id") || !json["id"].is_string()) return std::nullopt;
+  return parse_uuid(json["id"].get<std::string>());
+}
+
+}  // namespace
+
+bool Files::is_open() const { return blobs_.files() != nullptr; }
+
+Result<void> Files::open(const FilesPlace& place) {
+  auto files = STRATA_TRY(open_file_store(place));
+  return open(std::move(files));
+}
+
+Result<void> Files::open(std::unique_ptr<FileStore> files) {
+  const std::string shown = files->place();
+  struct Known {
+    Uuid id;
+    std::int64_t outside = 0;
+  };
+  // The first server creates the row. Others then find its id.
+  const auto known = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<Known> {
+    STRATA_TRY(connection.query(sql("INSERT INTO file_store (id, place, owner) VALUES ($1, $2, ",
+                                    kDatabaseId, ") ON CONFLICT DO NOTHING"),
+                                Params().uuid(random_uuid()).text(shown)));
+    const auto row = STRATA_TRY(connection.query(
+        "SELECT id, (SELECT count(*) FROM blobs WHERE is_outside AND removing IS NULL) "
+        "FROM file_store"));
+    return Known{row.uuid(0, 0), row.integer(0, 1)};
+  }));
+  const auto mark = STRATA_TRY(files->read_mark());
+  if (mark && id_in_mark(*mark) != known.id)
+    return fail(ErrorCode::conflict, "Files of another site",
+                shown + " contains the files of another site (" + kFilesMark +
+                    "). Choose another folder or prefix.",
+                "--files");
+  if (!mark && known.outside > 0)
+    return fail(ErrorCode::conflict, "Files not found",
+                shown + " has no " + kFilesMark + ", but " + std::to_string(known.outside) +
+                    " files of this site are outside the database. Check that the disk is mounted, "
+                    "and that --files names the right place.",
+                "--files");
+  if (!mark) STRATA_TRY(files->write_mark(mark_text(known.id)));
+  auto noted = pool_.write([&](PgConnection& connection) {
+    return connection.query("UPDATE file_store SET place = $1 WHERE place <> $1",
+                            Params().text(shown));
+  });
+  if (!noted) return tl::unexpected(noted.error());
+  blobs_.use(std::move(files));
+  return {};
+}
+
+Result<void> Files::check_open() {
+  if (is_open()) return {};
+  const auto known = STRATA_TRY(facts());
+  if (known.outside_files == 0) return {};
+  return fail(ErrorCode::conflict, "Files not found",
+              std::to_string(known.outside_files) +
+                  " files of this site are outside the database, in " + known.place +
+                  ". Name the place with --files, or move the files into the database first with "
+                  "`strata files move --to database`.",
+              "--files");
+}
+
+Result<bool> Files::owns_files() {
+  return pool_.read([&](PgConnection& connection) -> Result<bool> {
+    const auto row =
+        STRATA_TRY(connection.query(sql("SELECT 1 FROM file_store WHERE owner = ", kDatabaseId)));
+    return row.rows() > 0;
+  });
+}
+
+Result<void> Files::adopt() {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
+    const auto done =
+        STRATA_TRY(connection.query(sql("UPDATE file_store SET owner = ", kDatabaseId)));
+    if (done.affected() > 0) return {};
+    return fail(ErrorCode::not_found, "No files",
+                "This site has no files outside the database yet. Name their place with --files.");
+  });
+}
+
+Result<FilesFacts> Files::facts() {
+  return pool_.read([&](PgConnection& connection) -> Result<FilesFacts> {
+    const auto row = STRATA_TRY(connection.query(
+        "SELECT coalesce((SELECT place FROM file_store), ''), "
+        "count(*) FILTER (WHERE is_outside AND removing IS NULL), "
+        "coalesce(sum(bytes) FILTER (WHERE is_outside AND removing IS NULL), 0)::bigint, "
+        "count(*) FILTER (WHERE NOT is_outside), "
+        "coalesce(sum(bytes) FILTER (WHERE NOT is_outside), 0)::bigint FROM blobs"));
+    return FilesFacts{row.text(0, 0), row.integer(0, 1), row.integer(0, 2), row.integer(0, 3),
+                      row.integer(0, 4)};
+  });
+}
+
+FileFaults Files::faults() const {
+  const Blobs::Faults& faults = blobs_.faults();
+  return {faults.missing, faults.changed, faults.unreachable};
+}
+
+Result<bool> Files::sweep(std::chrono::seconds keep, std::chrono::seconds rest) {
+  if (!is_open()) return false;
+  const bool owns = STRATA_TRY(owns_files());
+  if (!owns) return false;
+  STRATA_TRY(blobs_.files()->remove_unfinished(keep));
+  // Skip rows that others have locked, so that this transaction waits for nobody.
+  STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<void> {
+    STRATA_TRY(connection.query(
+        sql("UPDATE blobs SET unused = NULL WHERE sha256 IN (SELECT sha256 FROM blobs b "
+            "WHERE is_outside AND unused IS NOT NULL AND removing IS NULL AND NOT (",
+            kIsUnused, ") FOR NO KEY UPDATE SKIP LOCKED)")));
+    STRATA_TRY(connection.query(sql(
+        "UPDATE blobs SET unused = clock_timestamp() WHERE sha256 IN (SELECT sha256 FROM blobs b "
+        "WHERE is_outside AND unused IS NULL AND removing IS NULL AND ",
+        kIsUnused, " FOR NO KEY UPDATE SKIP LOCKED)")));
+    return {};
+  }));
+  const auto marked = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<int> {
+    // Lock first, because a transaction that is about to use the content has locked its row. The
+    // second statement sees what such a transaction has committed.
+    const auto old = STRATA_TRY(
+        connection.query(sql("SELECT sha256 FROM blobs b WHERE is_outside AND removing IS NULL "
+                             "AND unused <= clock_timestamp() - make_interval(secs => $1) AND ",
+                             kIsUnused, " ORDER BY sha256 LIMIT $2 FOR UPDATE SKIP LOCKED"),
+                         Params().real(double(keep.count())).integer(kRowsAtOnce)));
+    PgArray hashes(oid::kBytea);
+    for (int i = 0; i < old.rows(); ++i) hashes.add(old.bytes(i, 0));
+    STRATA_TRY(connection.query(sql("UPDATE blobs b SET removing = clock_timestamp() "
+                                    "WHERE sha256 = any($1) AND ",
+                                    kIsUnused),
+                                Params().array(hashes)));
+    return old.rows();
+  }));
+  bool more = marked == kRowsAtOnce;
+  STRATA_TRY(remove_marked(rest, more));
+  return more;
+}
+
+Result<void> Files::remove_marked(std::chrono::seconds rest, bool& more) {
+  const auto due = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+    return connection.query(
+        "SELECT sha256 FROM blobs WHERE removing <= clock_timestamp() - make_interval(secs => $1) "
+        "ORDER BY removing LIMIT $2",
+        Params().real(double(rest.count())).integer(kRowsAtOnce));
+  }));
+  for (int i = 0; i < due.rows(); ++i) STRATA_TRY(finish(due.bytes(i, 0), rest));
+  more = more || due.rows() == kRowsAtOnce;
+  return {};
+}
+
+// Deletes the file of a row that is marked, or the mark if there is no file. The row stays locked
+// until then, so no other server deletes a later file of this hash.
+Result<void> Files::finish(Bytes hash, std::chrono::seconds rest) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
+    const auto row = STRATA_TRY(connection.query(
+        sql("SELECT is_outside, ", kIsUnused,
+            " FROM blobs b WHERE sha256 = $1 "
+            "AND removing <= clock_timestamp() - make_interval(secs => $2) FOR UPDATE SKIP LOCKED"),
+        Params().bytes(hash).real(double(rest.count()))));
+    if (row.rows() == 0) return {};
+    const bool is_outside = row.boolean(0, 0), is_unused = row.boolean(0, 1);
+    const char* next = "UPDATE blobs SET removing = NULL WHERE sha256 = $1";
+    if (!is_outside || is_unused) {
+      const bool existed = STRATA_TRY(blobs_.files()->remove(sha256_of(hash)));
+      if (existed)
+        next = "UPDATE blobs SET removing = clock_timestamp() WHERE sha256 = $1";
+      else if (is_outside)
+        next = "DELETE FROM blobs WHERE sha256 = $1";
+    }
+    STRATA_TRY(connection.query(next, Params().bytes(hash)));
+    return {};
+  });
+}
+
+Result<void> Files::find_superfluous(std::chrono::seconds keep) {
+  if (!is_open()) return {};
+  const bool owns = STRATA_TRY(owns_files());
+  if (!owns) return {};
+  const auto oldest = std::chrono::system_clock::now() - keep;
+  return each_without_row([&](const std::vector<StoredFile>& batch) {
+    return pool_.write([&](PgConnection& connection) -> Result<void> {
+      PgArray hashes(oid::kBytea), sizes(oid::kInt8);
+      for (const StoredFile& file : batch) {
+        if (file.changed > oldest) continue;
+        hashes.add(Bytes(file.hash));
+        sizes.add(static_cast<std::int64_t>(file.bytes));
+      }
+      STRATA_TRY(connection.query(
+          "INSERT INTO blobs (sha256, bytes, is_outside, chunk_sums, unused, removing) "
+          "SELECT sha256, bytes, true, '', clock_timestamp(), clock_timestamp() "
+          "FROM unnest($1::bytea[], $2::bigint[]) AS found (sha256, bytes) ORDER BY sha256 "
+          "ON CONFLICT (sha256) DO UPDATE SET removing = clock_timestamp() "
+          "WHERE NOT blobs.is_outside AND blobs.removing IS NULL",
+          Params().array(hashes).array(sizes)));
+      return {};
+    });
+  });
+}
+
+Result<void> Files::each_without_row(
+    const std::function<Result<void>(const std::vector<StoredFile>&)>& visit) {
+  std::vector<StoredFile> batch;
+  const auto flush = [&]() -> Result<void> {
+    PgArray hashes(oid::kBytea);
+    for (const StoredFile& file : batch) hashes.add(Bytes(file.hash));
+    const auto known = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+      return connection.query(
+          "SELECT sha256 FROM blobs WHERE sha256 = any($1) "
+          "AND (is_outside OR removing IS NOT NULL)",
+          Params().array(hashes));
+    }));
+    std::set<Sha256> with_row;
+    for (int i = 0; i < known.rows(); ++i) with_row.insert(sha256_of(known.bytes(i, 0)));
+    std::erase_if(batch, [&](const StoredFile& file) { return with_row.contains(file.hash); });
+    if (!batch.empty()) STRATA_TRY(visit(batch));
+    batch.clear();
+    return {};
+  };
+  STRATA_TRY(blobs_.files()->list([&](const StoredFile& file) -> Result<void> {
+    batch.push_back(file);
+    return batch.size() < kRowsAtOnce ? Result<void>{} : flush();
+  }));
+  return flush();
+}
+
+Result<std::vector<Files::Row>> Files::rows_after(Bytes last, bool is_outside) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Row>> {
+    const auto found = STRATA_TRY(connection.query(
+        sql("SELECT sha256, bytes FROM blobs b WHERE sha256 > $1 AND is_outside = $2 "
+            "AND removing IS NULL AND NOT (",
+            kIsUnused, ") ORDER BY sha256 LIMIT $3"),
+        Params().bytes(last).boolean(is_outside).integer(kRowsAtOnce)));
+    std::vector<Row> rows;
+    for (int i = 0; i < found.rows(); ++i)
+      rows.push_back({sha256_of(found.bytes(i, 0)), found.integer(i, 1)});
+    return rows;
+  });
+}
+
+Result<void> Files::each_row(bool is_outside, Progress& progress, const char* what,
+                             const std::function<Result<void>(const Row&)>& visit) {
+  const auto known = STRATA_TRY(facts());
+  const double all = std::max(1.0, double(is_outside ? known.outside_bytes : known.inside_bytes));
+  std::vector<std::uint8_t> last;
+  std::int64_t done = 0, files = 0;
+  for (;;) {
+    const auto rows = STRATA_TRY(rows_after(last, is_outside));
+    for (const Row& row : rows) {
+      if (progress.cancelled()) return cancelled_problem();
+      progress.report(std::min(1.0, double(done) / all),
+                      std::string(what) + ", " + std::to_string(files) + " files so far");
+      STRATA_TRY(visit(row));
+      done += row.bytes;
+      ++files;
+    }
+    if (rows.size() < kRowsAtOnce) return {};
+    last.assign(rows.back().hash.begin(), rows.back().hash.end());
+  }
+}
+
+Result<Files::Moved> Files::move(Direction direction, Progress& progress) {
+  if (!is_open())
+    return fail(ErrorCode::malformed, "No place for files",
+                "Name the folder or the bucket of the files with --files.", "--files");
+  const bool into = direction == Direction::into_database;
+  Moved moved;
+  STRATA_TRY(each_row(into, progress, "Moving", [&](const Row& row) -> Result<void> {
+    if (!into && static_cast<std::uint64_t>(row.bytes) > blobs_.files()->max_bytes()) {
+      ++moved.skipped;
+      return {};
+    }
+    const bool done = STRATA_TRY(move_one(row, into, progress));
+    if (!done) {
+      ++moved.skipped;
+      return {};
+    }
+    ++moved.files;
+    moved.bytes += row.bytes;
+    return {};
+  }));
+  return moved;
+}
+
+Result<bool> Files::move_one(const Row& row, bool into, const Progress& progress) {
+  const auto cancelled = [&progress] { return progress.cancelled(); };
+  std::vector<std::uint8_t> memory;
+  std::optional<TemporaryFile> file;
+  Content content;
+  if (row.bytes <= kMaxInMemory) {
+    memory = STRATA_TRY(blobs_.read(row.hash));
+    content = content_of(Bytes(memory));
+  } else {
+    file.emplace(std::filesystem::temp_directory_path() /
+                 ("strata-move-" + to_string(random_uuid())));
+    std::ofstream out(file->path, std::ios::binary);
+    STRATA_TRY(blobs_.stream(row.hash, 0, static_cast<std::uint64_t>(row.bytes), [&](Bytes piece) {
+      out.write(reinterpret_cast<const char*>(piece.data()),
+                static_cast<std::streamsize>(piece.size()));
+      return bool(out) && !cancelled();
+    }));
+    if (cancelled()) return cancelled_problem();
+    out.close();
+    if (!out)
+      return fail(ErrorCode::storage_full, "Disk full",
+                  "Cannot write " + file->path.string() +
+                      ". Choose a larger disk for temporary files with TMPDIR.");
+    content = STRATA_TRY(content_of(file->path, cancelled));
+  }
+  if (content.hash != row.hash || content.bytes != row.bytes)
+    return fail(ErrorCode::damaged, "Damaged content",
+                "The content " + to_hex(row.hash) +
+                    " does not have its hash. Restore it from a backup, then repeat the command.");
+  return into ? take_in(content, cancelled) : put_out(content, cancelled);
+}
+
+Result<bool> Files::put_out(const Content& content, const std::function<bool()>& cancelled) {
+  const auto sums = STRATA_TRY(chunk_sums_of(content, cancelled));
+  STRATA_TRY(blobs_.files()->put(content, cancelled));
+  return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<bool> {
+    const auto changed =
+        STRATA_TRY(connection.query("UPDATE blobs SET is_outside = true, chunk_sums = $2 "
+                                    "WHERE sha256 = $1 AND NOT is_outside AND removing IS NULL",
+                                    Params().bytes(content.hash).bytes(sums)));
+    if (changed.affected() == 0) return false;
+    STRATA_TRY(connection.query("DELETE FROM blob_chunks WHERE sha256 = $1",
+                                Params().bytes(content.hash)));
+    return true;
+  });
+}
+
+Result<bool> Files::take_in(const Content& content, const std::function<bool()>& cancelled) {
+  return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<bool> {
+    const auto changed = STRATA_TRY(connection.query(
+        "UPDATE blobs SET is_outside = false, chunk_sums = NULL, unused = NULL, "
+        "removing = clock_timestamp() WHERE sha256 = $1 AND is_outside AND removing IS NULL",
+        Params().bytes(content.hash)));
+    if (changed.affected() == 0) return false;
+    STRATA_TRY(write_chunks(connection, content, cancelled));
+    return true;
+  });
+}
+
+Result<Files::Checked> Files::check(const std::function<void(const FileProblem&)>& found,
+                                    Progress& progress) {
+  if (!is_open())
+    return fail(ErrorCode::malformed, "No place for files",
+                "Name the folder or the bucket of the files with --files.", "--files");
+  Checked checked;
+  progress.begin_stage(0, 0.95);
+  STRATA_TRY(each_row(true, progress, "Checking", [&](const Row& row) -> Result<void> {
+    ++checked.files;
+    checked.bytes += row.bytes;
+    const auto head = blobs_.files()->read(row.hash, 0, 1);
+    if (!head && head.error().code != ErrorCode::not_found) return tl::unexpected(head.error());
+    const auto whole = head ? blobs_.stream(row.hash, 0, static_cast<std::uint64_t>(row.bytes),
+                                            [&](Bytes) { return !progress.cancelled(); })
+                            : Result<void>{};
+    if (!whole && whole.error().code == ErrorCode::not_found) return {};  // deleted since then
+    if (!whole && whole.error().code != ErrorCode::damaged) return tl::unexpected(whole.error());
+    if (head && whole) return {};
+    const std::string users = STRATA_TRY(users_of(row.hash));
+    found({head ? FileProblem::Kind::changed : FileProblem::Kind::missing, file_name_of(row.hash),
+           static_cast<std::uint64_t>(row.bytes), users});
+    return {};
+  }));
+  progress.begin_stage(0.95, 1);
+  progress.report(0, "Listing the files");
+  const auto oldest = std::chrono::system_clock::now() - kSuperfluousAfter;
+  STRATA_TRY(each_without_row([&](const std::vector<StoredFile>& files) -> Result<void> {
+    for (const StoredFile& file : files)
+      if (file.changed <= oldest)
+        found({FileProblem::Kind::superfluous, file_name_of(file.hash), file.bytes, {}});
+    return progress.cancelled() ? Result<void>(cancelled_problem()) : Result<void>{};
+  }));
+  return checked;
+}
+
+Result<std::string> Files::users_of(Bytes hash) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::string> {
+    const auto row = STRATA_TRY(connection.query(
+        "SELECT coalesce(string_agg(what, ', '), '') FROM ("
+        "SELECT 'model ' || name AS what FROM all_models WHERE geometry = $1 "
+        "OR id IN (SELECT model_id FROM detail_levels WHERE geometry = $1) UNION "
+        "SELECT 'source file ' || s.name || ' of model ' || m.name FROM model_sources s "
+        "JOIN all_models m ON m.id = s.model_id WHERE s.sha256 = $1 UNION "
+        "SELECT 'surface image ' || l.name || ' of model ' || m.name FROM looks l "
+        "JOIN all_models m ON m.id = l.model_id WHERE l.picture = $1 UNION "
+        "SELECT 'attachment ' || a.id || ' ' || a.name FROM attachments a WHERE a.sha256 = $1 UNION "
+        "SELECT 'file ' || f.name || ' of tour ' || t.name FROM tour_files f "
+        "JOIN tours t ON t.id = f.tour_id WHERE f.sha256 = $1 ORDER BY 1 LIMIT $2) used",
+        Params().bytes(hash).integer(kUsersShown)));
+    return row.text(0, 0);
+  });
+}
+
+}  // namespace strata::store

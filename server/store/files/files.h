@@ -1,0 +1,113 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/progress.h"
+#include "store/files/file_store.h"
+
+namespace strata::store {
+
+class Blobs;
+class Pool;
+
+struct FilesFacts {
+  std::string place;               // where the files are, as last used; empty: never used
+  std::int64_t outside_files = 0;  // contents outside the database
+  std::int64_t outside_bytes = 0;
+  std::int64_t inside_files = 0;
+  std::int64_t inside_bytes = 0;
+};
+
+struct FileProblem {
+  enum class Kind { missing, changed, superfluous };
+  Kind kind;
+  std::string name;
+  std::uint64_t bytes = 0;
+  std::string used_by;  // the things that need the file, such as `model Pot`
+};
+
+struct FileFaults {
+  std::uint64_t missing = 0, changed = 0, unreachable = 0;  // failed reads since the start
+};
+
+// The content outside the database, as a whole. Part of Store, whose rules for threads and errors
+// apply. `Blobs` stores and reads single contents.
+//
+// A file is deleted in four steps, each durable before the next:
+//   1. `unused`: the sweep notices that nothing uses the content
+//   2. `removing`: it was unused for `keep`; from now on, new content with this hash goes into the
+//      database, so that no upload relies on the file
+//   3. the file is deleted after kRest, when no upload that began before step 2 continues
+//   4. the row is deleted after another kRest, when no delayed request can delete a later file
+class Files {
+ public:
+  static constexpr std::chrono::seconds kRest = std::chrono::hours(1);
+
+  Files(Pool& pool, Blobs& blobs) : pool_(pool), blobs_(blobs) {}
+
+  // Uses this place for new content. Call before other threads use the store. Returns a `conflict`
+  // error if the place belongs to another site, or does not have the files of this site.
+  Result<void> open(const FilesPlace& place);
+  Result<void> open(std::unique_ptr<FileStore> files);
+  bool is_open() const;
+  // Returns a `conflict` error if content is outside the database, but no place is open.
+  Result<void> check_open();
+  // Returns whether this database may delete files. A restored copy of the database may not.
+  Result<bool> owns_files();
+  // Lets this database delete files, and no other.
+  Result<void> adopt();
+
+  Result<FilesFacts> facts();
+  FileFaults faults() const;
+
+  // Deletes files that nothing has used for `keep`. Works in small steps, and returns true if there
+  // may be more to do. Does nothing if this database does not own the files.
+  Result<bool> sweep(std::chrono::seconds keep, std::chrono::seconds rest = kRest);
+  // Finds files without a row that are older than `keep`, for the sweep. Such files remain if an
+  // older database is restored.
+  Result<void> find_superfluous(std::chrono::seconds keep);
+
+  enum class Direction { out_of_database, into_database };
+  struct Moved {
+    std::int64_t files = 0, bytes = 0;
+    std::int64_t skipped = 0;  // too large for the file store, or being removed
+  };
+  // Moves content, one file after the other, and can be repeated after an interruption. The server
+  // can continue to run.
+  Result<Moved> move(Direction direction, Progress& progress);
+
+  struct Checked {
+    std::int64_t files = 0, bytes = 0;
+  };
+  // Reads all files and compares them with their hashes. Calls `found` for each problem.
+  // Superfluous files are those without a row that are older than a day.
+  Result<Checked> check(const std::function<void(const FileProblem&)>& found, Progress& progress);
+
+ private:
+  struct Row {
+    Sha256 hash{};
+    std::int64_t bytes = 0;
+  };
+  Result<void> remove_marked(std::chrono::seconds rest, bool& more);
+  Result<void> finish(Bytes hash, std::chrono::seconds rest);
+  Result<void> each_without_row(
+      const std::function<Result<void>(const std::vector<StoredFile>&)>& visit);
+  Result<std::vector<Row>> rows_after(Bytes last, bool is_outside);
+  // Calls `visit` for each content in use, in the order of the hashes.
+  Result<void> each_row(bool is_outside, Progress& progress, const char* what,
+                        const std::function<Result<void>(const Row&)>& visit);
+  Result<bool> move_one(const Row& row, bool into, const Progress& progress);
+  Result<bool> put_out(const Content& content, const std::function<bool()>& cancelled);
+  Result<bool> take_in(const Content& content, const std::function<bool()>& cancelled);
+  Result<std::string> users_of(Bytes hash);
+
+  Pool& pool_;
+  Blobs& blobs_;
+};
+
+}  // namespace strata::store
