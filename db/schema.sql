@@ -1221,11 +1221,15 @@ CREATE TABLE public.edits (
     review text,
     reviewed_by bigint,
     writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text, 'accept'::text, 'reject'::text, 'reopen'::text]))) STORED NOT NULL,
+    first_sequence bigint,
+    first_time timestamp with time zone,
+    tiles smallint[],
     CONSTRAINT edits_check CHECK ((in_force = (undone_by IS NULL))),
     CONSTRAINT edits_check1 CHECK (((reviewed_by IS NOT NULL) = COALESCE((review = ANY (ARRAY['accepted'::text, 'rejected'::text])), false))),
     CONSTRAINT edits_review_check CHECK ((review = ANY (ARRAY['pending'::text, 'accepted'::text, 'rejected'::text]))),
     CONSTRAINT edits_sequence_check CHECK ((sequence > 0))
-);
+)
+WITH (autovacuum_vacuum_scale_factor='0.01', autovacuum_vacuum_threshold='20000', toast.autovacuum_vacuum_scale_factor='0.01', toast.autovacuum_vacuum_threshold='20000');
 
 CREATE VIEW analysis.edits WITH (security_barrier='true') AS
  SELECT e.model_id,
@@ -1546,6 +1550,16 @@ CREATE TABLE public.file_store (
     CONSTRAINT file_store_place_check CHECK (((char_length(place) >= 1) AND (char_length(place) <= 4096)))
 );
 
+CREATE TABLE public.edit_batches (
+    model_id bigint NOT NULL,
+    id uuid NOT NULL,
+    layer_id bigint NOT NULL,
+    edit bigint NOT NULL,
+    sequence bigint NOT NULL,
+    area_m2 double precision NOT NULL,
+    texels_changed integer NOT NULL
+);
+
 CREATE TABLE public.group_people (
     group_id bigint NOT NULL,
     user_id bigint NOT NULL,
@@ -1662,6 +1676,11 @@ ALTER TABLE public.looks ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     NO MINVALUE
     NO MAXVALUE
     CACHE 1
+);
+
+CREATE TABLE public.merged_journals (
+    model_id bigint NOT NULL,
+    sequence bigint NOT NULL
 );
 
 CREATE TABLE public.model_sources (
@@ -1873,9 +1892,21 @@ CREATE TABLE public.tile_revisions (
     sequence bigint NOT NULL,
     difference bytea NOT NULL,
     key_tile bytea
-);
+)
+WITH (autovacuum_vacuum_scale_factor='0.05', autovacuum_vacuum_threshold='20000', toast.autovacuum_vacuum_scale_factor='0.05', toast.autovacuum_vacuum_threshold='20000');
 ALTER TABLE ONLY public.tile_revisions ALTER COLUMN difference SET STORAGE EXTERNAL;
 ALTER TABLE ONLY public.tile_revisions ALTER COLUMN key_tile SET STORAGE EXTERNAL;
+
+CREATE TABLE public.tile_segments (
+    layer_id bigint NOT NULL,
+    tile_y smallint NOT NULL,
+    tile_x smallint NOT NULL,
+    first_sequence bigint NOT NULL,
+    last_sequence bigint NOT NULL,
+    content bytea NOT NULL,
+    CONSTRAINT tile_segments_check CHECK ((first_sequence <= last_sequence))
+);
+ALTER TABLE ONLY public.tile_segments ALTER COLUMN content SET STORAGE EXTERNAL;
 
 CREATE TABLE public.tokens (
     hash bytea NOT NULL,
@@ -2042,6 +2073,9 @@ ALTER TABLE ONLY public.comments
 ALTER TABLE ONLY public.detail_levels
     ADD CONSTRAINT detail_levels_pkey PRIMARY KEY (model_id, level);
 
+ALTER TABLE ONLY public.edit_batches
+    ADD CONSTRAINT edit_batches_pkey PRIMARY KEY (model_id, id);
+
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_model_id_id_key UNIQUE (model_id, id);
 
@@ -2083,6 +2117,9 @@ ALTER TABLE ONLY public.looks
 
 ALTER TABLE ONLY public.looks
     ADD CONSTRAINT looks_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.merged_journals
+    ADD CONSTRAINT merged_journals_pkey PRIMARY KEY (model_id);
 
 ALTER TABLE ONLY public.model_sources
     ADD CONSTRAINT model_sources_pkey PRIMARY KEY (model_id, name);
@@ -2159,6 +2196,9 @@ ALTER TABLE ONLY public.thumbnails
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_pkey PRIMARY KEY (layer_id, tile_y, tile_x, sequence);
 
+ALTER TABLE ONLY public.tile_segments
+    ADD CONSTRAINT tile_segments_pkey PRIMARY KEY (layer_id, tile_y, tile_x, first_sequence);
+
 ALTER TABLE ONLY public.tile_sums
     ADD CONSTRAINT tile_sums_pkey PRIMARY KEY (layer_id, tile_y, tile_x);
 
@@ -2231,6 +2271,8 @@ CREATE INDEX comments_table ON public.comments USING btree (table_id);
 CREATE INDEX comments_thread ON public.comments USING btree (thread_id, id);
 
 CREATE INDEX detail_levels_geometry ON public.detail_levels USING btree (geometry);
+
+CREATE INDEX edit_batches_edit ON public.edit_batches USING btree (layer_id, edit);
 
 CREATE INDEX edits_author ON public.edits USING btree (layer_id, user_name, in_force, sequence) WHERE writer;
 
@@ -2503,6 +2545,12 @@ ALTER TABLE ONLY public.detail_levels
 ALTER TABLE ONLY public.detail_levels
     ADD CONSTRAINT detail_levels_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
+ALTER TABLE ONLY public.edit_batches
+    ADD CONSTRAINT edit_batches_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.edit_batches
+    ADD CONSTRAINT edit_batches_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
+
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
 
@@ -2547,6 +2595,9 @@ ALTER TABLE ONLY public.looks
 
 ALTER TABLE ONLY public.looks
     ADD CONSTRAINT looks_picture_fkey FOREIGN KEY (picture) REFERENCES public.blobs(sha256);
+
+ALTER TABLE ONLY public.merged_journals
+    ADD CONSTRAINT merged_journals_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.model_sources
     ADD CONSTRAINT model_sources_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
@@ -2610,6 +2661,9 @@ ALTER TABLE ONLY public.thumbnails
 
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.tile_segments
+    ADD CONSTRAINT tile_segments_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tile_sums
     ADD CONSTRAINT tile_sums_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;

@@ -35,6 +35,7 @@ namespace strata::cli {
 namespace {
 
 constexpr int kMaxTrashDays = 36500, kMaxAuditDays = 36500, kMaxFileDays = 36500;
+constexpr int kMaxMergeAfter_s = 86'400;
 constexpr int kMaxCopyDays = 365, kMaxCopies = 1000;
 constexpr int kMaxTimeout_s = 3600;
 constexpr int kMaxSlow_ms = 3'600'000;
@@ -50,6 +51,7 @@ struct ServeOptions {
   int trash_days = net::ServerOptions{}.trash_days;
   int audit_days = net::ServerOptions{}.audit_days;
   int file_days = net::ServerOptions{}.file_days;
+  int merge_after_s = static_cast<int>(net::ServerOptions{}.merge_after.count());
   net::Timeouts timeouts;
   int samples_at_rest = 16, smooth_samples = 0;
   bool debug = false;
@@ -343,6 +345,7 @@ int run(ServeOptions options) {
   server_options.trash_days = options.trash_days;
   server_options.audit_days = options.audit_days;
   server_options.file_days = options.file_days;
+  server_options.merge_after = std::chrono::seconds(options.merge_after_s);
   server_options.timeouts = options.timeouts;
   server_options.lease = lease.get();
   server_options.archive = archive.get();
@@ -466,6 +469,13 @@ Command add_serve(CLI::App& app) {
                    "Days for which a file outside the database remains after nothing uses it")
       ->envname("STRATA_FILE_DAYS")
       ->check(CLI::Range(1, kMaxFileDays))
+      ->capture_default_str();
+  command
+      ->add_option("--merge-after", options->merge_after_s,
+                   "Seconds from the end of a stroke until its batches become one edit of the "
+                   "journal; 0: never")
+      ->envname("STRATA_MERGE_AFTER")
+      ->check(CLI::Range(0, kMaxMergeAfter_s))
       ->capture_default_str();
   add_archive_options(*command, *options);
   add_timeout(*command, "head-timeout", options->timeouts.head,

@@ -419,6 +419,12 @@ std::size_t Rooms::open_rooms() const {
   return impl_->rooms.size();
 }
 
+std::vector<Rooms::Claim> Rooms::claims() const {
+  std::vector<Claim> claims;
+  for (const auto& room : impl_->open_ones()) claims.push_back({room->id(), room->epoch()});
+  return claims;
+}
+
 void Rooms::drain() {
   {
     std::lock_guard lock(impl_->mutex);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/ids.h"
@@ -85,6 +86,12 @@ class Rooms {
   // is closed if another node has claimed its model (Listener::moved).
   void resume();
   std::size_t open_rooms() const;
+  // The open models, with the epochs of their claims (store/nodes/nodes.h).
+  struct Claim {
+    ModelId model = 0;
+    std::int64_t epoch = 0;
+  };
+  std::vector<Claim> claims() const;
   std::size_t participants() const;  // connections to all rooms
   // The number of open models that this server gave to other servers or lost to them.
   std::uint64_t models_moved() const;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "domain/layers/revision.h"
+#include "domain/layers/tile_segment.h"
 
 namespace {
 
@@ -32,12 +33,16 @@ void decode(ValueType type, std::span<const std::uint8_t> bytes) {
     apply(*revision, tile);
     demand(tile == TileData(type));
   }
+  if (const auto segment = decode_segment(address, type, bytes)) {
+    const auto stored = encode_segment(*segment);
+    demand(stored.has_value());
+    const auto again = decode_segment(address, type, *stored);
+    demand(again.has_value() && *again == *segment);
+    demand(tile_in_segment(type, *stored, segment->entries.back().sequence).has_value());
+  }
 }
 
-void decode_framed(ValueType type, std::uint8_t version, std::size_t planes,
-                   std::span<const std::uint8_t> bytes) {
-  std::vector<std::uint8_t> raw(planes * sizeof(TileMask::words) + TileData(type).values.size());
-  for (std::size_t i = 0; i < raw.size() && !bytes.empty(); ++i) raw[i] = bytes[i % bytes.size()];
+void decode_framed(ValueType type, std::uint8_t version, const std::vector<std::uint8_t>& raw) {
   std::vector<std::uint8_t> framed{version, static_cast<std::uint8_t>(bytes_per_texel(type))};
   framed.resize(2 + ZSTD_compressBound(raw.size()));
   const std::size_t frame =
@@ -47,6 +52,23 @@ void decode_framed(ValueType type, std::uint8_t version, std::size_t planes,
   decode(type, framed);
 }
 
+// Fills a mask for each plane, and the values of a tile, with the bytes.
+std::vector<std::uint8_t> planes_of(ValueType type, std::size_t planes,
+                                    std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> raw(planes * sizeof(TileMask::words) + TileData(type).values.size());
+  for (std::size_t i = 0; i < raw.size() && !bytes.empty(); ++i) raw[i] = bytes[i % bytes.size()];
+  return raw;
+}
+
+// One revision whose kind is the first byte, over a tile of the other bytes.
+std::vector<std::uint8_t> segment_of(ValueType type, std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> raw{1, 7, 0, 0, 0, 0, 0, 0, 0, static_cast<std::uint8_t>(bytes[0] % 4)};
+  const auto before = planes_of(type, 1, bytes);
+  raw.insert(raw.end(), before.begin(), before.end());
+  raw.insert(raw.end(), bytes.begin(), bytes.end());
+  return raw;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -54,7 +76,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto type = static_cast<ValueType>(data[0] % 8);
   const std::span<const std::uint8_t> bytes(data + 1, size - 1);
   decode(type, bytes);
-  decode_framed(type, 1, 2, bytes);
-  decode_framed(type, 129, 1, bytes);
+  decode_framed(type, 1, planes_of(type, 2, bytes));
+  decode_framed(type, 129, planes_of(type, 1, bytes));
+  decode_framed(type, 65, segment_of(type, bytes));
   return 0;
 }

@@ -63,6 +63,20 @@ void apply(const TileRevision& revision, TileData& tile) {
   for (int i = 0; i < kMaskWords; ++i) tile.valid.words[i] ^= revision.difference.valid.words[i];
 }
 
+void append(const TileRevision& next, TileRevision& revision) {
+  apply(next, revision.difference);
+  for (int w = 0; w < kMaskWords; ++w) revision.written.words[w] |= next.written.words[w];
+}
+
+bool differs_only_where_written(const TileRevision& revision) {
+  const TileData& difference = revision.difference;
+  for (int w = 0; w < kMaskWords; ++w)
+    if (difference.valid.words[w] & ~revision.written.words[w]) return false;
+  for (int texel = 0; texel < kTexelsPerTile; ++texel)
+    if (!revision.written.test(texel) && difference.bits(texel) != 0) return false;
+  return true;
+}
+
 std::vector<std::uint8_t> encode_revision(const TileRevision& revision) {
   std::vector<std::uint8_t> raw;
   raw.reserve(2 * mask_bytes() + revision.difference.values.size());

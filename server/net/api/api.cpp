@@ -119,6 +119,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       trash_purger_(store.trash(), std::chrono::days(options_.trash_days), store.audit(),
                     std::chrono::days(options_.audit_days), store.files(),
                     std::chrono::days(options_.file_days)),
+      journal_upkeep_(store, rooms, options_.merge_after),
       table_events_(rooms, *shared_->sockets),
       context_{{store, rooms, shared_->metrics->edits, table_events_},
                options_,
@@ -227,6 +228,7 @@ void Api::stop_workers() {
   recomputer_.stop();
   demo_annotators_.stop();
   trash_purger_.stop();
+  journal_upkeep_.stop();
   questions_.stop();
   sign_ons_.stop();
   workers_.stop();

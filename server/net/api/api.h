@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/demo/demo_annotators.h"
+#include "app/journal_upkeep.h"
 #include "app/layers/recomputer.h"
 #include "app/nodes/node_listener.h"
 #include "app/strokes/brush_shape_cache.h"
@@ -110,6 +111,7 @@ class Api {
   Route page_;  // for all addresses outside the API
   Route live_;  // for the live connections; has no handler
   app::TrashPurger trash_purger_;
+  app::JournalUpkeep journal_upkeep_;
   const TableEvents table_events_;
   const RouteContext context_;
   app::Recomputer recomputer_;

@@ -53,6 +53,8 @@ struct ServerOptions {
   int trash_days = 30;   // days until deleted entities are erased; 0: immediately
   int audit_days = 730;  // days until rows of the audit log are deleted; 0: never
   int file_days = 30;    // days until files outside the database that nothing uses are deleted
+  // Time from the end of a stroke until its batches become one edit of the journal. 0: never.
+  std::chrono::seconds merge_after{60};
   // Requests that take longer, without the transfer of bodies, are logged. 0: no limit.
   std::chrono::milliseconds slow_after{1000};
   Timeouts timeouts;

@@ -139,6 +139,7 @@ class OpenRoom final : public Room,
   // server is alone, because its claims have no owner.
   void release();
   ModelId id() const { return model_id_; }
+  std::int64_t epoch() const { return epoch_; }  // of the claim (store/nodes/nodes.h)
 
  private:
   class LayersPart;
@@ -177,7 +178,7 @@ class OpenRoom final : public Room,
 
   const RoomServices services_;
   const ModelId model_id_;
-  const std::int64_t epoch_;  // of the claim (store/nodes/nodes.h)
+  const std::int64_t epoch_;
   const std::shared_ptr<const mesh::Geometry> geometry_;
   // Coarser copies of the mesh, for moving cameras.
   const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;

@@ -22,12 +22,12 @@ struct Turn {
 Result<TileChange> turn_in_tile(const store::WrittenTiles& written, const Turn& turn,
                                 const Layer& layer, const TileMap& tiles, store::Store& store) {
   auto before = tile_or_empty(tiles, written.tile, layer.type);
-  TileResolver resolver(*before, written.written);
-  STRATA_TRY(walk_back(resolver, layer, written.tile, store, [&](PastRevision& revision) {
-    if (!std::binary_search(turn.edits.begin(), turn.edits.end(), revision.sequence)) return;
-    revision.in_force = turn.in_force.value_or(revision.in_force);
-    revision.provisional = turn.provisional.value_or(revision.provisional);
-  }));
+  auto resolver = STRATA_TRY(resolve_tile(
+      *before, written.written, layer, written.tile, store, [&](PastRevision& revision) {
+        if (!std::binary_search(turn.edits.begin(), turn.edits.end(), revision.sequence)) return;
+        revision.in_force = turn.in_force.value_or(revision.in_force);
+        revision.provisional = turn.provisional.value_or(revision.provisional);
+      }));
   const TileMask provisional = resolver.provisional();
   TileData resolved = std::move(resolver).finish();
   auto after = resolved == *before ? before : std::make_shared<const TileData>(std::move(resolved));
@@ -74,15 +74,15 @@ Result<ComputedEdit> compute_review(const ReviewEdit& review, const Layer& layer
   const bool reopens = review.decision == Decision::reopen;
   Turn turn;
   std::set<std::string> authors;
-  for (const auto& edit : found) {
+  for (const auto& edit : found.edits) {
     turn.edits.push_back(edit.sequence);
     authors.insert(edit.user);
   }
-  for (const std::int64_t named : review.which.edits)
-    if (!std::binary_search(turn.edits.begin(), turn.edits.end(), named))
+  for (std::size_t i = 0; i < found.named.size(); ++i)
+    if (!std::binary_search(turn.edits.begin(), turn.edits.end(), found.named[i]))
       return fail(
           ErrorCode::conflict, reopens ? "Not reviewed" : "Not waiting for review",
-          "Edit " + std::to_string(named) +
+          "Edit " + std::to_string(review.which.edits[i]) +
               (reopens
                    ? " has not been accepted or rejected, or it was undone in the meantime."
                    : " of this layer does not wait for review. Its author undid it, or somebody has "

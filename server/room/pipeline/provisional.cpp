@@ -8,15 +8,15 @@ namespace strata::room {
 
 Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
   const auto waiting = STRATA_TRY(store.journal().under_review(layer.id, Decision::accept, {}));
-  if (waiting.empty()) return TileMap{};
+  if (waiting.edits.empty()) return TileMap{};
   std::vector<std::int64_t> sequences;
-  for (const auto& edit : waiting) sequences.push_back(edit.sequence);
+  for (const auto& edit : waiting.edits) sequences.push_back(edit.sequence);
   const auto written = STRATA_TRY(store.journal().written_by(layer, sequences));
   TileMap tiles;
   for (const auto& [tile, texels] : written) {
     // The values of the texels do not affect the result.
-    TileResolver resolver(TileData(layer.type), texels);
-    STRATA_TRY(walk_back(resolver, layer, tile, store, [](PastRevision&) {}));
+    const auto resolver = STRATA_TRY(
+        resolve_tile(TileData(layer.type), texels, layer, tile, store, [](PastRevision&) {}));
     if (resolver.provisional().any())
       tiles[tile] =
           with_provisional(nullptr, {tile, nullptr, nullptr, texels, resolver.provisional()});

@@ -1,25 +1,23 @@
 #include "room/pipeline/tile_past.h"
 #include "store/journal/journal_reads.h"
 
-#include <limits>
+#include <optional>
 
 namespace strata::room {
 
-constexpr int kRevisionsAtOnce = 32;  // limits the part of a tile's history in memory
-
-Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
-                       store::Store& store, const std::function<void(PastRevision&)>& turn) {
-  for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
-    auto revisions =
-        STRATA_TRY(store.journal().tile_history(layer, tile, newest, kRevisionsAtOnce));
-    if (revisions.empty()) break;
-    for (auto& revision : revisions) {
-      turn(revision);
-      resolver.add(revision);
-    }
-    newest = revisions.back().sequence;
-  }
-  return {};
+Result<TileResolver> resolve_tile(const TileData& current, const TileMask& texels,
+                                  const Layer& layer, TileAddress tile, store::Store& store,
+                                  const std::function<void(PastRevision&)>& turn) {
+  std::optional<TileResolver> resolver;
+  STRATA_TRY(store.journal().tile_past(
+      layer, tile, [&] { resolver.emplace(current, texels); },
+      [&](PastRevision& revision) {
+        if (!resolver->is_open()) return false;
+        turn(revision);
+        resolver->add(revision);
+        return resolver->is_open();
+      }));
+  return std::move(*resolver);
 }
 
 }  // namespace strata::room

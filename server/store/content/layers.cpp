@@ -2,6 +2,7 @@
 #include "core/text/utf8.h"
 #include "domain/layers/group_name.h"
 #include "domain/layers/revision.h"
+#include "domain/layers/tile_segment.h"
 #include "domain/tables/term_list.h"
 #include "store/pg/pg_row.h"
 #include "store/pg/sql.h"
@@ -396,7 +397,7 @@ Result<std::vector<Layer>> Layers::to_recompute() {
 
 namespace {
 
-constexpr int kRevisionsAtOnce = 256;
+constexpr int kRevisionsAtOnce = 256, kSegmentsAtOnce = 16;
 
 // Converts differences to the wider type. Their bits stay the same, because the additional bits do
 // not differ before and after an edit.
@@ -431,6 +432,36 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
   }
 }
 
+// Converts segments in the same way.
+Result<void> widen_segments(PgConnection& connection, const Layer& layer, ValueType type) {
+  for (std::int64_t y = -1, x = 0, first = 0;;) {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT tile_y, tile_x, first_sequence, content FROM tile_segments WHERE layer_id = $1 AND "
+        "(tile_y, tile_x, first_sequence) > ($2, $3, $4) ORDER BY tile_y, tile_x, first_sequence LIMIT $5",
+        Params().id(layer.id).integer(y).integer(x).integer(first).integer(kSegmentsAtOnce)));
+    if (rows.rows() == 0) return {};
+    PgArray ys(oid::kInt8), xs(oid::kInt8), firsts(oid::kInt8), contents(oid::kBytea);
+    for (int i = 0; i < rows.rows(); ++i) {
+      y = rows.integer(i, 0), x = rows.integer(i, 1), first = rows.integer(i, 2);
+      const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+      auto segment = STRATA_TRY(decode_segment(address, layer.type, rows.bytes(i, 3)));
+      segment.before = widened(segment.before, type);
+      for (auto& entry : segment.entries)
+        entry.revision.difference = widened(entry.revision.difference, type);
+      const auto content = encode_segment(segment);
+      if (!content)
+        return fail(ErrorCode::internal, "Damaged tile", "A stored segment cannot be converted.");
+      ys.add(y), xs.add(x), firsts.add(first);
+      contents.add(Bytes(*content));
+    }
+    STRATA_TRY(connection.query(
+        "UPDATE tile_segments s SET content = n.content FROM "
+        "unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bytea[]) AS n (y, x, first, content) "
+        "WHERE s.layer_id = $1 AND s.tile_y = n.y AND s.tile_x = n.x AND s.first_sequence = n.first",
+        Params().id(layer.id).array(ys).array(xs).array(firsts).array(contents)));
+  }
+}
+
 }  // namespace
 
 Result<Layer> Layers::widen(const Layer& layer, ValueType type,
@@ -444,6 +475,7 @@ Result<Layer> Layers::widen(const Layer& layer, ValueType type,
       return known ? stale("layer") : tl::unexpected(known.error());
     }
     STRATA_TRY(widen_revisions(connection, layer, type));
+    STRATA_TRY(widen_segments(connection, layer, type));
     return load_layer(connection, layer.id);
   });
 }

@@ -149,7 +149,7 @@ Result<void> Trash::put_layer(LayerId id, const IdempotentResponse<>& answer) {
         connection.query(
             "UPDATE all_layers SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
             "(SELECT coalesce(sum(octet_length(difference) + coalesce(octet_length(key_tile), 0)), 0) FROM tile_revisions "
-            "WHERE layer_id = $1) WHERE id = (SELECT id FROM layers WHERE id = $1) AND binned IS NULL",
+            "WHERE layer_id = $1) + (SELECT coalesce(sum(octet_length(content)), 0) FROM tile_segments WHERE layer_id = $1) WHERE id = (SELECT id FROM layers WHERE id = $1) AND binned IS NULL",
             Params().id(id)),
         Kind::layer, id.number());
   };
@@ -163,6 +163,8 @@ Result<void> Trash::put_model(ModelId id, const IdempotentResponse<>& answer) {
             sql("UPDATE all_models SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
                 "(SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
                 "FROM tile_revisions r JOIN all_layers l ON l.id = r.layer_id WHERE l.model_id = $1) + "
+                "(SELECT coalesce(sum(octet_length(s.content)), 0) FROM tile_segments s JOIN all_layers l ON l.id = s.layer_id "
+                "WHERE l.model_id = $1) + "
                 "(SELECT coalesce(sum(b.bytes), 0) FROM blobs b WHERE b.sha256 IN "
                 "(",
                 kBlobsOfModel, ")) WHERE id = $1 AND binned IS NULL"),
@@ -272,6 +274,8 @@ Result<bool> Trash::erase_some() {
       for (
           const char* sql :
           {"DELETE FROM tile_revisions WHERE ctid = any(ARRAY(SELECT ctid FROM tile_revisions WHERE layer_id = $1 LIMIT $2))",
+           "DELETE FROM tile_segments WHERE ctid = any(ARRAY(SELECT ctid FROM tile_segments WHERE layer_id = $1 LIMIT $2))",
+           "DELETE FROM edit_batches WHERE ctid = any(ARRAY(SELECT ctid FROM edit_batches WHERE layer_id = $1 LIMIT $2))",
            "DELETE FROM edits WHERE ctid = any(ARRAY(SELECT ctid FROM edits WHERE layer_id = $1 LIMIT $2))"}) {
         auto some = STRATA_TRY(connection.query(sql, Params().id(id).integer(kRowsAtOnce)));
         if (some.affected() > 0) return true;

@@ -6,9 +6,21 @@
 namespace strata::store {
 namespace {
 
-constexpr auto kEditColumns = sql(
-    "e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, e.time, e.in_force, e.review, r.user_name, "
-    "r.record ->> 'reason', r.time FROM edits e LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by ");
+constexpr auto kStateColumns =
+    sql("e.time, e.in_force, e.review, r.user_name, r.record ->> 'reason', r.time FROM edits e "
+        "LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by ");
+constexpr auto kEditColumns =
+    sql("e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, ", kStateColumns);
+
+// The edits of model $1 with the ids $2. A batch of a merged edit has the response that it had.
+constexpr auto kWithIds = sql(
+    "SELECT ", kEditColumns,
+    "WHERE e.model_id = $1 AND e.id = any($2) AND e.first_sequence IS NULL UNION ALL "
+    "SELECT b.sequence, b.id, e.stroke, e.user_name, e.op, e.record, jsonb_strip_nulls(jsonb_build_object("
+    "'sequence', b.sequence, 'texels_changed', b.texels_changed, 'area_m2', b.area_m2, "
+    "'provisional', e.answer -> 'provisional')), ",
+    kStateColumns,
+    "JOIN edit_batches b ON b.model_id = e.model_id AND b.edit = e.sequence WHERE b.model_id = $1 AND b.id = any($2)");
 
 JournalRow read_row(const PgResult& rows, int i) {
   PgRow columns(rows, i);
@@ -66,9 +78,7 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
     if (model->rows() == 0) return no_such("model", to_string(model_id));
     JournalState state{model->integer(0, 0), model->integer(0, 1), {}};
     if (ids.empty()) return state;
-    auto rows =
-        connection.query(sql("SELECT ", kEditColumns, "WHERE e.model_id = $1 AND e.id = any($2)"),
-                         Params().id(model_id).array(requested));
+    auto rows = connection.query(kWithIds, Params().id(model_id).array(requested));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() > 0) STRATA_TRY(connection.confirm_visible());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
@@ -113,9 +123,11 @@ Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std:
 Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // Clients get times in milliseconds. The state at the time of an edit must include the edit.
+    // OFFSET 0 makes the planner read the index by time. It does not know that an early time has a
+    // low sequence, and would search backward through all later edits.
     auto row = STRATA_TRY(connection.query(
-        "SELECT coalesce(max(sequence), 0) FROM edits "
-        "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
+        "SELECT coalesce(max(sequence), 0) FROM (SELECT sequence FROM edits WHERE model_id = $1 "
+        "AND time < date_trunc('milliseconds', $2::timestamptz) + interval '1 millisecond' OFFSET 0) e",
         Params().id(model_id).text(utc)));
     return row.integer(0, 0);
   });

@@ -110,9 +110,15 @@ struct Reviewees {
   std::optional<std::string> user;
 };
 struct UnderReview {
-  std::int64_t sequence = 0;
-  Uuid stroke;
-  std::string user;
+  struct Edit {
+    std::int64_t sequence = 0;
+    Uuid stroke;
+    std::string user;
+  };
+  std::vector<Edit> edits;  // by ascending sequence
+  // The edits that the caller named, in the same order. An edit that was merged is replaced by the
+  // merged one.
+  std::vector<std::int64_t> named;
 };
 
 }  // namespace strata::store

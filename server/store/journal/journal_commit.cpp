@@ -259,7 +259,8 @@ Result<std::vector<bool>> find_saved(PgConnection& connection,
   }
   auto rows = STRATA_TRY(connection.query(
       "SELECT v.n FROM unnest($1::bigint[], $2::bigint[], $3::uuid[]) WITH ORDINALITY AS v (model_id, sequence, id, n) "
-      "JOIN edits e ON e.model_id = v.model_id AND e.sequence = v.sequence AND e.id = v.id",
+      "WHERE EXISTS (SELECT 1 FROM edits e WHERE e.model_id = v.model_id AND e.sequence = v.sequence AND e.id = v.id) "
+      "OR EXISTS (SELECT 1 FROM edit_batches b WHERE b.model_id = v.model_id AND b.id = v.id AND b.sequence = v.sequence)",
       Params().array(models).array(sequences).array(ids)));
   if (rows.rows() > 0) STRATA_TRY(connection.confirm_visible());
   std::vector<bool> saved(entries.size());

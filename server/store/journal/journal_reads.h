@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -40,7 +41,9 @@ struct JournalState {
   std::vector<JournalRow> known;
 };
 
-// Reads the journal of edits. JournalWriter writes it. Part of Store, whose rules for threads and
+// Reads the journal of edits. JournalWriter writes it, and JournalMerger makes it smaller. A merged
+// edit counts from the sequence of its last batch: a state at an earlier batch is the one before
+// the stroke. Part of Store, whose rules for threads and
 // errors apply.
 class Journal {
  public:
@@ -57,10 +60,12 @@ class Journal {
   // Returns the last edit of each layer up to a sequence of the model. Layers without an edit are
   // left out.
   Result<std::map<LayerId, std::int64_t>> layer_sequences(ModelId model_id, std::int64_t sequence);
-  // Returns at most `limit` revisions of a tile that are older than `before`, newest first, with
-  // the present state of their edits.
-  Result<std::vector<PastRevision>> tile_history(const Layer& layer, TileAddress tile,
-                                                 std::int64_t before, int limit);
+  // Passes the revisions of a tile, newest first, with the present state of their edits, until
+  // `on_revision` returns false. All of them are of one state of the database, because the merger
+  // may replace rows at any time (journal_merger.h). Calls `begin` first, and again if the reading
+  // starts again after a lost connection.
+  Result<void> tile_past(const Layer& layer, TileAddress tile, const std::function<void()>& begin,
+                         const std::function<bool(PastRevision&)>& on_revision);
   Result<std::vector<WrittenTiles>> written_by(const Layer& layer,
                                                std::span<const std::int64_t> sequences);
   // Returns the history, newest first. `before` selects only edits with lower sequences.
@@ -81,9 +86,8 @@ class Journal {
                                    int limit, int offset, std::int64_t after = 0);
   // Returns the edits that a decision affects: edits that wait for review and are in force, or, for
   // `reopen`, edits that were accepted or rejected. If the caller names one batch of a stroke, the
-  // result contains all batches of the stroke.
-  Result<std::vector<UnderReview>> under_review(LayerId layer_id, Decision decision,
-                                                const Reviewees& which);
+  // result contains all batches of the stroke. A batch that was merged stands for its edit.
+  Result<UnderReview> under_review(LayerId layer_id, Decision decision, const Reviewees& which);
   // Counts the edits of a model over time (timeline.cpp).
   Result<Timeline> timeline(ModelId model_id, const TimelineQuery& query);
   // Returns the strokes and other edits nearest to `from`: after it, or if `backward`, up to it.
@@ -99,9 +103,11 @@ class Journal {
   // roles. Returns nothing if no such edit exists.
   Result<std::optional<std::chrono::system_clock::time_point>> time_of_state(ModelId model_id,
                                                                              std::int64_t sequence);
+  // Returns the bytes of the stored texels of all edits.
   Result<std::uint64_t> revision_bytes(ModelId model_id);
 
  private:
+  friend class JournalMerger;
   Pool& pool_;
 };
 

@@ -110,10 +110,10 @@ Result<TimelineSteps> Journal::timeline_steps(ModelId model_id, const std::vecto
     const int most = limit * kRowsOfStep;
     auto rows = STRATA_TRY(connection.query(
         backward
-            ? "SELECT sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
+            ? "SELECT coalesce(first_sequence, sequence), sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
               "(answer ->> 'area_m2')::double precision FROM edits WHERE model_id = $1 AND layer_id = any($2) AND sequence <= $3 "
               "ORDER BY sequence DESC LIMIT $4"
-            : "SELECT sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
+            : "SELECT coalesce(first_sequence, sequence), sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
               "(answer ->> 'area_m2')::double precision FROM edits WHERE model_id = $1 AND layer_id = any($2) AND sequence > $3 "
               "ORDER BY sequence LIMIT $4",
         Params().id(model_id).array(ids_of(layers)).integer(from).integer(most + 1)));
@@ -123,7 +123,8 @@ Result<TimelineSteps> Journal::timeline_steps(ModelId model_id, const std::vecto
     for (int i = 0; i < std::min(rows.rows(), most); ++i) {
       PgRow columns(rows, i);
       TimelineStep row;
-      row.first = row.last = columns.integer();
+      row.first = columns.integer();
+      row.last = columns.integer();
       row.stroke = columns.uuid();
       row.layer = LayerId(columns.integer());
       row.user = columns.text();

@@ -18,7 +18,7 @@ constexpr int most_rows_of(int limit) { return limit * 8 + 500; }
 
 constexpr auto kLayers = sql(
     "WITH l AS (SELECT id, id = any($2) AS pending FROM unnest($1::bigint[]) AS id) "
-    "SELECT e.sequence, e.stroke, l.id, e.op, e.time, (e.answer ->> 'texels_changed')::bigint, "
+    "SELECT coalesce(e.first_sequence, e.sequence), e.sequence, e.stroke, l.id, e.op, e.time, (e.answer ->> 'texels_changed')::bigint, "
     "(e.answer ->> 'area_m2')::double precision, coalesce(e.undone_by, 0) FROM l CROSS JOIN LATERAL ");
 
 // The rules are the same as in `Journal::undoable` and `Journal::redoable`.
@@ -50,7 +50,8 @@ Result<std::vector<Row>> steps_of(PgConnection& connection, const char* statemen
   for (int i = 0; i < rows.rows(); ++i) {
     PgRow columns(rows, i);
     Row row;
-    row.step.first = row.step.last = columns.integer();
+    row.step.first = columns.integer();
+    row.step.last = columns.integer();
     row.step.stroke = columns.uuid();
     row.step.layer = LayerId(columns.integer());
     row.step.op = columns.text();

@@ -208,32 +208,42 @@ TEST_F(History, written_tiles_are_the_union_of_the_edits_masks) {
 }
 
 TEST_F(History, every_revision_of_a_tile_comes_newest_first_and_leads_back_to_nothing) {
-  for (int i = 1; i <= 30; ++i) ASSERT_TRUE(save(writer_, painter_.paint(i, 2, 2)));
-  sequence_ = 30;
-  auto entry = painter_.entry(31, "undo");
-  entry.disable = {29, 30};
+  for (int i = 1; i <= 120; ++i) ASSERT_TRUE(save(writer_, painter_.paint(i, 2, 2)));
+  sequence_ = 120;
+  auto entry = painter_.entry(121, "undo");
+  entry.disable = {119, 120};
   ASSERT_TRUE(save(writer_, entry));
   for (const TileAddress tile : {TileAddress{0, 0}, TileAddress{1, 0}}) {
     auto current =
         painter_.content().contains(tile) ? painter_.content().at(tile) : TileData(layer_.type);
     std::int64_t before = 1000;
-    for (;;) {
-      const auto page = store_->journal().tile_history(layer_, tile, before, 4).value();
-      EXPECT_LE(page.size(), 4u);
-      if (page.empty()) break;
-      for (const auto& past : page) {
-        EXPECT_LT(past.sequence, before);
-        before = past.sequence;
-        EXPECT_TRUE(past.writer);
-        EXPECT_EQ(past.in_force, past.sequence < 29);
-        EXPECT_EQ(past.revision.address, tile);
-        apply(past.revision, current);
-      }
-    }
-    EXPECT_LT(before, 1000);
+    int begins = 0, revisions = 0;
+    ASSERT_TRUE(store_->journal().tile_past(
+        layer_, tile, [&] { ++begins; },
+        [&](const PastRevision& past) {
+          EXPECT_LT(past.sequence, before);
+          before = past.sequence;
+          EXPECT_TRUE(past.writer);
+          EXPECT_EQ(past.in_force, past.sequence < 119);
+          EXPECT_EQ(past.revision.address, tile);
+          apply(past.revision, current);
+          ++revisions;
+          return true;
+        }));
+    EXPECT_EQ(begins, 1);
+    EXPECT_GT(revisions, 32) << "several pages";
     EXPECT_TRUE(current == TileData(layer_.type));
+    revisions = 0;
+    ASSERT_TRUE(store_->journal().tile_past(
+        layer_, tile, [] {}, [&](const PastRevision&) { return ++revisions < 3; }));
+    EXPECT_EQ(revisions, 3) << "it ends when nothing more is needed";
   }
-  EXPECT_TRUE(store_->journal().tile_history(layer_, {7, 7}, 1000, 4)->empty());
+  EXPECT_TRUE(store_->journal().tile_past(
+      layer_, {7, 7}, [] {},
+      [](const PastRevision&) {
+        ADD_FAILURE() << "the tile has no revision";
+        return true;
+      }));
 }
 
 TEST_F(History, pages_are_newest_first_and_rows_are_whole) {

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "core/ids.h"
+#include "domain/layers/tile.h"
+#include "store/journal/merge_plan.h"
+
+namespace strata::store {
+
+class Journal;
+class PgConnection;
+
+// Makes the journal of a model smaller after strokes have ended, without a change of its meaning:
+// - It merges the batches of a stroke into one edit, with one revision for each tile
+//   (merge_plan.h).
+// - It packs the revisions of each tile into segments (domain/layers/tile_segment.h).
+//
+// Each step is one short transaction that replaces rows. It compares the epoch of the model
+// (store/nodes/nodes.h), so a server that has lost the model changes nothing. The transactions are
+// not waited for until they are on disk: if one is lost, its rows are as before. Used by one thread
+// at a time.
+class JournalMerger {
+ public:
+  static constexpr std::chrono::seconds kEndedAfter{60};
+  static constexpr int kRevisionsPerSegment = 32;
+
+  // Called between transactions. It may wait. If it returns false, the merger stops.
+  using Continue = std::function<bool()>;
+
+  explicit JournalMerger(Journal& journal) : journal_(journal) {}
+
+  // Returns whether the journal may be merged. Programs before this one cannot read the result, so
+  // it first marks the database, and returns false. It also returns false while a node with another
+  // version has a lease.
+  Result<bool> may_merge(std::string_view version);
+
+  struct Done {
+    std::int64_t edits = 0;      // edits that were merged into others
+    std::int64_t revisions = 0;  // revisions that were merged or packed
+    bool more = false;           // more edits can be merged at once
+  };
+  // Merges strokes that ended before the time, and packs the tiles that they wrote. `epoch` is that
+  // of the claim of the model. Returns `moved` if another server has claimed it.
+  Result<Done> merge(ModelId model, std::int64_t epoch,
+                     std::chrono::system_clock::time_point ended_before, const Continue& go_on);
+
+ private:
+  struct Claim {
+    ModelId model = 0;
+    std::int64_t epoch = 0;
+  };
+  struct Window {
+    std::vector<PlannedEdit> edits;
+    MergeRules rules;
+  };
+  Result<Window> read_window(ModelId model, std::chrono::system_clock::time_point ended_before);
+  // Returns the number of revisions that it replaced; nothing if the edits stay as they are.
+  Result<std::optional<std::int64_t>> merge_group(const Claim& claim, LayerId layer,
+                                                  const std::vector<std::int64_t>& sequences);
+  Result<void> list_tiles(const Claim& claim, const Window& window, std::int64_t through,
+                          const Continue& go_on);
+  Result<void> advance(const Claim& claim, std::int64_t through);
+  Result<std::int64_t> pack_layer(const Claim& claim, LayerId layer, std::int64_t through,
+                                  const Continue& go_on);
+  Result<std::int64_t> pack_tiles(const Claim& claim, LayerId layer, std::int64_t through,
+                                  const std::vector<TileAddress>& tiles);
+
+  Journal& journal_;
+  // Revisions of each layer since its tiles were last counted. Absent: they were never counted.
+  std::map<LayerId, std::size_t> since_packed_;
+};
+
+}  // namespace strata::store

@@ -1,0 +1,562 @@
+// The journal before and after its strokes are merged: the texels at the end of every stroke, undo
+// and redo, the responses to edits that are sent again, and faults.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+
+#include "db/journal_painter.h"
+#include "domain/layers/mask_texels.h"
+#include "domain/layers/tile_difference.h"
+#include "store/content/layers.h"
+#include "store/journal/journal_merger.h"
+#include "store/journal/journal_reads.h"
+#include "store/nodes/nodes.h"
+#include "store/pg/pg.h"
+
+namespace strata::store {
+namespace {
+
+using namespace std::chrono_literals;
+using test::content_of;
+using test::save;
+using Content = test::Painter::Content;
+using Clock = std::chrono::system_clock;
+
+constexpr int kTiles = 2;  // a layer has kTiles × kTiles painted tiles
+
+// What an edit wrote into a tile, kept apart from the journal.
+struct Written {
+  TileMask mask;
+  TileData after;
+};
+struct KnownEdit {
+  std::int64_t sequence = 0;
+  Uuid id, stroke;
+  std::string user;
+  LayerId layer = 0;
+  std::map<TileAddress, Written> written;
+  std::int64_t undone_by = 0;  // 0: in force
+  nlohmann::json answer;
+};
+
+// Two layers that several people paint, and everything that the journal must return about them.
+class Painted {
+ public:
+  Painted(Store& store, ModelId model, unsigned seed)
+      : store_(store),
+        model_(model),
+        epoch_(store.nodes().begin_epoch(model).value()),
+        random_(seed),
+        writer_(store, {}) {
+    for (const char* name : {"one", "two"})
+      layers_.push_back(test::make_layer(store, model, ValueType::u8, name));
+    for (const Layer& layer : layers_) states_[layer.id][0] = {};
+  }
+
+  // Saves `count` edits: batches of strokes, and sometimes a fill, an undo or a redo.
+  void paint(int count) {
+    for (int i = 0; i < count; ++i) {
+      // A person draws several batches while the others wait, and sometimes they draw at once.
+      if (pick(4) == 0) user_ = std::vector<std::string>{"Ada", "Ben", "Cleo"}[pick(3)];
+      const std::string user = user_;
+      const std::size_t layer = pick(2);
+      switch (pick(20)) {
+        case 0:
+          end_stroke(user);
+          write(layer, user, "fill", random_uuid());
+          break;
+        case 1:
+        case 2:
+          end_stroke(user);
+          turn(layer, user, pick(3) == 0);
+          break;
+        default: batch(user);
+      }
+    }
+  }
+  void end_all() {
+    for (const char* user : {"Ada", "Ben", "Cleo"}) end_stroke(user);
+  }
+
+  // Undoes the newest edit of the user, or redoes the last undo, as a room does.
+  bool turn(std::size_t index, const std::string& user, bool redoes) {
+    const Layer& layer = layers_[index];
+    auto& journal = store_.journal();
+    const auto edits = redoes ? journal.redoable(layer.id, user).value()
+                              : journal.undoable(layer.id, user).value();
+    if (edits.empty()) return false;
+    auto entry = this->entry(layer, redoes ? "redo" : "undo", user, random_uuid());
+    Content& content = contents_[layer.id];
+    for (const auto& [tile, texels] : journal.written_by(layer, edits).value()) {
+      const TileData before = content.contains(tile) ? content.at(tile) : TileData(layer.type);
+      std::optional<TileResolver> resolver;
+      EXPECT_TRUE(journal.tile_past(
+          layer, tile, [&] { resolver.emplace(before, texels); },
+          [&](PastRevision& revision) {
+            if (std::ranges::binary_search(edits, revision.sequence)) revision.in_force = redoes;
+            resolver->add(revision);
+            return true;
+          }));
+      TileData after = std::move(*resolver).finish();
+      if (after == before) continue;
+      entry.revisions.push_back(
+          {tile, encode_revision(make_revision(tile, before, after, texels)), {}});
+      put(content, tile, std::move(after));
+    }
+    (redoes ? entry.enable : entry.disable) = edits;
+    // A merged edit has the sequence of its last batch, and stands for all of them.
+    const KnownEdit last = *std::ranges::find(known_, edits.back(), &KnownEdit::sequence);
+    for (KnownEdit& known : known_)
+      if (known.layer == layer.id && known.user == user && known.stroke == last.stroke &&
+          known.undone_by == last.undone_by)
+        known.undone_by = redoes ? 0 : entry.sequence;
+    submit(std::move(entry), layer, {});
+    return true;
+  }
+
+  // Compares one of `every` of the states that must be exact, and some pairs of states.
+  void check_states(int every = 1) {
+    std::set<std::int64_t> exact = ends();
+    exact.insert(named_.begin(), named_.end());
+    for (const Layer& layer : layers_) {
+      for (const std::int64_t at : exact) {
+        if (pick(every) != 0) continue;
+        const auto found = store_.journal().load_tiles(layer, at);
+        ASSERT_TRUE(found) << found.error().detail;
+        ASSERT_TRUE(content_of(*found) == state(layer.id, at)) << "at " << at;
+      }
+      const auto newest = store_.journal().load_tiles(layer).value();
+      ASSERT_TRUE(content_of(newest) == contents_[layer.id]);
+      for (const auto& near : near_)
+        if (near.layer == layer.id)
+          for (int i = 0; i < 3; ++i) {
+            const std::int64_t at = *std::next(exact.begin(), pick(static_cast<int>(exact.size())));
+            const auto found = store_.journal().load_tiles_near(layer, at, near.state).value();
+            ASSERT_TRUE(content_of(found) == state(layer.id, at))
+                << "at " << at << " from " << near.state.sequence;
+          }
+    }
+  }
+
+  // Every texel shows the newest edit in force that wrote it.
+  void check_rule() {
+    for (const Layer& layer : layers_) {
+      Content expected;
+      for (const KnownEdit& edit : known_)
+        if (edit.layer == layer.id && edit.undone_by == 0)
+          for (const auto& [tile, written] : edit.written) {
+            TileData content = expected.contains(tile) ? expected.at(tile) : TileData(layer.type);
+            copy_texels(written.after, written.mask, content);
+            put(expected, tile, std::move(content));
+          }
+      ASSERT_TRUE(contents_[layer.id] == expected);
+    }
+  }
+
+  // Every edit is in the journal once, with its first response.
+  void check_ids() {
+    std::vector<Uuid> ids;
+    for (const KnownEdit& edit : known_) ids.push_back(edit.id);
+    const auto found = store_.journal().state(model_, ids).value().known;
+    ASSERT_EQ(found.size(), known_.size());
+    std::map<Uuid, const JournalRow*> rows;
+    for (const JournalRow& row : found) rows[row.id] = &row;
+    for (const KnownEdit& edit : known_) {
+      ASSERT_TRUE(rows.contains(edit.id));
+      const JournalRow& row = *rows.at(edit.id);
+      EXPECT_EQ(row.sequence, edit.sequence);
+      EXPECT_EQ(row.user, edit.user);
+      EXPECT_EQ(row.stroke, edit.stroke);
+      EXPECT_EQ(row.answer, edit.answer);
+    }
+  }
+
+  // Keeps the present states, which may contain a part of a stroke, to load others from them.
+  void keep_near() {
+    for (const Layer& layer : layers_)
+      near_.push_back({layer.id, store_.journal().load_tiles(layer).value()});
+  }
+  void name_state() { named_.push_back(sequence_); }
+
+  Result<JournalMerger::Done> merge(JournalMerger& merger, Clock::time_point ended_before) {
+    return merger.merge(model_, epoch_, ended_before, [] { return true; });
+  }
+  Clock::time_point time() const { return kBegin + sequence_ * 1s; }
+  std::int64_t sequence() const { return sequence_; }
+  std::int64_t epoch() const { return epoch_; }
+
+ private:
+  inline static const Clock::time_point kBegin = Clock::now() - 24h;
+
+  struct OpenStroke {
+    Uuid id;
+    std::size_t layer = 0;
+    int n = 0;
+    std::uint32_t bits = 0;
+    double x = 0;
+  };
+  struct Near {
+    LayerId layer = 0;
+    TileMirror::Snapshot state;
+  };
+
+  std::size_t pick(int below) { return random_() % static_cast<unsigned>(below); }
+  static void put(Content& content, TileAddress tile, TileData after) {
+    if (after.valid.any())
+      content[tile] = std::move(after);
+    else
+      content.erase(tile);
+  }
+  const Content& state(LayerId layer, std::int64_t at) {
+    return std::prev(states_[layer].upper_bound(at))->second;
+  }
+  // Sequences at which strokes and other edits end.
+  std::set<std::int64_t> ends() const {
+    std::map<Uuid, std::int64_t> last;
+    for (const auto& [sequence, stroke] : stroke_of_) last[stroke] = sequence;
+    std::set<std::int64_t> found{0};
+    for (const auto& [stroke, sequence] : last) found.insert(sequence);
+    return found;
+  }
+
+  JournalEntry entry(const Layer& layer, const std::string& op, const std::string& user,
+                     const Uuid& stroke) {
+    JournalEntry entry;
+    entry.model_id = model_;
+    entry.layer_id = layer.id;
+    entry.sequence = ++sequence_;
+    entry.epoch = epoch_;
+    entry.id = random_uuid();
+    entry.stroke = stroke;
+    entry.user = user;
+    entry.op = op;
+    entry.record = {{"op", op}};
+    entry.answer = {{"sequence", sequence_}, {"texels_changed", sequence_ % 7}, {"area_m2", 0.25}};
+    entry.time = time();
+    return entry;
+  }
+
+  void end_stroke(const std::string& user) { open_.erase(user); }
+
+  void batch(const std::string& user) {
+    if (pick(8) == 0) end_stroke(user);
+    auto [open, is_new] = open_.try_emplace(user);
+    if (is_new)
+      open->second = {random_uuid(), pick(2), 0, 1 + static_cast<std::uint32_t>(pick(90)), 0};
+    OpenStroke& stroke = open->second;
+    write(stroke.layer, user, "stroke", stroke.id, &stroke);
+  }
+
+  void write(std::size_t index, const std::string& user, const std::string& op, const Uuid& stroke,
+             OpenStroke* open = nullptr) {
+    const Layer& layer = layers_[index];
+    auto entry = this->entry(layer, op, user, open ? stroke : Uuid{});
+    if (open) {
+      entry.record["value"] = open->bits;
+      entry.record["n"] = open->n;
+      entry.record["path"] = {{open->x, 1.5}, {open->x + 3, 1.5}};
+      ++open->n;
+      open->x += 3;
+    } else {
+      entry.stroke = entry.id;
+    }
+    KnownEdit known{entry.sequence, entry.id, entry.stroke, user, layer.id, {}, 0, entry.answer};
+    const std::uint32_t bits = open ? open->bits : 1 + static_cast<std::uint32_t>(pick(90));
+    const bool erases = !open && pick(4) == 0;
+    Content& content = contents_[layer.id];
+    for (std::size_t n = 1 + pick(3); n > 0; --n) {
+      const TileAddress tile{static_cast<std::uint16_t>(pick(kTiles)),
+                             static_cast<std::uint16_t>(pick(kTiles))};
+      if (known.written.contains(tile)) continue;
+      const TileData before = content.contains(tile) ? content.at(tile) : TileData(layer.type);
+      Written written{{}, before};
+      const int x0 = static_cast<int>(pick(90)), y0 = static_cast<int>(pick(90)),
+                size = 1 + static_cast<int>(pick(37));
+      for (int y = y0; y < y0 + size; ++y)
+        for (int x = x0; x < x0 + size; ++x) {
+          written.mask.set(y * kTileSize + x);
+          if (erases)
+            written.after.clear(y * kTileSize + x);
+          else
+            written.after.write(y * kTileSize + x, bits);
+        }
+      if (written.after == before) continue;  // the journal has no revision without a change
+      JournalEntry::Revision revision{
+          tile, encode_revision(make_revision(tile, before, written.after, written.mask)), {}};
+      if (++revisions_[{layer.id, tile}] % 9 == 0) revision.key_tile = encode_tile(written.after);
+      entry.revisions.push_back(std::move(revision));
+      put(content, tile, written.after);
+      known.written.emplace(tile, std::move(written));
+    }
+    submit(std::move(entry), layer, std::move(known));
+  }
+
+  void submit(JournalEntry entry, const Layer& layer, std::optional<KnownEdit> known) {
+    stroke_of_[entry.sequence] = known ? entry.stroke : entry.id;
+    states_[layer.id][entry.sequence] = contents_[layer.id];
+    if (known) known_.push_back(std::move(*known));
+    const auto saved = save(writer_, std::move(entry));
+    ASSERT_TRUE(saved) << saved.error().detail;
+  }
+
+  Store& store_;
+  const ModelId model_;
+  const std::int64_t epoch_;
+  std::mt19937 random_;
+  std::string user_ = "Ada";
+  JournalWriter writer_;
+  std::vector<Layer> layers_;
+  std::int64_t sequence_ = 0;
+  std::map<std::string, OpenStroke> open_;  // by user
+  std::vector<KnownEdit> known_;            // without undos and redos
+  std::map<std::int64_t, Uuid> stroke_of_;  // of every edit
+  std::map<LayerId, Content> contents_;
+  std::map<LayerId, std::map<std::int64_t, Content>> states_;  // after each edit
+  std::map<std::pair<LayerId, TileAddress>, int> revisions_;
+  std::vector<Near> near_;
+  std::vector<std::int64_t> named_;
+};
+
+class Merger : public ::testing::Test {
+ protected:
+  std::int64_t count(const std::string& what) {
+    return PgConnection::connect(dsn_)->query_once("SELECT count(*) FROM " + what)->integer(0, 0);
+  }
+  void run(const std::string& sql) { ASSERT_TRUE(PgConnection::connect(dsn_)->script(sql)); }
+  // Merges all strokes, because enough time has passed.
+  void merge_all(Painted& painted) {
+    const auto done = painted.merge(merger_, painted.time() + 1h);
+    ASSERT_TRUE(done) << done.error().detail;
+  }
+  void check_all(Painted& painted, int every = 1) {
+    painted.check_states(every);
+    painted.check_ids();
+    painted.check_rule();
+  }
+
+  const std::string dsn_ = test::fresh_database();
+  std::unique_ptr<Store> store_ = test::open_store(dsn_);
+  Model model_ = test::make_model(*store_);
+  JournalMerger merger_{store_->journal()};
+};
+
+TEST_F(Merger, random_journals_give_the_same_texels_and_responses) {
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const Model model = test::make_model(*store_, "pot " + std::to_string(seed));
+    Painted painted(*store_, model.id, seed);
+    for (int part = 0; part < 4; ++part) {
+      painted.paint(110);
+      painted.keep_near();
+      if (part == 1) {
+        painted.name_state();
+        run("INSERT INTO snapshots (model_id, slug, name, content, user_name) VALUES (" +
+            to_string(model.id) +
+            ", 's', 's', '{\"sequence\": " + std::to_string(painted.sequence()) + "}', 'Ada')");
+      }
+      // While people paint, only strokes that have ended are merged.
+      ASSERT_TRUE(painted.merge(merger_, painted.time() - 20s));
+      check_all(painted, 4);
+      if (HasFatalFailure()) return;
+    }
+    painted.end_all();
+    merge_all(painted);
+    check_all(painted);
+    if (HasFatalFailure()) return;
+    // Merging again changes nothing.
+    const auto again = painted.merge(merger_, painted.time() + 1h);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->edits + again->revisions, 0);
+    // Undo and redo of merged and packed edits.
+    for (int i = 0; i < 60; ++i) {
+      const std::string user = std::vector<std::string>{"Ada", "Ben", "Cleo"}[i % 3];
+      painted.turn(static_cast<std::size_t>(i / 3) % 2, user, i % 7 == 0);
+      if (i % 10 == 0) painted.check_rule();
+      if (HasFatalFailure()) return;
+    }
+    merge_all(painted);
+    check_all(painted);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(count("edit_batches"), 50);
+  EXPECT_GT(count("tile_segments"), 4);
+}
+
+TEST_F(Merger, a_stroke_becomes_one_edit_with_the_whole_path_and_the_sums) {
+  test::Painter painter(test::make_layer(*store_, model_.id), 4);
+  const Uuid stroke = random_uuid();
+  std::vector<JournalEntry> entries;
+  {
+    JournalWriter writer(*store_, {});
+    for (int n = 0; n < 4; ++n) {
+      auto entry = painter.paint(n + 1, 2, 2);
+      entry.stroke = stroke;
+      entry.record = {{"op", "stroke"}, {"value", 7}, {"n", n}, {"path", {{n, 1}, {n + 1, 1}}}};
+      if (n > 1) entry.record["widths"] = {1, 0.5};
+      entry.answer = {{"sequence", n + 1}, {"texels_changed", 10 * n}, {"area_m2", 0.5}};
+      entries.push_back(entry);
+      ASSERT_TRUE(save(writer, std::move(entry)));
+    }
+  }
+  const auto done = merger_.merge(model_.id, store_->journal().state(model_.id, {})->epoch,
+                                  Clock::now() + 1h, [] { return true; });
+  ASSERT_TRUE(done) << done.error().detail;
+  EXPECT_EQ(done->edits, 3);
+  const auto history = store_->journal().history(painter.layer().id, 10, 0).value();
+  ASSERT_EQ(history.total, 1);
+  const JournalRow& row = history.rows.at(0);
+  EXPECT_EQ(row.sequence, 4);
+  EXPECT_EQ(row.id, entries.back().id);
+  EXPECT_LT(std::chrono::abs(row.time - entries.back().time), 1us);
+  EXPECT_EQ(row.answer,
+            (nlohmann::json{{"sequence", 4}, {"texels_changed", 60}, {"area_m2", 2.0}}));
+  EXPECT_EQ(row.record, (nlohmann::json{{"op", "stroke"},
+                                        {"value", 7},
+                                        {"n", 3},
+                                        {"path", {{0, 1}, {1, 1}, {2, 1}, {3, 1}, {3, 1}, {4, 1}}},
+                                        {"widths", {1, 1, 1, 0.5, 1, 0.5}}}));
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(painter.layer()).value()) ==
+              painter.content());
+  const auto steps = store_->journal().timeline_steps(model_.id, {painter.layer().id}, 9, true, 5);
+  ASSERT_EQ(steps->steps.size(), 1u);
+  EXPECT_EQ(steps->steps[0].first, 1);
+  EXPECT_EQ(steps->steps[0].last, 4);
+  EXPECT_EQ(steps->steps[0].texels, 60u);
+}
+
+TEST_F(Merger, a_review_finds_a_stroke_by_each_of_its_batches) {
+  const Layer layer = test::make_layer(*store_, model_.id);
+  test::Painter painter(layer, 4);
+  JournalWriter writer(*store_, {});
+  const Uuid stroke = random_uuid();
+  for (int n = 0; n < 3; ++n) {
+    auto entry = painter.paint(n + 1, 1, 1);
+    entry.stroke = stroke;
+    entry.review = Review::pending;
+    entry.record = {{"op", "stroke"}, {"n", n}, {"path", {{n, 1}, {n + 1, 1}}}};
+    entry.answer["area_m2"] = 0.5;
+    ASSERT_TRUE(save(writer, std::move(entry)));
+  }
+  const auto before = store_->journal().review_queue(layer.id, {}, 9, 0).value();
+  ASSERT_TRUE(merger_.merge(model_.id, store_->journal().state(model_.id, {})->epoch,
+                            Clock::now() + 1h, [] { return true; }));
+  ASSERT_EQ(count("edits"), 1);
+  const auto after = store_->journal().review_queue(layer.id, {}, 9, 0).value();
+  EXPECT_EQ(after.total, 1);
+  EXPECT_EQ(after.strokes.at(0).sequence, before.strokes.at(0).sequence);
+  EXPECT_EQ(after.strokes.at(0).texels, before.strokes.at(0).texels);
+  EXPECT_EQ(after.strokes.at(0).begun, before.strokes.at(0).begun);
+  for (const std::int64_t named : {1, 2, 3}) {
+    const auto found = store_->journal().under_review(layer.id, Decision::accept, {{named}, {}});
+    ASSERT_TRUE(found) << found.error().detail;
+    ASSERT_EQ(found->edits.size(), 1u) << named;
+    EXPECT_EQ(found->edits[0].sequence, 3);
+    EXPECT_EQ(found->named, std::vector<std::int64_t>{3});
+  }
+  EXPECT_TRUE(store_->journal().under_review(layer.id, Decision::accept, {{4}, {}})->edits.empty());
+}
+
+TEST_F(Merger, a_server_that_lost_the_model_merges_nothing) {
+  Painted painted(*store_, model_.id, 5);
+  painted.paint(120);
+  painted.end_all();
+  const auto edits = count("edits"), revisions = count("tile_revisions");
+  ASSERT_TRUE(store_->nodes().begin_epoch(model_.id));  // another server
+  const auto done = painted.merge(merger_, painted.time() + 1h);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::moved);
+  EXPECT_EQ(count("edits"), edits);
+  EXPECT_EQ(count("tile_revisions"), revisions);
+  EXPECT_EQ(count("merged_journals"), 0);
+  painted.check_states();
+  // The new owner merges.
+  ASSERT_TRUE(
+      merger_.merge(model_.id, painted.epoch() + 1, painted.time() + 1h, [] { return true; }));
+  EXPECT_LT(count("edits"), edits);
+  check_all(painted);
+}
+
+// The database ends the session of the merger in the middle of its transaction, at several rows.
+TEST_F(Merger, a_merge_that_is_cut_off_changes_nothing) {
+  Painted painted(*store_, model_.id, 6);
+  painted.paint(280);
+  painted.end_all();
+  run("CREATE SEQUENCE merges; CREATE FUNCTION cut_off() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "
+      "IF nextval('merges') % 3 = 0 THEN PERFORM pg_terminate_backend(pg_backend_pid()); END IF; "
+      "RETURN NULL; END $$; "
+      "CREATE TRIGGER cut_off AFTER INSERT ON edit_batches FOR EACH STATEMENT EXECUTE FUNCTION cut_off(); "
+      "CREATE TRIGGER cut_off AFTER INSERT ON tile_segments FOR EACH STATEMENT EXECUTE FUNCTION cut_off(); "
+      "CREATE TRIGGER cut_off AFTER INSERT OR UPDATE ON merged_journals FOR EACH STATEMENT EXECUTE FUNCTION cut_off()");
+  int failures = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto done = painted.merge(merger_, painted.time() + 1h);
+    painted.check_ids();
+    if (i % 5 == 0) painted.check_states(4);
+    if (HasFatalFailure()) return;
+    if (done && done->edits + done->revisions == 0) break;
+    failures += done ? 0 : 1;
+  }
+  EXPECT_GT(failures, 2);
+  EXPECT_GT(count("edit_batches"), 0);
+  EXPECT_GT(count("tile_segments"), 0);
+  check_all(painted);
+  painted.paint(40);
+  check_all(painted, 4);
+}
+
+TEST_F(Merger, it_stops_between_two_transactions) {
+  Painted painted(*store_, model_.id, 7);
+  painted.paint(150);
+  painted.end_all();
+  const auto edits = count("edits");
+  int steps = 0;
+  ASSERT_TRUE(
+      merger_.merge(model_.id, painted.epoch(), painted.time() + 1h, [&] { return ++steps <= 2; }));
+  EXPECT_LT(count("edits"), edits);
+  EXPECT_EQ(count("merged_journals"), 0);
+  check_all(painted);
+  merge_all(painted);
+  EXPECT_EQ(count("merged_journals"), 1);
+  check_all(painted);
+}
+
+TEST_F(Merger, widening_and_erasing_a_layer_include_its_segments) {
+  Painted painted(*store_, model_.id, 8);
+  painted.paint(400);
+  painted.end_all();
+  merge_all(painted);
+  const Layer layer = store_->layers().find(model_.id, "one", Role::owner).value();
+  ASSERT_GT(count("tile_segments WHERE layer_id = " + to_string(layer.id)), 0);
+  const auto narrow = store_->journal().load_tiles(layer, painted.sequence() / 2).value();
+  const Layer wide = store_->layers().widen(layer, ValueType::u16).value();
+  const auto widened_tiles = store_->journal().load_tiles(wide, painted.sequence() / 2).value();
+  ASSERT_EQ(widened_tiles.tiles.size(), narrow.tiles.size());
+  for (const auto& [address, tile] : narrow.tiles)
+    EXPECT_TRUE(*widened_tiles.tiles.at(address) == widened(*tile, ValueType::u16));
+  ASSERT_TRUE(store_->layers().remove(layer.id));
+  for (const char* table : {"tile_segments", "edit_batches", "tile_revisions", "edits"})
+    EXPECT_EQ(count(std::string(table) + " WHERE layer_id = " + to_string(layer.id)), 0) << table;
+}
+
+TEST_F(Merger, it_waits_for_nodes_of_other_versions_and_marks_the_database) {
+  const auto readable_from = [&] {
+    return PgConnection::connect(dsn_)
+        ->query("SELECT readable_from IS NULL FROM schema_migrations WHERE version = '000049'")
+        ->boolean(0, 0);
+  };
+  EXPECT_FALSE(readable_from());
+  const Uuid other = random_uuid();
+  ASSERT_TRUE(store_->nodes().join({other, "http://127.0.0.1:1", "0.0.1", ""}));
+  EXPECT_FALSE(merger_.may_merge("0.0.2").value()) << "an older node could not read the result";
+  EXPECT_FALSE(readable_from());
+  ASSERT_TRUE(store_->nodes().leave(other));
+  EXPECT_FALSE(merger_.may_merge("0.0.2").value()) << "a node that has just started may join yet";
+  EXPECT_TRUE(readable_from());
+  EXPECT_TRUE(merger_.may_merge("0.0.2").value());
+}
+
+}  // namespace
+}  // namespace strata::store
