@@ -23,6 +23,7 @@
 #include "room/rooms.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
+#include "store/journal/journal_merger.h"
 #include "store/journal/journal_reads.h"
 
 namespace strata::bench {
@@ -171,24 +172,45 @@ class OneViewer {
   // replay.
   nlohmann::json steady_painting() {
     const auto bytes_before = must(site_.store->journal().revision_bytes(model_.id));
-    constexpr int kBatches = 400;
+    constexpr int kBatches = 2000, kBatchesOfStroke = 50;
     Wander hand(1280, 720, 7);
+    Uuid stroke;
     for (int i = 0; i < kBatches; ++i) {
+      if (i % kBatchesOfStroke == 0) stroke = random_uuid();
       const glm::dvec2 from = hand.at();
-      edit_and_wait(*room_, stroke_request(layers_[0], still_, {from, hand.step()}, options_.radius,
-                                           1 + (i / 50) % 100));
+      edit_and_wait(*room_, batch_request(stroke, i % kBatchesOfStroke, {from, hand.step()},
+                                          1 + (i / kBatchesOfStroke) % 100));
     }
-    const double mb_per_hour =
-        double(must(site_.store->journal().revision_bytes(model_.id)) - bytes_before) / kBatches *
-        (3600 / 0.03) / 1e6;
-    std::printf("steady painting keeps %.0f MB per hour\n", mb_per_hour);
-    return {{"revision_mb_per_hour", mb_per_hour}};
+    const auto mb_per_hour = [&] {
+      return double(must(site_.store->journal().revision_bytes(model_.id)) - bytes_before) /
+             kBatches * (3600 / 0.03) / 1e6;
+    };
+    const double written = mb_per_hour();
+    store::JournalMerger merger(site_.store->journal());
+    must(merger.merge(model_.id, must(site_.store->journal().state(model_.id, {})).epoch,
+                      std::chrono::system_clock::now() + std::chrono::hours(1),
+                      [] { return true; }));
+    const double kept = mb_per_hour();
+    std::printf("steady painting writes %.0f MB per hour, and keeps %.0f MB after the merge\n",
+                written, kept);
+    return {{"revision_mb_per_hour", written}, {"merged_mb_per_hour", kept}};
   }
 
   std::size_t triangles() const { return bench_.geometry->triangle_count(); }
   auto gpu() const { return site_.renderer->info(); }
 
  private:
+  room::EditRequest batch_request(const Uuid& stroke, int n, std::vector<glm::dvec2> path,
+                                  double value) const {
+    nlohmann::json points = nlohmann::json::array();
+    for (const auto& point : path) points.push_back({point.x, point.y});
+    auto request = stroke_request(layers_[0], still_, std::move(path), options_.radius, value);
+    auto& edit = std::get<room::StrokeEdit>(request.edit);
+    edit.stroke = stroke;
+    edit.n = n;
+    request.record = {{"op", "stroke"}, {"value", value}, {"n", n}, {"path", std::move(points)}};
+    return request;
+  }
   Camera camera_at(double angle) const {
     return look_at(*bench_.geometry, {std::cos(angle), std::sin(angle), 0.4}, 1280, 720);
   }
