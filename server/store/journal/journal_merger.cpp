@@ -426,7 +426,7 @@ Result<bool> JournalMerger::may_merge(std::string_view version) {
     // this server asks again.
     auto marked =
         STRATA_TRY(connection.query("UPDATE schema_migrations SET readable_from = NULL "
-                                    "WHERE version = '000049' AND readable_from IS NOT NULL"));
+                                    "WHERE version = '000047' AND readable_from IS NOT NULL"));
     return marked.affected() == 0;
   });
 }

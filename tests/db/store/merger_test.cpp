@@ -544,7 +544,7 @@ TEST_F(Merger, widening_and_erasing_a_layer_include_its_segments) {
 TEST_F(Merger, it_waits_for_nodes_of_other_versions_and_marks_the_database) {
   const auto readable_from = [&] {
     return PgConnection::connect(dsn_)
-        ->query("SELECT readable_from IS NULL FROM schema_migrations WHERE version = '000049'")
+        ->query("SELECT readable_from IS NULL FROM schema_migrations WHERE version = '000047'")
         ->boolean(0, 0);
   };
   EXPECT_FALSE(readable_from());
