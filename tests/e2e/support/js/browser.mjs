@@ -84,7 +84,19 @@ export class Browser {
         browser.complaints.push(`${message.text()} (${message.location().url})`),
     );
     browser.page.on("pageerror", (error) => browser.complaints.push(String(error.stack ?? error)));
+    browser.page.on("websocket", (socket) => browser.watch_cameras(socket));
     return browser;
+  }
+
+  /** Keeps the cameras that the page sends, by their number. */
+  watch_cameras(socket) {
+    this.cameras = new Map();
+    socket.on("framesent", ({ payload }) => {
+      if (typeof payload !== "string" || !payload.startsWith('{"op":"camera"')) return;
+      const { seq, moving, view_id, ...camera } = JSON.parse(payload);
+      if (!view_id) this.last_camera = { moving, camera: JSON.stringify(camera) };
+      if (!view_id) this.cameras.set(seq, this.last_camera.camera);
+    });
   }
 
   async close() {
@@ -148,6 +160,22 @@ export class Browser {
       async () => (await stages.count()) === 0,
       "a picture of the stage that is still",
     );
+  }
+
+  /**
+   * Waits until the stage shows the last camera that the page sent, in full quality. The frame then
+   * also shows everything that was changed before this camera was moved.
+   */
+  async rested() {
+    await this.idle();
+    await wait_for(async () => {
+      const { still, cameraSeq } = await this.page
+        .locator("strata-stage canvas")
+        .first()
+        .evaluate(({ dataset }) => ({ ...dataset }));
+      const { moving, camera } = this.last_camera;
+      return still === "true" && !moving && this.cameras.get(Number(cameraSeq)) === camera;
+    }, "the frame of the last camera");
   }
 
   /** Returns a screenshot of the stable page, when two consecutive screenshots are the same. */
