@@ -9,7 +9,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
-#include "store/pg/pg.h"
+#include "store/pg/bytes.h"
 
 namespace strata::store {
 

@@ -17,12 +17,12 @@
 #include "core/error.h"
 #include "core/ids.h"
 #include "core/uuid.h"
+#include "store/pg/bytes.h"
 #include "store/pg/pg_limits.h"
 #include "store/pg/sql.h"
 
 namespace strata::store {
 
-using Bytes = std::span<const std::uint8_t>;
 using Time = std::chrono::system_clock::time_point;
 
 namespace oid {
