@@ -1540,16 +1540,6 @@ CREATE TABLE public.detail_levels (
     CONSTRAINT detail_levels_level_check CHECK ((level > 0))
 );
 
-CREATE TABLE public.file_store (
-    one boolean DEFAULT true NOT NULL,
-    id uuid NOT NULL,
-    place text NOT NULL,
-    owner text NOT NULL,
-    CONSTRAINT file_store_one_check CHECK (one),
-    CONSTRAINT file_store_owner_check CHECK ((char_length(owner) <= 100)),
-    CONSTRAINT file_store_place_check CHECK (((char_length(place) >= 1) AND (char_length(place) <= 4096)))
-);
-
 CREATE TABLE public.edit_batches (
     model_id bigint NOT NULL,
     id uuid NOT NULL,
@@ -1558,6 +1548,16 @@ CREATE TABLE public.edit_batches (
     sequence bigint NOT NULL,
     area_m2 double precision NOT NULL,
     texels_changed integer NOT NULL
+);
+
+CREATE TABLE public.file_store (
+    one boolean DEFAULT true NOT NULL,
+    id uuid NOT NULL,
+    place text NOT NULL,
+    owner text NOT NULL,
+    CONSTRAINT file_store_one_check CHECK (one),
+    CONSTRAINT file_store_owner_check CHECK ((char_length(owner) <= 100)),
+    CONSTRAINT file_store_place_check CHECK (((char_length(place) >= 1) AND (char_length(place) <= 4096)))
 );
 
 CREATE TABLE public.group_people (

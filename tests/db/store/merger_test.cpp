@@ -91,7 +91,8 @@ class Painted {
     if (edits.empty()) return false;
     auto entry = this->entry(layer, redoes ? "redo" : "undo", user, random_uuid());
     Content& content = contents_[layer.id];
-    for (const auto& [tile, texels] : journal.written_by(layer, edits).value()) {
+    const auto written = journal.written_by(layer, edits).value();
+    for (const auto& [tile, texels] : written) {
       const TileData before = content.contains(tile) ? content.at(tile) : TileData(layer.type);
       std::optional<TileResolver> resolver;
       EXPECT_TRUE(journal.tile_past(
